@@ -31,7 +31,7 @@ def __getattr__(name: str) -> Any:
 
         return Relaxation
     if name == "progress":
-        from .cli.progress import progress
+        from mobius_flow.cli.progress import progress
 
         return progress
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

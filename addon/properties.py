@@ -10,7 +10,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
 from ..core import RelaxOptions
-from ..core.option import Option, declared
+from ..core.arguments import Option, declared
 from .engine.key_options import FRAMES_PER_ITERATE, LAST_FRAME, KeyOptions, Output, Pace, Timing
 from .engine.size import Measure
 
@@ -59,7 +59,10 @@ def _property(option: Option, options: set[str]) -> Any:
             "description": option.sentence("Empty" if option.kind is str else "0"),
             "default": option.default or option.kind(),
         }
-        return _PROPERTIES[option.kind](**words, **_bounds(option))
+        low = option.low + (_TINY if option.kind is float else 0)  # floats leave the bound itself out
+        interval = {"min": low if option.default is not None else min(low, 0), "max": option.high}
+        bounds = {name: option.kind(bound) for name, bound in interval.items() if math.isfinite(bound)}
+        return _PROPERTIES[option.kind](**words, **(bounds | ({"precision": 6} if option.kind is float else {})))
     items = [(_AUTOMATIC, "Automatic", option.automatic, "NONE", 0)] if automatic else []
     items += _items(option.choices)
     return EnumProperty(**words, description=option.sentence(), items=items, default=option.default or _AUTOMATIC)
@@ -86,13 +89,6 @@ def _item(name: str, entry: Any) -> _Item:
 
 def _heading(text: str) -> _Item:
     return "", text, "", "NONE", 0
-
-
-def _bounds(option: Option) -> dict[str, Any]:
-    low = option.low + (_TINY if option.kind is float else 0)  # floats leave the bound itself out
-    interval = {"min": low if option.default is not None else min(low, 0), "max": option.high}
-    bounds = {name: option.kind(bound) for name, bound in interval.items() if math.isfinite(bound)}
-    return bounds | ({"precision": 6} if option.kind is float else {})
 
 
 def settings(options: set[str]) -> dict[str, Any]:

@@ -5,26 +5,13 @@ from types import ModuleType
 import bpy
 
 from . import settings, translations
-from .buttons import (
-    adding,
-    drawing,
-    families,
-    film,
-    mending,
-    outputs,
-    pinning,
-    presets,
-    relaxing,
-    running,
-    shape,
-    stroke,
-)
+from .buttons import adding, drawing, film, mending, outputs, pinning, presets, relaxing, running, shape, stroke
 from .live import handlers, overlay
 from .sidebar import menus, panels, relax, tool
 
 # presets go into the head of the panel; the sub-panels follow in the order they are shown
 _MODULES = (
-    *(relaxing, running, mending, pinning, shape, outputs, film, adding, families, drawing, stroke, presets),
+    *(relaxing, running, mending, pinning, shape, outputs, film, adding, drawing, stroke, presets),
     *(menus, relax, panels),
 )
 # what else there is to register

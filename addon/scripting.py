@@ -29,7 +29,7 @@ from .engine.key_options import Pace
 from .live.checks import BAKED, CLEARABLE, POLYGONS, READABLE, RELAXABLE, UNEDITED
 from .live.requirements import idle, require
 from .pictures import staging
-from .pictures.filming import Filming
+from .pictures.movie import Filming
 from .properties import key_options, relax_options, settings
 
 _DECLARED = {name: (each.function, each.keywords) for name, each in settings(set()).items()}

@@ -9,7 +9,7 @@ from .engine.knot_list import GROUPS, group, labels
 from .engine.quality import QUALITIES, quality_of
 from .live.modal import redraw_views
 from .pictures import icons, staging
-from .pictures.filming import CHOICES
+from .pictures.movie import CHOICES
 from .properties import MobiusFlowSettings
 
 # since 5.0 Blender marks relative paths as wrong where a property does not say that it knows them

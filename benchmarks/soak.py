@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 from hard_curves import hard_unknot
 from mobius_flow.core import METHODS, Curve, Iterate, MobiusFlowError, Obstacle, RelaxOptions, Task, Trajectory, relax
-from mobius_flow.core.collision.clearance import clears
+from mobius_flow.core.collision.embedded import clears
 from mobius_flow.core.diagrams import quick_invariants
 from mobius_flow.core.driver.options import EDGE_LENGTHS, MESHES
 from mobius_flow.core.energies import ENERGIES

@@ -36,7 +36,6 @@ are done are written all the same
 
 
 def add_compare(parser: argparse.ArgumentParser) -> None:
-    """Describe ``compare``."""
     parser.description = "Compare methods on a curve: energy and gradient against iterations and seconds."
     parser.epilog = _EPILOG
     curves.add_input(parser, "polygons, closed or open")
@@ -96,7 +95,6 @@ def _compare(options: argparse.Namespace) -> int:
 
 
 def add_methods(parser: argparse.ArgumentParser) -> None:
-    """Describe ``methods``."""
     parser.description = "List the descent methods: name, a tab, what it is; those for comparison come last."
     parser.epilog = "exit status: 0"
     parser.set_defaults(run=_methods)

@@ -56,7 +56,6 @@ exit status: 0; 2 where there are no results, something is not installed, or OUT
 
 
 def add_gallery(parser: argparse.ArgumentParser) -> None:
-    """Describe ``gallery``."""
     parser.description, parser.epilog = "Show all results of a batch, or knots of an atlas, on one page.", _EPILOG
     text = "directory that mobius-flow batch or mobius-flow atlas wrote to"
     parser.add_argument("results", metavar="RESULTS", help=text)
@@ -77,13 +76,11 @@ class Shown:
     free: bool
 
     def look(self) -> Curve:
-        """The curve as it is shown."""
         curve = read_curve(self.curve)
         return balanced(curve) if self.free and curve.mesh.all_closed else curve
 
 
 def _run(options: argparse.Namespace) -> int:
-    """Render every result, and put the pictures on a page."""
     if Path(options.output).suffix.lower() != ".png":
         raise MobiusFlowError(f"{options.output}: {wrong_suffix(options.output, ['.png'], 'galleries')}")
     if not 16 <= options.size <= LARGEST:

@@ -42,7 +42,6 @@ exit status: 0, or 2 on bad input or bad options
 
 
 def add_energy(parser: argparse.ArgumentParser) -> None:
-    """Describe ``energy``."""
     parser.description, parser.epilog = "Print the energy of a curve.", _ENERGY_EPILOG
     curves.add_input(parser, "curve")
     parser.add_argument("--energy", default="moebius", metavar="NAME", help=f"one of {', '.join(ENERGIES)}")
@@ -59,7 +58,6 @@ def _energy(options: argparse.Namespace) -> int:
 
 
 def add_info(parser: argparse.ArgumentParser) -> None:
-    """Describe ``info``."""
     parser.description, parser.epilog = "Identify the knot type of curves, and measure them.", _INFO_EPILOG
     curves.add_input(parser, "curves", "inputs", "+")
     text = "close open components: their ends go straight away from the centre and are joined far out"

@@ -37,7 +37,6 @@ exit status: 0, or 2 on bad input or bad options, or where OUT cannot be written
 
 
 def add_knot(parser: argparse.ArgumentParser) -> None:
-    """Describe ``knot``."""
     parser.description, parser.epilog = "Write a named knot as a curve.", _EPILOG
     text = (
         'such as 3_1, goeritz, hopf, overhand, "T(3,5)", "braid(1,-2,1,-2)", a code, "DT: [4 6 2]", or, with the extra '

@@ -59,7 +59,6 @@ def _end(sentence: str, status: int) -> int:
 
 
 def explained(error: Exception) -> tuple[str, int]:
-    """The sentence and the exit status for an exception."""
     if isinstance(error, streams.OutputStreamError):
         return str(error), BAD_INPUT
     if isinstance(error, ImportError | SyntaxError):

@@ -1,17 +1,19 @@
-"""``mobius-flow morph``: a proved motion from one curve to another."""
+"""``mobius-flow morph`` and ``same``: a proved motion from one curve to another, and whether there is any."""
 
 import argparse
 import sys
 
-from ..core import CurveError, RelaxOptions, Status, Task, read_obstacle
+from ..core import CurveError, Iterate, RelaxOptions, Status, Task, read_obstacle
 from ..core.curve.io import FORMATS, CurveFile
-from ..core.morphing import NoMotionError, morphing
+from ..core.driver import finish
+from ..core.errors import counted
+from ..core.morphing import DifferentError, NoMotionError, compare, morphing, moving
 from . import curves
 from . import options as relax_options
-from .outputs import admit, output_for
-from .places import check_places
+from .places import admit, check_places, output_for
 from .relax import EXIT_STATUS, add_outputs, places, run_to_end, write_results
-from .streams import one_line
+from .signals import INTERRUPTED
+from .streams import emit, one_line
 
 NOT_FOUND = 1
 NAMES = ("A", "B")  # of the curves, on the command line and in sentences
@@ -35,10 +37,23 @@ exit status:
   2    bad input or bad options, or an output that cannot be written; one line says what and where
   130  interrupted by Ctrl-C, SIGTERM or SIGHUP; what was reached is written
 """
+_EPILOG_OF_SAME = """\
+examples:
+  mobius-flow same a.txt b.txt
+  mobius-flow same a.txt b.txt --hops 20
+
+Invariants decide where they can; otherwise a motion is looked for, as mobius-flow morph does. Directions and the order
+of components do not matter; mirror images do.
+
+exit status:
+  0    the same, with proof: a common type was identified, or a motion leads from one to the other
+  1    different, with the invariant that says so, or not known
+  2    bad input or bad options
+  130  interrupted
+"""
 
 
 def add_morph(parser: argparse.ArgumentParser) -> None:
-    """Describe ``morph``."""
     parser.description, parser.epilog = "Find a motion from one curve to another, free of contact with proof.", _EPILOG
     add_pair(parser)
     add_outputs(parser)
@@ -90,3 +105,31 @@ def _run(options: argparse.Namespace) -> int:
         return NOT_FOUND
     write_results(options, output, result, iterates, origin)
     return NOT_FOUND if result.status is Status.TIME_LIMIT else EXIT_STATUS[result.status]
+
+
+def add_same(parser: argparse.ArgumentParser) -> None:
+    parser.description, parser.epilog = "Tell whether two curves are the same knot or link.", _EPILOG_OF_SAME
+    add_pair(parser)
+    parser.set_defaults(run=_run_same)
+
+
+def _run_same(options: argparse.Namespace) -> int:
+    wanted = relax_options.from_arguments(options)
+    tasks = [task for _, task in read_pair(options, wanted)]
+    iterates = moving(tasks, wanted, NAMES)
+    way: list[Iterate] = []
+    try:
+        agreed = compare([each.curve for each in tasks], NAMES)
+        if agreed and not options.avoid:
+            emit(f"same: {agreed}")
+            return 0
+        result = finish(iterates, tasks[0], wanted, way.append)
+    except NoMotionError as error:
+        emit(f"{'different' if isinstance(error, DifferentError) else 'not known'}: {error}")
+        return NOT_FOUND
+    if not (result.outcome.converged and result.certified):
+        emit(f"not known: {result.message}")
+        return INTERRUPTED if result.status is Status.INTERRUPTED else NOT_FOUND
+    legs = counted(sum(len(iterate.path) for iterate in way), "leg")
+    emit(f"same: a motion of {legs}, proved free of contact, leads from one to the other")
+    return 0

@@ -11,9 +11,9 @@ import scipy
 from .. import __version__
 from ..addon.pictures.looks import LOOKS
 from ..core import RelaxOptions, Task, read_obstacle
+from ..core.arguments import Option, declared
 from ..core.curve.io import CurveFile
 from ..core.errors import OptionError, choice
-from ..core.option import Option, declared
 from ..core.threads import THREADS
 
 _OFFERED = "offered"  # names of the options, in a namespace
@@ -100,7 +100,6 @@ def flag(option: Option) -> str:
 
 
 def _declaration(option: Option) -> dict[str, Any]:
-    """What argparse is told of an option."""
     common = {"dest": option.name, "help": option.help, "default": option.default}
     if option.kind is bool:
         return common | {"action": "store_true"}

@@ -12,7 +12,7 @@ from .streams import emit, one_line
 COMMANDS = {  # the module of each, which has add_COMMAND(parser), and what it does
     "relax": ("relax", "relax a curve"),
     "morph": ("morph", "find a proved motion from one curve to another"),
-    "same": ("same", "tell whether two curves are the same knot or link"),
+    "same": ("morph", "tell whether two curves are the same knot or link"),
     "batch": ("batch", "relax many curves, on all cores or a cluster"),
     "atlas": ("atlas", "make pages and tables of the minima that batches found"),
     "gallery": ("gallery", "show the results of a batch"),
@@ -49,13 +49,11 @@ class Parser(argparse.ArgumentParser):
         self.register("type", float, _read(float, "a number"))
 
     def error(self, message: str) -> NoReturn:
-        """End with one line."""
         self.exit(BAD_OPTIONS, f"{self.prog}: {message} (see {self.prog} --help)")
 
     def parse_known_args(  # type: ignore[override]
         self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
     ) -> tuple[argparse.Namespace, list[str]]:
-        """Parse, and refuse what isn't known."""
         found, unknown = super().parse_known_args(args, namespace)
         word = unknown[0].partition("=")[0] if unknown else ""
         if word.startswith("-"):
@@ -90,7 +88,6 @@ class Command(Parser):
     def parse_known_args(  # type: ignore[override]
         self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
     ) -> tuple[argparse.Namespace, list[str]]:
-        """Load, and parse."""
         add_to(self, self.prog.rpartition(" ")[2])
         return super().parse_known_args(args, namespace)
 

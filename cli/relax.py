@@ -3,7 +3,7 @@
 import argparse
 import json
 import sys
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
@@ -15,8 +15,7 @@ from ..core.driver import Relaxation, finish
 from ..core.errors import counted
 from . import curves, signals
 from . import options as relax_options
-from .outputs import OUTPUTS, Output, admit, output_for
-from .places import Write, check_places, is_file, kept, writing
+from .places import OUTPUTS, Output, Write, admit, check_places, is_file, kept, output_for, writing
 from .progress import progress
 
 EXIT_STATUS = dict.fromkeys(Status, 0) | {Status.STALLED: 1, Status.INTERRUPTED: 130}
@@ -49,7 +48,6 @@ An output that cannot be written in the end is saved in a temporary directory, w
 
 
 def add_relax(parser: argparse.ArgumentParser) -> None:
-    """Describe ``relax``."""
     parser.description, parser.epilog = "Relax a curve: lower its energy without changing its knot type.", _EPILOG
     curves.add_input(parser, "polygons, closed or open")
     add_outputs(parser)
@@ -145,13 +143,8 @@ def write_results(
     options: argparse.Namespace, output: Output, result: Result, iterates: list[Iterate], origin: Mapping[str, object]
 ) -> None:
     """Write every requested output, and say on standard error how the run ended, unless it is to be quiet."""
-    _write_all(_jobs(options, output, result, iterates, origin))
-    if not options.quiet:
-        print(_summary(result, falls="to" not in origin), file=sys.stderr)
-
-
-def _write_all(jobs: Iterable[_Job]) -> None:
-    """Write report, trajectory and curve or scene: the others are written all the same where one cannot be."""
+    # write report, trajectory and curve or scene: the others are written all the same where one cannot be
+    jobs = _jobs(options, output, result, iterates, origin)
     failures: list[str] = []
     interrupted = False
     for job in sorted(jobs, key=lambda job: job.slow):
@@ -166,6 +159,8 @@ def _write_all(jobs: Iterable[_Job]) -> None:
     if failures:
         raise MobiusFlowError("; ".join(failures))
     signals.allow()
+    if not options.quiet:
+        print(_summary(result, falls="to" not in origin), file=sys.stderr)
 
 
 def _jobs(

@@ -33,7 +33,6 @@ class _State:
 
 
 def hold() -> None:
-    """Let signals wait."""
     _State.mode = _HOLD
 
 

@@ -36,7 +36,6 @@ exit status:
 
 
 def add_verify(parser: argparse.ArgumentParser) -> None:
-    """Describe ``verify``."""
     parser.description, parser.epilog = "Check a trajectory for contact, independently of the run.", _EPILOG
     parser.add_argument("trajectory", metavar="T.npz", help="as written by relax --trajectory, or - for standard input")
     parser.add_argument("--json", action="store_true", help="print the verdict as JSON")

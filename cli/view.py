@@ -3,12 +3,10 @@
 import argparse
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from types import MappingProxyType
 
 from ..core import MobiusFlowError
 from ..core.errors import wrong_suffix
-from ..core.gltf import animation
-from ..core.solids import solid
+from ..core.solids import animation, solid
 from ..core.view import FRAMES, Motion, motion, page, still
 from . import curves
 from .places import check_places, writing
@@ -34,18 +32,15 @@ def _solid(kind: str) -> Write:
     return lambda shown, width, _: solid(shown.curves[-1], kind, width)
 
 
-WRITERS: Mapping[str, Write] = MappingProxyType(
-    {
-        ".html": lambda shown, width, title: page(shown, width and 0.5 * width, title).encode(),
-        ".stl": _solid("stl"),
-        ".3mf": _solid("3mf"),
-        ".glb": lambda shown, width, _: animation(shown, width and 0.5 * width),
-    }
-)
+WRITERS: Mapping[str, Write] = {
+    ".html": lambda shown, width, title: page(shown, width and 0.5 * width, title).encode(),
+    ".stl": _solid("stl"),
+    ".3mf": _solid("3mf"),
+    ".glb": lambda shown, width, _: animation(shown, width and 0.5 * width),
+}
 
 
 def add_view(parser: argparse.ArgumentParser) -> None:
-    """Describe ``view``."""
     parser.description, parser.epilog = "Show a curve or a trajectory, or make a solid of it.", _EPILOG
     curves.add_input(parser, "curve, or trajectory (.npz)")
     parser.add_argument("output", metavar="OUT", help=f"what to write, by suffix: {', '.join(WRITERS)}")

@@ -10,7 +10,7 @@ from .collision.gap import thickness
 from .curve import Curve
 from .curve.measures import writhe_and_crossings
 from .driver import RelaxOptions
-from .driver.interventions.saddle import stability
+from .driver.interventions.rest import stability
 from .driver.prepare import start_problem
 from .driver.run import gradient_bound
 from .energies import ENERGIES as KNOWN
@@ -22,8 +22,8 @@ from .knots.names import table_name
 from .knots.shapes import least_energies
 from .smooth.rest import at_rest
 from .symmetry import SymmetryGroup, symmetries
+from .task import centred, check_units
 from .threads import BLAS
-from .units import centred, check_units
 
 ENERGIES = ("moebius", "edge", "vertex")
 PAIRS_UP_TO = 50_000  # vertices, where all pairs of edges are summed: a minute or so, growing with the square

@@ -1,13 +1,29 @@
-"""Tubes as solids to print: STL and 3MF, by trimesh."""
+"""Tubes as solids to print (STL and 3MF, by trimesh), and motions as binary glTF 2.0.
+
+A motion's surfaces have its frames as morph targets, which play one after the other.
+"""
+
+import json
+import struct
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
 
 from .arguments import checked
 from .collision.gap import thickness
 from .curve import Curve
 from .errors import CurveError, MobiusFlowError
 from .tube import Tube, tubes
+from .view import COLOURS, Motion
 
 _PART = 0.9  # of the thickness, for a wire whose width nobody has said
 _SIDES = 32
+SECONDS = 6.0  # that a motion takes
+_TYPES = {1: "SCALAR", 3: "VEC3"}
+_FLOAT, _INDEX = 5126, 5125  # as glTF numbers types, and what data are for
+_VERTICES, _FACES = 34962, 34963
+_UPRIGHT = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]  # a quarter turn: our z-axis is up, glTF's is y
 
 
 @checked
@@ -39,3 +55,92 @@ def solid(curve: Curve, kind: str, width: float | None = None) -> bytes:
     scene = trimesh.Scene([trimesh.Trimesh(part.points, part.faces, process=False) for part in parts])
     scene.units = "millimeters"
     return bytes(scene.export(file_type=kind))
+
+
+@checked
+def animation(shown: Motion, radius: float | None = None) -> bytes:
+    """The file: a mesh for each component, and one animation of them all if there are several frames."""
+    surfaces = tubes(shown.curves, shown.radius if radius is None else radius)
+    data, parts = _Data(), range(len(surfaces))
+    document: dict[str, Any] = {
+        "asset": {"version": "2.0", "generator": "Möbius Flow"},
+        "scene": 0,
+        "scenes": [{"nodes": list(parts)}],
+        "nodes": [{"mesh": k, "name": f"component {k + 1}", "rotation": _UPRIGHT} for k in parts],
+        "meshes": [{"primitives": [_primitive(data, k, frames)]} for k, frames in enumerate(surfaces)],
+        "materials": [_material(colour) for colour in COLOURS],
+    }
+    if len(shown.curves) > 1:
+        document["animations"] = [_one_after_the_other(data, len(shown.curves), len(parts))]
+    return data.joined(document)
+
+
+def _primitive(data: "_Data", k: int, frames: list[Tube]) -> dict[str, Any]:
+    """The surface of the first frame, and what the others add to it."""
+    first = frames[0]
+    made = {
+        "attributes": {"POSITION": data.add(first.points, _VERTICES), "NORMAL": data.add(first.normals, _VERTICES)},
+        "indices": data.add(first.faces.ravel().astype(np.uint32), _FACES),
+        "material": k % len(COLOURS),
+    }
+    changes = [
+        {"POSITION": data.add(each.points - first.points), "NORMAL": data.add(each.normals - first.normals)}
+        for each in frames[1:]
+    ]
+    return made | ({"targets": changes} if changes else {})
+
+
+def _material(colour: str) -> dict[str, Any]:
+    red, green, blue = ((int(colour[k : k + 2], 16) / 255) ** 2.2 for k in (1, 3, 5))
+    return {
+        "pbrMetallicRoughness": {"baseColorFactor": [red, green, blue, 1], "metallicFactor": 0, "roughnessFactor": 0.5}
+    }
+
+
+def _one_after_the_other(data: "_Data", frames: int, parts: int) -> dict[str, Any]:
+    """At its time each target has weight 1 and the others 0; at the first time all have."""
+    times, weights = np.linspace(0.0, SECONDS, frames), np.eye(frames)[:, 1:]
+    sampler = {"input": data.add(times), "output": data.add(weights.ravel()), "interpolation": "LINEAR"}
+    channels = [{"sampler": 0, "target": {"node": k, "path": "weights"}} for k in range(parts)]
+    return {"samplers": [sampler], "channels": channels}
+
+
+class _Data:
+    """The numbers of a file, and what it says about them."""
+
+    def __init__(self) -> None:
+        self._bytes = bytearray()
+        self._views: list[dict[str, int]] = []
+        self._accessors: list[dict[str, Any]] = []
+
+    def add(self, array: npt.NDArray[Any], target: int | None = None) -> int:
+        """Append numbers, shape (k,) or (k, 3); return the index by which they are referred to."""
+        array = np.ascontiguousarray(array, dtype=np.uint32 if target == _FACES else np.float32)
+        columns = array.reshape(len(array), -1)
+        view = {"buffer": 0, "byteOffset": len(self._bytes), "byteLength": array.nbytes}
+        self._views.append(view | ({} if target is None else {"target": target}))
+        self._accessors.append(
+            {
+                "bufferView": len(self._views) - 1,
+                "componentType": _INDEX if target == _FACES else _FLOAT,
+                "count": len(columns),
+                "type": _TYPES[columns.shape[1]],
+                "min": columns.min(axis=0).tolist(),
+                "max": columns.max(axis=0).tolist(),
+            }
+        )
+        self._bytes += array.tobytes()
+        return len(self._accessors) - 1
+
+    def joined(self, document: dict[str, Any]) -> bytes:
+        """The file: its header, the document and the numbers, each a chunk of a multiple of four bytes."""
+        whole = document | {
+            "buffers": [{"byteLength": len(self._bytes)}],
+            "bufferViews": self._views,
+            "accessors": self._accessors,
+        }
+        text = json.dumps(whole).encode()
+        text += b" " * (-len(text) % 4)
+        chunks = struct.pack("<I4s", len(text), b"JSON") + text
+        chunks += struct.pack("<I4s", len(self._bytes), b"BIN\0") + self._bytes
+        return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks

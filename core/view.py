@@ -14,9 +14,9 @@ from .curve import Curve, Mesh
 from .curve.smooth import evenly
 from .errors import CurveError, MobiusFlowError
 from .hierarchy import moebius_energy
+from .task import centred
 from .tube import tubes
 from .types import IntArray
-from .units import centred
 from .verify.trajectory import TrajectoryError, stages
 
 COLOURS = ("#3b6fb6", "#d1663f", "#4b9b6e", "#9b5fb0", "#c9a227", "#5aa7b8", "#b8436d", "#7a7a7a")

@@ -49,7 +49,7 @@ PLUGINS = {
         "core/energies/__init__.py",
         (
             Line("from .energy import ", "from .inverse_cube import INVERSE_CUBE"),
-            Line("            TANGENT_POINT_ENERGY,", "            INVERSE_CUBE,"),
+            Line("        TANGENT_POINT_ENERGY,", "        INVERSE_CUBE,"),
         ),
     ),
     "term": Plugin(
@@ -58,7 +58,7 @@ PLUGINS = {
         "core/energies/__init__.py",
         (
             Line("from .energy import ", "from .height import Height"),
-            Line("            Bending(),", "            Height(),"),
+            Line("        Bending(),", "        Height(),"),
         ),
     ),
     "metric": Plugin(
@@ -67,7 +67,7 @@ PLUGINS = {
         "core/metrics/__init__.py",
         (
             Line("from .local import ", "from .lumped import LumpedMetric"),
-            Line("            MoebiusMetric(),", "            LumpedMetric(),"),
+            Line("        MoebiusMetric(),", "        LumpedMetric(),"),
         ),
     ),
     "direction": Plugin(
@@ -101,8 +101,8 @@ PLUGINS = {
         (
             Line("from .source import ", "from . import numbered"),
             Line(
-                '        ".vect": ',
-                '        ".num": Format("number of the component, x, y, z", numbered.read, numbered.write),',
+                '    ".vect": ',
+                '    ".num": Format("number of the component, x, y, z", numbered.read, numbered.write),',
             ),
         ),
     ),

@@ -18,10 +18,10 @@ from types import MappingProxyType
 import mobius_flow
 from import_map import drawn, import_map
 from mobius_flow.core import METHODS, RelaxOptions
+from mobius_flow.core.arguments import Option, declared
 from mobius_flow.core.curve.io import FORMATS
 from mobius_flow.core.energies import ENERGIES
 from mobius_flow.core.metrics import METRICS
-from mobius_flow.core.option import Option, declared
 
 ROOT = Path(__file__).resolve().parents[1]
 _REGION = re.compile(r"(?<=<!-- generated: )(\w+)( -->\n)(.*?)(?=<!-- end -->)", re.DOTALL)

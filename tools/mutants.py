@@ -3,6 +3,7 @@
     python tools/mutants.py            all of them
     python tools/mutants.py NAME …     some of them
 
+The changes are in ``mutations/``: what stands once in a file, what takes its place, and the test that must notice.
 Works on a copy; exit status 1 if a mutant survives, or if a test fails without any.
 """
 
@@ -11,17 +12,34 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+import tomllib
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-
-from mutations import MUTANTS, Mutant
+from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parents[1]
 
 
+class Mutant(NamedTuple):
+    """One change, and the test that must notice."""
+
+    file: str
+    name: str
+    old: str
+    new: str
+    test: str
+
+
+def mutants() -> Iterator[Mutant]:
+    """Read them all; they are sorted by the files that they change."""
+    for path in sorted((ROOT / "tools/mutations").glob("*.toml")):
+        for file, changes in tomllib.loads(path.read_text(encoding="utf-8")).items():
+            yield from (Mutant(file, **change) for change in changes)
+
+
 def main(names: Sequence[str]) -> int:
     """Try the mutants with these names, or all."""
-    chosen = [mutant for mutant in MUTANTS if not names or mutant.name in names]
+    chosen = [mutant for mutant in mutants() if not names or mutant.name in names]
     with tempfile.TemporaryDirectory() as work:
         copy = Path(work) / "mobius_flow"
         shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns(".*", "build", "__pycache__", "*.egg-info"))

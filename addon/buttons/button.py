@@ -10,7 +10,7 @@ from ..live.modal import redraw_views
 from ..live.requirements import Refusal, Requirement, first, require
 from ..translations import rpt_, tip_
 
-_Act = Callable[[Any, bpy.types.Context], object]
+_Act = Callable[[Any, Any], object]
 _PREFIX = "CURVE_OT_"
 
 
@@ -59,11 +59,11 @@ class Button:
         raise NotImplementedError
 
 
-def button(label: str, *needs: Requirement, **more: Any) -> Callable[[_Act], type]:
+def button(label: str, *needs: Requirement, base: type[Button] = Button, **more: Any) -> Callable[[_Act], type]:
     """Make an operator without settings of a function: its name is the identifier, its docstring the tooltip."""
 
     def operator(act: _Act) -> type:
         body = {"__doc__": act.__doc__, "__module__": act.__module__, "bl_label": label, "needs": needs, "act": act}
-        return type(f"{_PREFIX}mobius_flow_{act.__name__}", (Button, bpy.types.Operator), body | more)
+        return type(f"{_PREFIX}mobius_flow_{act.__name__}", (base, bpy.types.Operator), body | more)
 
     return operator

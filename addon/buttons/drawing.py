@@ -1,22 +1,30 @@
-"""The operator that lifts drawings into knots."""
+"""The operators that lift drawings into knots, and that add knots of families: a few numbers make each."""
 
 import bpy
 import numpy as np
-from bpy.props import BoolProperty, BoolVectorProperty, FloatProperty, IntProperty
+from bpy.props import BoolProperty, BoolVectorProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 from bpy_extras.object_utils import object_data_add
 
-from ...core import Curve
+from ...core import Curve, knots
 from ...core.knots import Drawing, knot_type
 from ...core.messages import Message
 from ...core.types import FloatArray
 from ..curves.exchange import read_link
-from ..engine.turning import DrawingPlane
+from ..engine.knot_list import labels, name_of
+from ..engine.placement import DrawingPlane
 from ..live.requirements import Condition, selected_curves
 from ..translations import iface_, rpt_
-from .adding import OBJECT_MODE, AddsKnot
+from .adding import OBJECT_MODE, AddsKnot, found, named_knot
 
 _DRAWN = Condition("Draw a flat curve and select it first", lambda context: not selected_curves(context))
 _SWITCHES = 32  # Blender's longest array of switches
+_SHOWN = {
+    "TORUS": ("p", "q"),
+    "BRAID": ("word",),
+    "LISSAJOUS": ("frequency_x", "frequency_y", "frequency_z", "phase_x", "phase_y"),
+    "CABLE": ("companion", "strands", "turns"),
+    "DOUBLE": ("companion", "twists", "left_clasp"),
+}
 
 
 class DrawsKnot(AddsKnot):
@@ -66,7 +74,8 @@ class CURVE_OT_mobius_flow_draw_knot(DrawsKnot, bpy.types.Operator):
         """Lift the drawing and add it as a new object."""
         drawn = selected_curves(context)
         self.check_lengths()
-        curve = _read(drawn)
+        # the drawing in world space; open splines, such as strokes, are closed by their chords
+        curve = Curve.from_components(read_link(drawn)[0].components)
         plane = DrawingPlane.of(curve)
         drawing = Drawing.of(plane.flattened(curve))
         lifted = self._lifted(drawing)
@@ -97,11 +106,6 @@ class CURVE_OT_mobius_flow_draw_knot(DrawsKnot, bpy.types.Operator):
         self.draw_tube(layout)
 
 
-def _read(objects: list[bpy.types.Object]) -> Curve:
-    """The drawing in world space; open splines, such as strokes, are closed by their chords."""
-    return Curve.from_components(read_link(objects)[0].components)
-
-
 def described(curve: Curve, crossings: int) -> tuple[str, Message]:
     """A name for a drawn knot, and what can be said of it."""
     found = knot_type(curve)
@@ -122,3 +126,73 @@ def _mark(collection: bpy.types.Collection, parent: bpy.types.Object, places: Fl
         empty.empty_display_size, empty.show_name, empty.show_in_front = size, True, True
         empty.parent, empty.location = parent, place
         collection.objects.link(empty)
+
+
+class CURVE_OT_mobius_flow_add_family(AddsKnot, bpy.types.Operator):
+    """Add a knot or link made by a few numbers: a torus knot, braid, Lissajous curve, or two strands along a knot"""
+
+    bl_label = "Knot Family"
+
+    family: EnumProperty(
+        name="Family",
+        description="What makes the knot",
+        items=[
+            ("TORUS", "Torus", "Winds around a torus"),
+            ("BRAID", "Braid", "Strands that cross one by one and close in a circle"),
+            ("LISSAJOUS", "Lissajous", "Three oscillations at right angles"),
+            ("CABLE", "Cable", "Strands along a knot, wound around each other"),
+            ("DOUBLE", "Double", "Two strands along a knot that hook into each other"),
+        ],
+        default="TORUS",
+    )
+    p: IntProperty(name="p", description="How often the curve goes round the torus", default=3, soft_min=2)
+    q: IntProperty(name="q", description="How often the curve goes through the torus", default=4, soft_min=2)
+    word: StringProperty(
+        name="Braid",
+        description="Crossings one by one: 2 crosses strands 2 and 3, -2 does so the other way",
+        default="1 -2 1 -2 1 -2",
+    )
+    frequency_x: IntProperty(name="Frequency X", description="Oscillations along X", default=3, min=1, max=40)
+    frequency_y: IntProperty(name="Y", description="Oscillations along Y", default=4, min=1, max=40)
+    frequency_z: IntProperty(name="Z", description="Oscillations along Z", default=7, min=1, max=40)
+    phase_x: FloatProperty(
+        name="Phase X", description="Where the oscillation along X begins", default=0.7, subtype="ANGLE"
+    )
+    phase_y: FloatProperty(name="Y", description="Where the oscillation along Y begins", default=0.2, subtype="ANGLE")
+    companion: StringProperty(
+        name="Along", description="Knot that the strands follow", default=labels()["3_1"], search=found
+    )
+    strands: IntProperty(name="Strands", description="Number of strands along the knot", default=2, min=2, max=12)
+    turns: IntProperty(
+        name="Turns",
+        description="Steps from strand to strand around the knot; one curve if Strands has no common divisor with it",
+        default=1,
+        min=-100,
+        max=100,
+    )
+    twists: IntProperty(
+        name="Twists", description="Full turns of the two strands around each other", default=0, min=-100, max=100
+    )
+    left_clasp: BoolProperty(
+        name="Left-Handed Clasp", description="Hook the strands into each other the other way", default=False
+    )
+
+    def make(self) -> tuple[str, Curve]:
+        if self.family == "TORUS":
+            return named_knot(f"T({self.p},{self.q})")
+        if self.family == "BRAID":
+            return named_knot(f"braid({','.join(self.word.replace(',', ' ').split())})")
+        if self.family == "LISSAJOUS":
+            frequencies, phases = (self.frequency_x, self.frequency_y, self.frequency_z), (self.phase_x, self.phase_y)
+            return f"Lissajous{frequencies}".replace(" ", ""), knots.lissajous_knot(frequencies, phases)
+        name = name_of(self.companion)
+        along = knots.smooth_knot(name)
+        if self.family == "CABLE":
+            return f"Cable({self.strands},{self.turns}) of {name}", knots.cable(along, self.strands, self.turns)
+        return f"Double of {name}", knots.double(along, self.twists, clasp=-1 if self.left_clasp else 1)
+
+    def draw_kind(self, layout: bpy.types.UILayout) -> None:
+        layout.prop(self, "family")
+        column = layout.column(align=True)
+        for name in _SHOWN[self.family]:
+            column.prop(self, name)

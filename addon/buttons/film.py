@@ -13,7 +13,7 @@ from ..live.checks import FILMABLE
 from ..live.modal import clear_status
 from ..live.requirements import Condition, idle, shown_curves
 from ..pictures import staging
-from ..pictures.filming import CHOICES, Filming, is_rendering, play, target
+from ..pictures.movie import CHOICES, Filming, is_rendering, play, target
 from ..scripting import Relaxation
 from ..translations import iface_, rpt_
 from .button import Button, button
@@ -112,7 +112,6 @@ class CURVE_OT_mobius_flow_render_film(_OfFilm, Button, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Wait for the end of the render."""
         if event.type != "TIMER" or is_rendering():
             self._show_progress(context)
             return {"PASS_THROUGH"}

@@ -1,6 +1,6 @@
 """Buttons that remedy refusals: each removes one obstacle from all selected curves for which it is the next."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 
 import bpy
 
@@ -9,11 +9,11 @@ from ...core.messages import Message
 from ..curves import remedies
 from ..live.checks import needing
 from ..live.requirements import Refusal, Remedy, convertible, idle, selected_curves
-from .button import Button
+from .button import Button, button
 
 
 class _Mending(Button):
-    mend: Callable[[bpy.types.Object], object]  # raises MobiusFlowError for what it cannot mend
+    """`act` mends one object; it raises a MobiusFlowError for what it cannot mend."""
 
     @classmethod
     def refusal(cls, context: bpy.types.Context) -> Refusal | None:
@@ -29,7 +29,7 @@ class _Mending(Button):
         results = {"CANCELLED"}
         for obj in self.concerned(context):
             try:
-                self.mend(obj)
+                self.act(obj)
             except MobiusFlowError as error:
                 self.fail(error)
             else:
@@ -37,49 +37,43 @@ class _Mending(Button):
         return results
 
 
-class CURVE_OT_mobius_flow_object_mode(_Mending, bpy.types.Operator):
+@button("Back to Object Mode", base=_Mending)
+def object_mode(_operator: Button, _obj: bpy.types.Object) -> None:
     """Leave Edit Mode; what was edited is kept"""
-
-    bl_label = "Back to Object Mode"
-
-    @staticmethod
-    def mend(_obj: bpy.types.Object) -> object:
-        return bpy.ops.object.mode_set(mode="OBJECT")  # of all objects that are edited together
+    bpy.ops.object.mode_set(mode="OBJECT")  # of all objects that are edited together
 
 
-class CURVE_OT_mobius_flow_make_local(_Mending, bpy.types.Operator):
+@button("Make Local", base=_Mending)
+def make_local(_operator: Button, obj: bpy.types.Object) -> None:
     """Make the selected curves of other files this file's own; their materials stay linked"""
-
-    bl_label = "Make Local"
-    mend = staticmethod(remedies.make_local)
+    remedies.make_local(obj)
 
 
-class CURVE_OT_mobius_flow_single_user(_Mending, bpy.types.Operator):
+@button("Make Single User", base=_Mending)
+def single_user(_operator: Button, obj: bpy.types.Object) -> None:
     """Give each of the selected objects curve data of its own; other objects keep what they share"""
-
-    bl_label = "Make Single User"
-    mend = staticmethod(remedies.make_single_user)
+    obj.data = obj.data.copy()
 
 
-class CURVE_OT_mobius_flow_make_3d(_Mending, bpy.types.Operator):
+@button("Make 3D", base=_Mending)
+def make_3d(_operator: Button, obj: bpy.types.Object) -> None:
     """Let the points of the selected curves leave the plane"""
-
-    bl_label = "Make 3D"
-    mend = staticmethod(remedies.make_3d)
+    obj.data.dimensions = "3D"
 
 
-class CURVE_OT_mobius_flow_to_poly(_Mending, bpy.types.Operator):
+@button("Convert to Poly", base=_Mending)
+def to_poly(_operator: Button, obj: bpy.types.Object) -> None:
     """Replace Bézier and NURBS splines of the selected curves by the polygons drawn for them"""
-
-    bl_label = "Convert to Poly"
-    mend = staticmethod(remedies.to_poly)
+    remedies.to_poly(obj)
 
 
 class CURVE_OT_mobius_flow_copy(_Mending, bpy.types.Operator):
     """Copy curves as they are shown now, without keys, modifiers that move points, and all else that moves them"""
 
     bl_label = "Make Still Copy"
-    mend = staticmethod(remedies.still_copy)
+
+    def act(self, obj: bpy.types.Object) -> None:
+        remedies.still_copy(obj)
 
     @classmethod
     def concerned(cls, context: bpy.types.Context) -> Iterable[bpy.types.Object]:
@@ -92,7 +86,9 @@ class CURVE_OT_mobius_flow_to_curve(_Mending, bpy.types.Operator):
     """Make curves of the selected texts, and of meshes that are edges without faces; these stay as they are"""
 
     bl_label = "Convert to Curve"
-    mend = staticmethod(remedies.to_curve)
+
+    def act(self, obj: bpy.types.Object) -> None:
+        remedies.to_curve(obj)
 
     @classmethod
     def concerned(cls, context: bpy.types.Context) -> Iterable[bpy.types.Object]:

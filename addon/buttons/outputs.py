@@ -14,9 +14,9 @@ from ..curves.exchange import length, stretch
 from ..curves.frame_values import CLOSED, RING
 from ..curves.outputs import put_beside, smooth_objects
 from ..curves.recorded import Recorded, in_world
+from ..engine.colours import COLOURINGS, COMPONENT, DISTANCE, ENERGY, vertex_values
 from ..engine.interpolation import places_between
 from ..engine.smooth_fit import FEWEST, SmoothFit
-from ..engine.vertex_values import COLOURINGS, COMPONENT, DISTANCE, ENERGY, vertex_values
 from ..engine.words import named
 from ..live.checks import READABLE
 from ..live.requirements import selected_curves

@@ -1,11 +1,9 @@
 """What else keeps curves in their place: points that are pinned, ends that are closed, and what curves avoid."""
 
 import bpy
-import numpy as np
 
 from ...core import MobiusFlowError
 from ...core.messages import Message
-from ...core.types import BoolArray
 from ..curves import bake, pins, remedies, surroundings
 from ..engine.words import named
 from ..live.checks import PINNABLE, closable
@@ -18,12 +16,11 @@ def _near(context: bpy.types.Context) -> list[bpy.types.Object]:
     return surroundings.near(context, selected_curves(context), avoided(context))
 
 
-def _has_no_pins(context: bpy.types.Context) -> bool:
-    return not any(pins.count(obj.data) for obj in curves_at_hand(context))
-
-
 _EDITED = Condition("Go to Edit Mode and select the points to pin", lambda context: context.mode != "EDIT_CURVE")
-_PINNED = Condition("No points of the selected curves are pinned", _has_no_pins)
+_PINNED = Condition(
+    "No points of the selected curves are pinned",
+    lambda context: not any(pins.count(obj.data) for obj in curves_at_hand(context)),
+)
 _OPEN = Condition(
     "No selected curve has an open spline without keys; select one in Object Mode",
     lambda context: not any(closable(selected_curves(context))),
@@ -69,15 +66,10 @@ class CURVE_OT_mobius_flow_pin_ends(_Pinning, bpy.types.Operator):
 @button("Unpin", PINNABLE, _PINNED)
 def unpin(operator: Button, context: bpy.types.Context) -> None:
     """Let pinned points move again: the selected ones in Edit Mode, and all of the selected curves in Object Mode"""
-    chosen = pins.selected if context.mode == "EDIT_CURVE" else _all
     for obj in curves_at_hand(context):
         for spline in obj.data.splines:
-            pins.unpin(spline, chosen(spline))
+            pins.unpin(spline, pins.selected(spline) if context.mode == "EDIT_CURVE" else pins.marked(spline))
     _report_count(operator, context)
-
-
-def _all(spline: bpy.types.Spline) -> BoolArray:
-    return np.ones(len(pins.marked(spline)), dtype=bool)
 
 
 def _report_count(operator: Button, context: bpy.types.Context) -> None:

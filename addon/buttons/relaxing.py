@@ -80,7 +80,6 @@ class Relaxing(Listening, Button):
         return self.listen(context, run)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Do the whole job."""
         try:
             return super().execute(context)
         except MemoryError:

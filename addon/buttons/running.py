@@ -7,8 +7,7 @@ import numpy as np
 
 from ...core import MobiusFlowError
 from ...core.messages import Message
-from ..curves import sampling
-from ..curves.splines import control_points
+from ..curves.splines import control_points, questions
 from ..engine.placement import Spot, at
 from ..live import registry
 from ..live.checks import RELAXABLE
@@ -21,25 +20,20 @@ from .button import Button, button
 _PATIENCE = 0.005  # seconds between looks at whether the keys are ready
 
 
-def _is_writing(_context: bpy.types.Context) -> bool:
-    run = registry.current()
-    return run is not None and run.state is State.FINISHING
-
-
 def _has_no_trouble(context: bpy.types.Context) -> bool:
     run = registry.shown(context.active_object)
     return run is None or not run.state.over or not run.trouble
 
 
-def _is_lost(_context: bpy.types.Context) -> bool:
-    run = registry.latest()
-    return run is None or not run.recoverable
-
-
 _GOING_ON = Condition("Nothing is being relaxed", lambda _: registry.current() is None)
-_COMPUTING = Condition("The relaxation is over; its keys are being written", _is_writing)
+_COMPUTING = Condition(
+    "The relaxation is over; its keys are being written",
+    lambda _: (run := registry.current()) is not None and run.state is State.FINISHING,
+)
 _TROUBLE = Condition("This curve has no problem to show", _has_no_trouble)
-_RECOVERABLE = Condition("No relaxation was cancelled", _is_lost)
+_RECOVERABLE = Condition(
+    "No relaxation was cancelled", lambda _: (run := registry.latest()) is None or not run.recoverable
+)
 
 
 @button("Pause", _COMPUTING, _GOING_ON, bl_options=set())
@@ -76,7 +70,6 @@ class CURVE_OT_mobius_flow_recover(Listening, Button, bpy.types.Operator):
             return self.fail(error)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Write the keys."""
         try:
             run = self._recovered()
         except MobiusFlowError as error:
@@ -103,7 +96,7 @@ class CURVE_OT_mobius_flow_sample(Button, bpy.types.Operator):
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         try:
-            self.questions = sampling.questions(selected_curves(context))
+            self.questions = questions(selected_curves(context))
         except MobiusFlowError as error:
             return self.fail(error)
         return set(context.window_manager.invoke_props_dialog(self, width=420))

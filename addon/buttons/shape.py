@@ -4,7 +4,7 @@ import bpy
 from bpy.props import EnumProperty
 
 from ...core.messages import Message
-from ..curves import turned
+from ..curves import baked_keys
 from ..curves.baked_keys import keep_size
 from ..curves.bevel import fit_tubes
 from ..engine.size import Measure
@@ -51,13 +51,13 @@ class CURVE_OT_mobius_flow_keep_size(Button, bpy.types.Operator):
 @button("Lay Flat", RELAXABLE)
 def lay_flat(operator: Button, context: bpy.types.Context) -> None:
     """Turn the selected curves so that they lie flat: the shape at the end of their animation extends least upwards"""
-    _report_turn(operator, turned.lay_flat(selected_curves(context)))
+    _report_turn(operator, baked_keys.lay_flat(selected_curves(context)))
 
 
 @button("Face Camera", RELAXABLE, _CAMERA)
 def face_camera(operator: Button, context: bpy.types.Context) -> None:
     """Turn the selected curves so that the scene's camera sees their widest side"""
-    _report_turn(operator, turned.face_camera(selected_curves(context), context.scene.camera))
+    _report_turn(operator, baked_keys.face_camera(selected_curves(context), context.scene.camera))
 
 
 def _report_turn(operator: Button, unproved: int) -> None:

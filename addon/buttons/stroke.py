@@ -17,7 +17,7 @@ from ...core.knots.inscribed import averaged
 from ...core.messages import Message
 from ...core.types import FloatArray
 from ..curves.exchange import read_splines
-from ..engine.turning import DrawingPlane
+from ..engine.placement import DrawingPlane
 from ..live import overlay
 from ..live.requirements import Condition
 from ..translations import iface_, rpt_
@@ -47,7 +47,13 @@ class CURVE_OT_mobius_flow_stroke(DrawsKnot, bpy.types.Operator):
         mouse = np.array([event.mouse_region_x, event.mouse_region_y], dtype=np.float64)
         try:
             if (drawn := Drawn.at(context.object)) and (crossing := drawn.crossing(context, mouse)):
-                self._swap(context, drawn, crossing)
+                lifted, count = drawn.drawing.lifted([crossing]), len(drawn.drawing.crossings)
+                name, said = described(lifted, count)
+                obj, old = context.object, context.object.data
+                obj.data = self.curve_data(name, drawn.plane.raised(lifted.vertices), lifted)
+                obj.data[_PLANE], obj.name = list(old[_PLANE]), name
+                bpy.data.curves.remove(old)
+                self.report({"INFO"}, rpt_(said))
                 return {"FINISHED"}
         except MobiusFlowError as error:
             return self.fail(error)
@@ -97,15 +103,6 @@ class CURVE_OT_mobius_flow_stroke(DrawsKnot, bpy.types.Operator):
         drawing = Drawing.of(plane.flattened(Curve(np.array(places))))
         middle = self.add(context, plane, drawing.lifted(), len(drawing.crossings))
         context.object.data[_PLANE] = [*(plane.origin - middle).tolist(), *plane.axes.ravel().tolist()]
-
-    def _swap(self, context: bpy.types.Context, drawn: "Drawn", crossing: int) -> None:
-        lifted, count = drawn.drawing.lifted([crossing]), len(drawn.drawing.crossings)
-        name, said = described(lifted, count)
-        obj, old = context.object, context.object.data
-        obj.data = self.curve_data(name, drawn.plane.raised(lifted.vertices), lifted)
-        obj.data[_PLANE], obj.name = list(old[_PLANE]), name
-        bpy.data.curves.remove(old)
-        self.report({"INFO"}, rpt_(said))
 
     def _trace(self) -> None:
         overlay.line(np.array([*self._stroke, self._stroke[0]]), overlay.GOLD, 2.0)

@@ -12,7 +12,7 @@ from ...core.messages import Message
 from ..engine.key_options import KeyOptions, Output, Timing
 from . import blends, keyframes
 from .exchange import key_points
-from .fcurves import animated, count_own
+from .keyframes import animated, count_own
 from .splines import Splines, shape
 
 _RECORD = "mobius_flow_bake"  # custom property of curve data

@@ -45,7 +45,6 @@ def fit(data: bpy.types.Curve, radius: float) -> None:
 
 
 def draw(data: bpy.types.Curve, radius: float) -> None:
-    """Draw a curve as a tube of this radius."""
     if not data.bevel_depth:
         data.bevel_resolution, data.use_fill_caps = _RESOLUTION, True  # which closed splines have no use for
     data.bevel_depth = radius

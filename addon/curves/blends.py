@@ -1,23 +1,29 @@
-"""Blends: materials that change into others, keyed like the motion of what wears them.
+"""Blends: materials that change into others, keyed like the motion of what wears them, and goals, which bring them.
 
 A blend is a copy of a material in whose tree stand the nodes of the others as well, with keyed shares of their shaders:
-a material like any other, which is shown and rendered everywhere. It takes a slot of its own, after those that a curve
+a material like any other, which is shown and rendered everywhere. It takes a slot after those that the curve data
 has, so that these are as they were when it goes.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from typing import Any
 
 import bpy
 import numpy as np
 
+from ...core import Curve, Iterate
 from ...core.types import FloatArray
 from ..engine.key_options import Timing
-from .fcurves import FCurves, own_action
-from .nodes import copied
+from ..engine.motion import Keys
+from .exchange import Reference, read_link
+from .keyframes import FCurves, own_action
 
 _SLOT = "mobius_flow_slot"  # custom property of blends: the slot that splines had before
 _SHADERS = ("Surface", "Volume")  # inputs of a material's output that can be mixed
 _FLAT = ("diffuse_color", "metallic", "roughness")  # what Solid shading shows
+_LOOKS = ("name", "label", "width", "mute", "hide")
+_NEAR = 1e-6  # lengths of a curve: places that are stored in 32 bits are as far apart
 
 
 def worn(obj: bpy.types.Object, spline: bpy.types.Spline) -> bpy.types.Material | None:
@@ -96,3 +102,125 @@ def _mix(tree: bpy.types.NodeTree, other: bpy.types.NodeTree, name: str) -> list
         if copy.type == "OUTPUT_MATERIAL":
             tree.nodes.remove(copy)
     return paths
+
+
+def copied(source: bpy.types.NodeTree, tree: bpy.types.NodeTree) -> dict[bpy.types.Node, bpy.types.Node]:
+    """Copy all nodes of a tree, with their links, into another one; the copy of each.
+
+    Kinds of nodes that no running extension knows are left out: they do nothing.
+    """
+    known = [node for node in source.nodes if hasattr(bpy.types, node.bl_idname)]
+    copies = {node: tree.nodes.new(node.bl_idname) for node in known}
+    common = _settings(bpy.types.Node)
+    for node, copy in copies.items():
+        _imitate(node, copy, [*_LOOKS, *(each for each in _settings(node) if each not in common)])
+        for side in ("inputs", "outputs"):
+            for one, other in zip(getattr(node, side), getattr(copy, side), strict=False):
+                _imitate(one, other, ["default_value"])
+    for node, copy in copies.items():
+        copy.parent = copies.get(node.parent)
+        copy.location = node.location  # which is relative to the parent's
+    for link in source.links:
+        if link.from_node in copies and link.to_node in copies:
+            start = list(link.from_node.outputs).index(link.from_socket)
+            end = list(link.to_node.inputs).index(link.to_socket)
+            tree.links.new(copies[link.from_node].outputs[start], copies[link.to_node].inputs[end])
+    return copies
+
+
+def _settings(owner: Any) -> list[str]:
+    return [prop.identifier for prop in owner.bl_rna.properties]
+
+
+def _imitate(one: Any, other: Any, names: Iterable[str]) -> None:
+    """Give something some of the settings of another thing of its kind; ramps and curves are within such things."""
+    for name in names:
+        value, prop = getattr(one, name, None), one.bl_rna.properties.get(name)
+        if prop is None or name == "rna_type":
+            continue
+        if not prop.is_readonly:
+            with suppress(TypeError, ValueError):  # what another setting rules out
+                setattr(other, name, value)
+        elif name in ("elements", "curves", "points"):
+            _imitate_all(value, getattr(other, name))
+        elif prop.type == "POINTER" and value is not None:
+            _imitate(value, getattr(other, name), _settings(value))
+    if hasattr(other, "initialize"):  # curves are tables, made when they change
+        other.update()
+
+
+def _imitate_all(parts: Any, others: Any) -> None:
+    """The same for the stops of a color ramp, and for curves and their points."""
+    while len(others) > len(parts):
+        others.remove(others[-1])
+    for k, part in enumerate(parts):
+        if k == len(others):
+            others.new(*(part.location if hasattr(part, "location") else (part.position,)))
+        _imitate(part, others[k], _settings(part))
+
+
+class Goals:
+    """Curve objects that a curve in the world becomes; raises CurveError if their splines cannot be read.
+
+    ``curves``: what they are in the world, by their names.
+    """
+
+    def __init__(self, objects: Sequence[bpy.types.Object], moving: Curve) -> None:
+        self.curves = {obj.name: _held(read_link([obj])[0], moving) for obj in objects}
+        self._objects = [Reference(obj) for obj in objects]
+        # the iterate in which each is reached, and which of its splines each component is then
+        self._reached: list[tuple[int, list[int]]] = []
+
+    def note(self, iterate: Iterate) -> None:
+        left = list(self.curves.values())[len(self._reached) :]
+        if left and iterate.index and (components := _components(iterate.curve, left[0])):
+            self._reached.append((iterate.index, components))
+
+    def paint(self, objects: Sequence[bpy.types.Object], keys: Keys, frames: FloatArray, timing: Timing) -> None:
+        """Let the splines of keyed objects take on the materials of the goals on the way there.
+
+        ``frames``: those of the keys. Without an animation they have the last one's. Goals that are gone change none.
+        """
+        times = np.interp([0, *(index for index, _ in self._reached)], [key.time for key in keys.keys], frames)
+        made: dict[object, bpy.types.Material] = {}
+        splines = [(obj, spline) for obj in objects for spline in obj.data.splines]
+        for number, (obj, spline) in enumerate(splines):
+            chain = [worn(obj, spline)]
+            for goal, (_, components) in zip(self._objects, self._reached, strict=False):
+                chain.append(_material(goal.get(), components[number], chain[-1]))
+            if all(each == chain[0] for each in chain):
+                continue
+            which = obj.name, spline.material_index, *chain
+            if len(frames) == 1:
+                made[which] = chain[-1]
+            elif which not in made:
+                made[which] = blend(chain, spline.material_index, times, timing)
+            put_on(obj.data, spline, made[which])
+
+
+def _held(goal: Curve, moving: Curve) -> Curve:
+    """A goal whose ends are exactly where those of another curve are if they are there but for Blender's rounding."""
+    ends, there = goal.mesh.ends, moving.vertices[moving.mesh.ends]
+    vertices = goal.vertices.copy()
+    if vertices[ends].shape != there.shape or np.abs(vertices[ends] - there).max(initial=0.0) > _NEAR * moving.length:
+        return goal
+    vertices[ends] = there
+    return goal.with_vertices(vertices)
+
+
+def _material(
+    goal: bpy.types.Object | None, spline: int, before: bpy.types.Material | None
+) -> bpy.types.Material | None:
+    """The material of one of a goal's splines; that before if there is no such spline any more."""
+    if goal is None or goal.type != "CURVE" or spline >= len(goal.data.splines):
+        return before
+    return worn(goal, goal.data.splines[spline])
+
+
+def _components(curve: Curve, goal: Curve) -> list[int]:
+    """The component of the goal that each of a curve is, whose vertices may have another order; empty if it is not."""
+    if sorted(curve.mesh.component_sizes) != sorted(goal.mesh.component_sizes):
+        return []
+    names = [{tuple(point) for point in part.tolist()} for part in goal.components]
+    parts = [{tuple(point) for point in part.tolist()} for part in curve.components]
+    return [names.index(part) for part in parts] if all(part in names for part in parts) else []

@@ -1,6 +1,7 @@
 """Curve objects in, polygons in world space out, and back, whatever the object's transform."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import bpy
 import numpy as np
@@ -9,8 +10,7 @@ from ...core import Curve, CurveError, Mesh
 from ...core.messages import Message
 from ...core.types import FloatArray
 from ..engine.placement import Frame, Link, Placement
-from . import sampling
-from .splines import coordinates, read
+from .splines import coordinates, read, sampled, smooth_splines
 
 _FAR = 1e30  # Blender clamps infinite coordinates to the largest 32-bit number
 
@@ -35,8 +35,8 @@ def closed(data: bpy.types.Curve) -> tuple[bool, ...]:
 
 def read_splines(obj: bpy.types.Object) -> list[FloatArray]:
     """The polygons of all splines in the object's coordinates, (n, 3) each; raises as `read_link` does."""
-    smooth = sampling.smooth_splines(obj.data)
-    frames = sampling.sampled(obj) if smooth else [coordinates(spline) for spline in obj.data.splines]
+    smooth = smooth_splines(obj.data)
+    frames = sampled(obj) if smooth else [coordinates(spline) for spline in obj.data.splines]
     for k, frame in enumerate(frames, 1):
         bad = np.flatnonzero(~(np.abs(frame) < _FAR).all(axis=1))
         if bad.size:
@@ -101,3 +101,21 @@ def new_curve_data(name: str, mesh: Mesh) -> bpy.types.Curve:
         spline.points.add(size - 1)
         spline.use_cyclic_u = is_closed
     return data
+
+
+class Reference:
+    """An object or curve data, whatever it is called now; after undo, Python's own references dangle."""
+
+    def __init__(self, block: bpy.types.ID) -> None:
+        self.name = block.name  # when it was last looked up
+        self._uid, self._blocks = block.session_uid, "objects" if block.id_type == "OBJECT" else "curves"
+
+    def get(self) -> Any:
+        """The datablock, or None if it is gone; it is looked up by its last name first, as there may be thousands."""
+        blocks = getattr(bpy.data, self._blocks)
+        block = blocks.get(self.name)
+        if block is None or block.session_uid != self._uid:
+            block = next((block for block in blocks if block.session_uid == self._uid), None)
+        if block is not None:
+            self.name = block.name
+        return block

@@ -8,7 +8,7 @@ from typing import Any
 import bpy
 
 from ...core.curve.distances import STRAND_RATIO
-from ..engine.vertex_values import COMPONENT, DISTANCE
+from ..engine.colours import COMPONENT, DISTANCE
 
 ARC_LENGTH, CURVATURE = "arc_length", "curvature"
 RING, CLOSED = "ring", "closed"  # attributes that the nodes read: which vertex of the curve, and whether that is closed

@@ -48,7 +48,6 @@ class Group:
 
     @property
     def title(self) -> str:
-        """The names, as messages show them."""
         return named(self.names)
 
     @property

@@ -16,10 +16,9 @@ from ..engine.key_options import KeyOptions
 from ..engine.motion import Keys
 from ..engine.placement import Frame, Placement
 from . import bake, bevel, keyframes
-from .exchange import write_points
-from .fcurves import own_action
+from .exchange import Reference, write_points
+from .keyframes import own_action
 from .moving import what_deforms
-from .reference import Reference
 from .splines import Splines, shape
 
 _MARK = "mobius_flow_stand_in"  # custom property of stand-ins

@@ -11,7 +11,7 @@ from typing import Any
 import bpy
 
 from ...core.messages import Message
-from .fcurves import fcurves_of
+from .keyframes import fcurves_of
 
 _TRANSFORMS = ("location", "rotation", "scale", "delta_", "matrix", "parent")
 _SHAPING = ("modifiers", "pose")  # beginnings of paths of F-curves of an object

@@ -12,7 +12,7 @@ from ...core.types import FloatArray, IntArray
 from ..engine.placement import Frame, Placement
 from ..engine.smooth_fit import SmoothFit, bezier_points, fitted
 from . import bevel
-from .fcurves import FCurves
+from .keyframes import FCurves
 from .recorded import Recorded
 from .splines import read
 from .surroundings import TUBE_OF

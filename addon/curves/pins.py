@@ -17,8 +17,7 @@ from ...core import CurveError, Mesh
 from ...core.messages import Message
 from ...core.types import BoolArray, IntArray
 from ..engine.placement import Frame
-from .sampling import kind
-from .splines import control_points, coordinates, read
+from .splines import control_points, coordinates, kind, read
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,7 @@ from ..engine.interpolation import along, interpolated
 from ..engine.placement import Placement
 from . import bake
 from .exchange import closed, key_points, key_radii, read_splines, stretch
-from .fcurves import fcurves_of
-from .keyframes import coordinate_curves
+from .keyframes import coordinate_curves, fcurves_of
 from .moving import what_moves
 from .splines import radii
 

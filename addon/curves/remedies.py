@@ -4,26 +4,15 @@ import bpy
 import numpy as np
 
 from ...core import Curve
-from . import bake, sampling
+from . import bake
 from .exchange import closed, write_points
 from .moving import deforms
-from .splines import Splines
-
-
-def make_3d(obj: bpy.types.Object) -> None:
-    """Let points be anywhere; a 2D curve's stay where they are."""
-    obj.data.dimensions = "3D"
+from .splines import Splines, sampled
 
 
 def close(obj: bpy.types.Object) -> None:
-    """Join the ends of all splines that are open."""
     for spline in obj.data.splines:
         spline.use_cyclic_u = True
-
-
-def make_single_user(obj: bpy.types.Object) -> None:
-    """Give an object curve data of its own; that of others keeps its name and its keys."""
-    obj.data = obj.data.copy()
 
 
 def make_local(obj: bpy.types.Object) -> None:
@@ -48,7 +37,7 @@ def to_poly(obj: bpy.types.Object) -> None:
 
     Raises CurveError if no polygon is drawn for one of them; nothing is changed then.
     """
-    frames = sampling.sampled(obj)
+    frames = sampled(obj)
     drawn = Curve.from_components([frame.astype(np.float64) for frame in frames], closed(obj.data))
     Splines.of(obj.data).polygons(drawn, drawn).fill(obj.data)
     write_points(obj.data, np.concatenate(frames))

@@ -12,21 +12,9 @@ from typing import Any
 import bpy
 import numpy as np
 
-from ...core import (
-    Curve,
-    CurveError,
-    Hand,
-    Iterate,
-    MobiusFlowError,
-    Obstacle,
-    OptionError,
-    Outcome,
-    RelaxOptions,
-    Status,
-    Task,
-    WithOutcome,
-)
+from ...core import Curve, Hand, Iterate, Obstacle, Outcome, RelaxOptions, Status, Task, WithOutcome
 from ...core.collision import is_free
+from ...core.errors import CurveError, MobiusFlowError, OptionError
 from ...core.messages import Message, Sentence
 from ...core.types import FloatArray
 from ..engine.key_options import KeyOptions, Output
@@ -37,8 +25,8 @@ from ..engine.size import Measure
 from ..engine.words import named
 from ..engine.worker import begun
 from . import bake, bevel
+from .blends import Goals
 from .exchange import stretch
-from .goals import Goals
 from .group import Group
 from .pins import FREE, Held
 from .surroundings import NOTHING, Surroundings
@@ -128,7 +116,7 @@ class Session:
         except BaseException:
             self.group.discard()
             raise
-        self._motion = Motion(self.group.link, self.group.stored if continues else None, self._measure)
+        self.motion = Motion(self.group.link, self.group.stored if continues else None, self._measure)
         self._last: Iterate | None = None
         self._repinned = False  # whether a hand has left pins
         self.outcome: Outcome | None = None
@@ -204,35 +192,31 @@ class Session:
         before, self._last = self._last, iterate
         if before is not None and before.curve.mesh == iterate.curve.mesh:
             self._repinned |= before.pins != iterate.pins
-        self._motion.add(iterate)
+        self.motion.add(iterate)
         self.goals.note(iterate)
-
-    def unsized(self, point: FloatArray) -> FloatArray:
-        """The point of the relaxation, shape (3,), that is shown at another."""
-        return self._motion.unsized(point)
 
     def show(self, there: Key | None = None) -> None:
         """Show a shape, by default the last iterate with the pins that a hand left, its tube as thick as at a key."""
-        frame, fits = self.frame if there is None else there.points, self.group.fits(self._key_options)
-        self.group.show(self.start, frame, self._key_options, self._radius(frame) if fits else None)
+        frame, fits = self.motion.frame if there is None else there.points, self.group.fits(self._key_options)
+        self.group.show(self.motion.start, frame, self._key_options, self._radius(frame) if fits else None)
         if there is None:
             self._mark_pins()
 
     def at(self, frame: float) -> Key:
         """The shape that a scene frame would have if this were the end."""
-        return self._motion.at(frame, self._key_options.timing)
+        return self.motion.at(frame, self._key_options.timing)
 
     def _mark_pins(self) -> None:
         """Mark the points that are where the last iterate has pins, of which there may be fewer vertices."""
-        if self._repinned and (last := self._motion.last) is not None:
+        if self._repinned and (last := self.motion.last) is not None:
             link, curve = self.group.link, last.curve
-            shown = link.to_common(self.start.mesh, self.frame)
+            shown = link.to_common(self.motion.start.mesh, self.motion.frame)
             pins = link.to_common(curve.mesh, link.to_stored(curve.mesh, curve.vertices))[list(last.pins)]
             self.group.mark_pins([int(np.linalg.norm(shown - pin, axis=1).argmin()) for pin in pins])
 
     def prepare(self, proof: Proof) -> Prepared:
         """Choose and prove the keys; this touches nothing of Blender's and may be done in any thread."""
-        motion = self._motion
+        motion = self.motion
         timing = self._key_options.timing.shortened(motion.way) if self.group.continues else self._key_options.timing
         animated, limit = self._key_options.animated, self._key_options.max_keys
         keys = motion.keys(proof, limit, timing.pace) if animated else motion.result(proof)
@@ -249,7 +233,7 @@ class Session:
 
     def _radius(self, frame: Frame) -> float:
         """Radius of the tube, as thick as free of contact allows, in the common space."""
-        mesh = self.start.mesh
+        mesh = self.motion.start.mesh
         return bevel.fitting_radius(Curve(self.group.link.to_common(mesh, frame), mesh), self._avoided)
 
     def reopen(self) -> None:
@@ -264,22 +248,12 @@ class Session:
             raise MobiusFlowError(changed)
         self.group = group
 
-    @property
-    def start(self) -> Curve:
-        """The curve that the relaxation started from, with as many vertices as the last iterate."""
-        return self._motion.start
-
-    @property
-    def frame(self) -> Frame:
-        """Vertices of the last iterate as Blender will store them."""
-        return self._motion.frame
-
     def writing(self, prepared: Prepared) -> Iterator[None]:
         """Write in short pieces, so that a window can be drawn in between; all objects must be there."""
-        self.group.make_polygons(self.start)
+        self.group.make_polygons(self.motion.start)
         self._mark_pins()
         yield from self.group.writing(
-            self.start.mesh, prepared.keys, prepared.frames, self._key_options, prepared.radii
+            self.motion.start.mesh, prepared.keys, prepared.frames, self._key_options, prepared.radii
         )
         self.goals.paint(self.group.objects, prepared.keys, prepared.frames, self._key_options.timing)
 

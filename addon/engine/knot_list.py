@@ -17,16 +17,14 @@ from .colours import PALETTE, flatly_lit, on_screen
 COMMON: Sequence[str] = ("0_1", "3_1", "4_1", "5_1", "5_2", "6_1", "7_4", "L2a1", "L4a1", "L5a1", "L6a4")
 """What most people look for."""
 
-GROUPS: Mapping[str, tuple[str, str]] = MappingProxyType(
-    {
-        "FEW": ("Up to 7 Crossings", "Knots that can be drawn with seven crossings or fewer"),
-        "8": ("8 Crossings", "Knots that need eight crossings"),
-        "9": ("9 Crossings", "Knots that need nine crossings"),
-        "10A": ("10 Crossings, I", "The first knots that need ten crossings"),
-        "10B": ("10 Crossings, II", "The other knots that need ten crossings"),
-        "LINKS": ("Links", "Several closed curves, linked with each other"),
-    }
-)
+GROUPS: Mapping[str, tuple[str, str]] = {
+    "FEW": ("Up to 7 Crossings", "Knots that can be drawn with seven crossings or fewer"),
+    "8": ("8 Crossings", "Knots that need eight crossings"),
+    "9": ("9 Crossings", "Knots that need nine crossings"),
+    "10A": ("10 Crossings, I", "The first knots that need ten crossings"),
+    "10B": ("10 Crossings, II", "The other knots that need ten crossings"),
+    "LINKS": ("Links", "Several closed curves, linked with each other"),
+}
 """Titles and descriptions of the groups."""
 
 _TITLES = {"solomon": "Solomon's Link", "hopf": "Hopf Link", "whitehead": "Whitehead Link", "perko": "Perko Pair"}

@@ -14,9 +14,8 @@ from ...core import Curve, Iterate, MobiusFlowError
 from ...core.curve import Mesh
 from ...core.types import FloatArray
 from ...core.verify.transition import DifferentCurveError, common_vertices
-from .interpolation import interpolated
+from .interpolation import Markers, interpolated
 from .key_options import Course, Pace, Timing
-from .markers import Markers
 from .placement import Frame, Link
 from .size import Measure, Size
 
@@ -50,7 +49,6 @@ class Keys:
         return self.unproved == 0
 
     def part(self, vertices: slice) -> "Keys":
-        """The same keys for some of the vertices."""
         return Keys(tuple(Key(key.time, key.points[vertices]) for key in self.keys), self.unproved)
 
 

@@ -1,4 +1,4 @@
-"""Where objects are, and places on them.
+"""Where objects are, places on them, and how they are turned.
 
 Each keeps points in coordinates of its own, and motions of all are proved in one space.
 """
@@ -6,16 +6,21 @@ Each keeps points in coordinates of its own, and motions of all are proved in on
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import accumulate, pairwise
+from itertools import accumulate, pairwise, product
 
 import numpy as np
 import numpy.typing as npt
 
-from ...core.curve import Curve, Mesh
+from ...core import Curve, CurveError
+from ...core.curve import Mesh
 from ...core.errors import Place
+from ...core.messages import Message
 from ...core.types import FloatArray
+from .size import barycenter
 
 Frame = npt.NDArray[np.float32]
+_FLAT = 0.05  # of a drawing's size: how far its points may lie from a plane
+_LEVEL = 0.999  # cosine of the tilt below which the plane counts as level
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,3 +132,83 @@ def at(points: FloatArray, wanted: FloatArray) -> FloatArray:
     """Which points, (n, 3), are nearest to one of those wanted, (k, 3), or in the same place as it is; shape (n,)."""
     distances = np.linalg.norm(points[:, None] - wanted[None], axis=2)
     return np.asarray((distances <= distances.min(axis=0)).any(axis=1))
+
+
+@dataclass(frozen=True, eq=False)
+class Turn:
+    """The rotation x ↦ center + rotation · (x − center)."""
+
+    rotation: FloatArray
+    center: FloatArray
+
+    @classmethod
+    def onto(cls, curve: Curve, wanted: FloatArray) -> "Turn":
+        """Turn a curve's principal axes, the longest first, into wanted ones, orthonormal rows, by the least angle.
+
+        Which way an axis points is left open. Raises CurveError if all points are the same.
+        """
+        if not curve.length:
+            raise CurveError("All points of the curves are the same; move them apart")
+        axes = principal_axes(curve)
+        signs = (np.array(each)[:, None] for each in product((1.0, -1.0), repeat=3))
+        turned = [(sign * wanted).T @ axes for sign in signs]
+        return cls(max([each for each in turned if np.linalg.det(each) > 0.0], key=np.trace), barycenter(curve))
+
+    def of(self, curve: Curve) -> Curve:
+        return curve.with_vertices(self.center + (curve.vertices - self.center) @ self.rotation.T)
+
+    @property
+    def matrix(self) -> FloatArray:
+        """The same in homogeneous coordinates; shape (4, 4)."""
+        matrix = np.eye(4)
+        matrix[:3, :3], matrix[:3, 3] = self.rotation, self.center - self.rotation @ self.center
+        return matrix
+
+
+def principal_axes(curve: Curve) -> FloatArray:
+    """Axes of the curve's inertia, in which it extends most, less and least, as rows; shape (3, 3)."""
+    away = curve.midpoints - barycenter(curve)
+    _, axes = np.linalg.eigh((curve.edge_lengths[:, None] * away).T @ away)
+    return np.asarray(axes[:, ::-1].T)
+
+
+def orthonormal(axes: FloatArray) -> FloatArray:
+    """Three independent rows made orthonormal: the last keeps its direction, the first its plane with the last."""
+    back = axes[2] / np.linalg.norm(axes[2])
+    right = axes[0] - (axes[0] @ back) * back
+    right /= np.linalg.norm(right)
+    return np.array([right, np.cross(back, right), back])
+
+
+@dataclass(frozen=True, eq=False)
+class DrawingPlane:
+    """A plane with coordinates, seen from its upper side."""
+
+    origin: FloatArray  # shape (3,)
+    axes: FloatArray  # two unit vectors in the plane and its upward normal, as rows; shape (3, 3)
+
+    @classmethod
+    def of(cls, curve: Curve) -> "DrawingPlane":
+        """The plane nearest to a curve; coordinates are x and y where it is nearly level.
+
+        Raises CurveError if the curve is not flat.
+        """
+        origin = curve.vertices.mean(axis=0)
+        points = curve.vertices - origin
+        _, _, axes = np.linalg.svd(points, full_matrices=True)
+        normal = axes[2] * (1.0 if axes[2][np.abs(axes[2]).argmax()] > 0 else -1.0)
+        size = float(np.ptp(points @ axes[:2].T, axis=0).max())
+        if float(np.abs(points @ normal).max()) > _FLAT * size:
+            raise CurveError(Message("The drawing is not flat; draw it in a plane, or scale it flat along its normal"))
+        if normal[2] > _LEVEL:
+            return cls(np.array([0.0, 0.0, origin[2]]), np.eye(3))
+        across = np.cross([0.0, 0.0, 1.0], normal)
+        across /= np.linalg.norm(across)
+        return cls(origin, np.stack([across, np.cross(normal, across), normal]))
+
+    def flattened(self, curve: Curve) -> Curve:
+        return curve.with_vertices((curve.vertices - self.origin) @ self.axes[:2].T)
+
+    def raised(self, points: FloatArray) -> FloatArray:
+        """Points in space from coordinates and heights; shape (n, 3)."""
+        return np.asarray(self.origin + points @ self.axes)

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -43,13 +42,11 @@ def _same(one: Any, other: Any) -> bool:
 
 
 _EXACT = "The shape of least energy to many digits, in two or three times the time"
-QUALITIES: Mapping[str, Quality] = MappingProxyType(
-    {
-        "PREVIEW": Quality("Preview", "Untangled and nearly at rest, to look at", "lbfgs", 1e-2, 300),
-        "GOOD": Quality("Good", "At rest as far as the eye can tell", "lbfgs", 1e-4, 2000),
-        "EXACT": Quality("Exact", _EXACT, "trust-region", 1e-8, 2000),
-    }
-)
+QUALITIES: Mapping[str, Quality] = {
+    "PREVIEW": Quality("Preview", "Untangled and nearly at rest, to look at", "lbfgs", 1e-2, 300),
+    "GOOD": Quality("Good", "At rest as far as the eye can tell", "lbfgs", 1e-4, 2000),
+    "EXACT": Quality("Exact", _EXACT, "trust-region", 1e-8, 2000),
+}
 """The levels by their identifiers, which are in files."""
 
 

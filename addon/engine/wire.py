@@ -10,21 +10,8 @@ from typing import IO, Any
 
 import numpy as np
 
-from ...core import (
-    Curve,
-    CurveError,
-    Hand,
-    Iterate,
-    Mesh,
-    MobiusFlowError,
-    Obstacle,
-    OptionError,
-    Outcome,
-    RelaxOptions,
-    Status,
-    Task,
-)
-from ...core.errors import Place
+from ...core import Curve, Hand, Iterate, Mesh, Obstacle, Outcome, RelaxOptions, Status, Task
+from ...core.errors import CurveError, MobiusFlowError, OptionError, Place
 from ...core.messages import Message
 from ...core.types import FloatArray
 from .placement import Link, Placement

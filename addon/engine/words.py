@@ -2,8 +2,7 @@
 
 from collections.abc import Sequence
 
-from ...core.driver.outcome import AT_REST
-from ...core.driver.rises import RAISED
+from ...core.driver.outcome import AT_REST, RAISED
 from ...core.messages import COMPONENT, EDGE, OBSTACLE, OF_GOAL, VERTEX, VERTEX_COUNT, Message
 
 _MAX_NAMES = 3

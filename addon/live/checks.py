@@ -11,7 +11,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from ..curves import bake, bevel, sampling
+from ..curves import bake, bevel, splines
 from ..curves.moving import what_deforms, what_moves
 from .requirements import Check, Curves, Remedy, curves_at_hand, shown_curves
 
@@ -27,8 +27,8 @@ def _short_spline(obj: bpy.types.Object) -> dict[str, int] | None:
 
 
 def _smooth_spline(obj: bpy.types.Object) -> dict[str, Any] | None:
-    splines = enumerate(obj.data.splines, 1)
-    return next(({"number": k, "kind": sampling.kind(each)} for k, each in splines if each.type != "POLY"), None)
+    numbered = enumerate(obj.data.splines, 1)
+    return next(({"number": k, "kind": splines.kind(each)} for k, each in numbered if each.type != "POLY"), None)
 
 
 def _has_action(obj: bpy.types.Object) -> bool:

@@ -80,7 +80,7 @@ def handle(run: "Run", context: bpy.types.Context, event: bpy.types.Event) -> bo
     if event.type == "LEFTMOUSE" and event.value == "PRESS":
         if run.drag is not None:  # the release got lost, in another window
             run.let_go()
-        found = None if _modified(event) else _under(run, context, mouse)
+        found = None if bool(event.ctrl or event.shift or event.alt or event.oskey) else _under(run, context, mouse)
         if found is not None:
             run.grab(found)
         return found is not None
@@ -93,10 +93,6 @@ def handle(run: "Run", context: bpy.types.Context, event: bpy.types.Event) -> bo
     else:
         return False
     return True
-
-
-def _modified(event: bpy.types.Event) -> bool:
-    return bool(event.ctrl or event.shift or event.alt or event.oskey)
 
 
 def _under(run: "Run", context: bpy.types.Context, mouse: FloatArray) -> Drag | None:

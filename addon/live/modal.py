@@ -46,7 +46,6 @@ class Loop:
         return handled
 
     def _visible(self) -> tuple[object, ...]:
-        """All that what is shown depends on."""
         return (
             self.run.state,
             self.run.shown,

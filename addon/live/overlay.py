@@ -15,7 +15,7 @@ from gpu_extras.batch import batch_for_shader
 from ...core.types import FloatArray
 from ..curves import pins
 from ..engine.colours import Colour, legible
-from ..engine.plot import dashes, plot
+from ..engine.rest import dashes, plot
 from ..translations import iface_
 from . import registry
 from .requirements import curves_at_hand
@@ -102,29 +102,22 @@ def _plot(context: bpy.types.Context, run: Run) -> None:
         return
     area(tuple(low), tuple(low + outer), (*style.ground[:3], _OPACITY))
     _curve(style, run, low + padding, size)
-    _caption(style, run, low + padding + np.array([0.0, size[1] + 0.5 * caption]), size[0])
+    assert run.last is not None, "it has energies"
+    x, y = (low + padding + np.array([0.0, size[1] + 0.5 * caption])).tolist()
+    text(iface_("Energy {energy:.4f}", energy=run.energies[-1]), (x, y), style.words, style.font)
+    text(iface_("Iteration {index}", index=run.last.index), (x + size[0], y), style.words, style.font, share=1.0)
 
 
 def _curve(style: _Style, run: Run, origin: FloatArray, size: FloatArray) -> None:
     drawn = plot(run.energies, run.target, *size)
     if run.target is not None and drawn.target is not None:
-        _target(style, iface_(run.target.label), origin + np.array([0.0, drawn.target]), size[0])
+        # draw a dashed line with its label above it, at the left, where the energy is still high
+        start = origin + np.array([0.0, drawn.target])
+        across = dashes(size[0], style.scale * _DASH)
+        pale = [0.5 * (a + b) for a, b in zip(style.ground[:3], style.words[:3], strict=True)]
+        line(start + np.column_stack([across, np.zeros(len(across))]), pale, style.scale, kind="LINES")
+        text(iface_(run.target.label), (start[0], start[1] + 4 * style.scale), style.words, style.font)
     line(origin + drawn.line, style.accent, style.scale * _LINE)
-
-
-def _caption(style: _Style, run: Run, start: FloatArray, width: float) -> None:
-    assert run.last is not None, "it has energies"
-    x, y = start.tolist()
-    text(iface_("Energy {energy:.4f}", energy=run.energies[-1]), (x, y), style.words, style.font)
-    text(iface_("Iteration {index}", index=run.last.index), (x + width, y), style.words, style.font, share=1.0)
-
-
-def _target(style: _Style, label: str, start: FloatArray, width: float) -> None:
-    """Draw a dashed line with its label above it, at the left, where the energy is still high."""
-    across = dashes(width, style.scale * _DASH)
-    pale = [0.5 * (a + b) for a, b in zip(style.ground[:3], style.words[:3], strict=True)]
-    line(start + np.column_stack([across, np.zeros(len(across))]), pale, style.scale, kind="LINES")
-    text(label, (start[0], start[1] + 4 * style.scale), style.words, style.font)
 
 
 def _right(context: bpy.types.Context) -> float:

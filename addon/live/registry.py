@@ -23,7 +23,6 @@ class History:
         self.others = self.undone = self._seen = self._step = 0
 
     def begin(self) -> None:
-        """Count from now on."""
         self.others = self.undone = self._step = 0
         self._seen = _last_operation()
 

@@ -137,11 +137,8 @@ def _no_curve(context: bpy.types.Context) -> Refusal:
 def convertible(context: bpy.types.Context) -> list[bpy.types.Object]:
     """The selected objects of this file that lines can be made of: texts, and meshes of edges alone."""
     own = (obj for obj in context.selected_objects if not (obj.library or obj.override_library))
-    return [obj for obj in own if obj.type == "FONT" or _is_wire(obj)]
-
-
-def _is_wire(obj: bpy.types.Object) -> bool:
-    return obj.type == "MESH" and len(obj.data.edges) > 0 and not len(obj.data.polygons)
+    texts_and_meshes = (obj for obj in own if obj.type in ("FONT", "MESH"))
+    return [obj for obj in texts_and_meshes if obj.type == "FONT" or (obj.data.edges and not obj.data.polygons)]
 
 
 def avoided(context: bpy.types.Context, name: str | None = None) -> list[bpy.types.Object]:

@@ -25,8 +25,7 @@ from ..engine.rest import Target, target_of
 from ..engine.worker import Worker, WorkerError
 from ..pictures.rendering import is_rendering
 from .drag import Drag
-from .key_writer import KeyWriter
-from .viewing import Refresh, looks_back
+from .viewing import KeyWriter, Refresh, looks_back
 
 _CANCELLED = Message("Cancelled; all is as it was")
 _SLICE = 0.02  # seconds of taking in iterates at a time
@@ -84,7 +83,6 @@ class Run:
 
     @cached_property
     def target(self) -> Target | None:
-        """The least energy that there can be."""
         return target_of(self._session.task, self._session.options)
 
     def concerns(self, obj: bpy.types.Object | None) -> bool:
@@ -139,7 +137,7 @@ class Run:
         """Pull what is held to a place in view, shape (3,)."""
         if self.drag is not None and self.group.in_view is not None and np.isfinite(target).all():
             self.drag.target = target
-            place = self._session.unsized(self.group.unmoved(self.drag.component, target))
+            place = self._session.motion.unsized(self.group.unmoved(self.drag.component, target))
             self._worker.tell("move", place.tolist())
 
     def let_go(self, pin: bool = False) -> None:

@@ -20,8 +20,8 @@ from ...core.errors import OutputError
 from ...core.files import atomic_write
 from ..engine.motion import Key, Keys
 from ..engine.playing import Origin, Playing, check_dimension, recorded, spatial
-from ..engine.rounded import rounded
 from ..engine.size import Measure
+from ..engine.tube import rounded
 from .looks import DEFAULT, LOOKS
 
 ONCE = Playing()

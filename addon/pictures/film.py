@@ -11,13 +11,13 @@ from ...core.curve import Mesh
 from ...core.types import FloatArray
 from ..curves import keyframes
 from ..curves.exchange import new_curve_data
-from ..curves.fcurves import all_fcurves, mirror
+from ..curves.keyframes import all_fcurves, mirror
 from ..engine.key_options import Output
 from ..engine.motion import Keys
 from ..engine.placement import Frame
 from ..engine.playing import Origin, Playing
-from ..engine.rounded import tube_radii
-from . import camera, rendering, stage
+from ..engine.tube import tube_radii
+from . import rendering, stage
 from .looks import DEFAULT, LOOKS
 from .materials import colour_components
 
@@ -70,7 +70,7 @@ def compose(
     size = scene.render.resolution_x, scene.render.resolution_y
     floor = stage.build(scene.collection, ground, LOOKS[look])
     floor.is_shadow_catcher = scene.render.film_transparent = cut_out
-    scene.camera = camera.follow(scene.collection, size, ground, floor, points, radii.max(axis=1), frames)
+    scene.camera = stage.follow(scene.collection, size, ground, floor, points, radii.max(axis=1), frames)
     if playing.timing.loop:
         for curve in all_fcurves():
             mirror(curve, frames[-1] + playing.timing.hold_end)

@@ -1,7 +1,6 @@
 """Materials of looks, built from their descriptions, and one that shows the colours of a mesh's vertices."""
 
 from collections.abc import Mapping
-from types import MappingProxyType
 from typing import Any
 
 import bpy
@@ -11,7 +10,7 @@ from ...core.types import FloatArray
 from ..engine.colours import flatly_lit
 from .looks import ALONG, DEFAULT, LOOKS, SHADER, STRAND, TINT, TURNS, YARN, Nodes, Tint
 
-_NONE: Mapping[str, Any] = MappingProxyType({})
+_NONE: Mapping[str, Any] = {}
 _PIXELS = 1024  # of what changes along a component
 _PITCH = 1.55  # of a rope's strands, in its radii
 
@@ -29,7 +28,10 @@ def colour_components(
     for component, spline in enumerate(data.splines, first):
         hue = hues if along is not None and made_of.gradient else component % hues
         if hue not in slots:
-            slots[hue] = _slot(data, _glaze(data, look, hue, along))
+            wanted = _glaze(data, look, hue, along)
+            if wanted.name not in data.materials:
+                data.materials.append(wanted)
+            slots[hue] = int(data.materials.find(wanted.name))
         spline.material_index = slots[hue]
 
 
@@ -120,9 +122,3 @@ def _table(name: str, rows: FloatArray) -> bpy.types.Image:
     image.pixels.foreach_set(pixels.ravel())
     image.pack()
     return image
-
-
-def _slot(data: bpy.types.Curve, wanted: bpy.types.Material) -> int:
-    if wanted.name not in data.materials:
-        data.materials.append(wanted)
-    return int(data.materials.find(wanted.name))

@@ -14,8 +14,8 @@ from ...core import CurveError
 from ..curves.recorded import WorldMotion
 from ..curves.splines import read
 from ..curves.surroundings import STAGE, TUBE_OF
-from ..engine.vertex_values import COMPONENT
-from . import camera, stage
+from ..engine.colours import COMPONENT
+from . import stage
 from .looks import DEFAULT, LOOKS
 from .materials import colour_components
 
@@ -49,7 +49,7 @@ def set_up(
     collection[STAGE] = _aspect(scene)
     floor = stage.build(collection, ground, style)
     floor.hide_select = True  # it is in the way of every click
-    eye = camera.follow(collection, _shape(scene), ground, floor, motion.points, motion.radii, motion.frames)
+    eye = stage.follow(collection, _shape(scene), ground, floor, motion.points, motion.radii, motion.frames)
     for obj in collection.objects:
         obj[STAGE] = True
     if look in LOOKS:

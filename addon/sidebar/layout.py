@@ -69,7 +69,6 @@ def settings(*names: str, of: str = "mobius_flow") -> Draw:
 
 
 def value(layout: bpy.types.UILayout, name: str, text: str) -> None:
-    """Show a name and what it is, in the user's language."""
     split = layout.split(factor=0.4)
     left = split.row()
     left.alignment = "RIGHT"

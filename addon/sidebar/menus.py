@@ -60,17 +60,13 @@ def search(layout: bpy.types.UILayout, _context: bpy.types.Context) -> None:
     operator(column, "pick_knot", text="Search...", icon="VIEWZOOM")
 
 
-def _add_knot(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
-    menu.layout.menu(VIEW3D_MT_mobius_flow_knots.__name__, icon="CURVE_NCIRCLE")
-
-
 def _flow(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
     menu.layout.separator()
     menu.layout.menu(VIEW3D_MT_mobius_flow.bl_idname)
 
 
 _ENTRIES: dict[str, Callable[[bpy.types.Menu, bpy.types.Context], None]] = {
-    "VIEW3D_MT_curve_add": _add_knot,
+    "VIEW3D_MT_curve_add": lambda menu, _: menu.layout.menu(VIEW3D_MT_mobius_flow_knots.__name__, icon="CURVE_NCIRCLE"),
     "VIEW3D_MT_object": _flow,
     "VIEW3D_MT_edit_curve": _flow,
 }

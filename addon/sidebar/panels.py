@@ -91,10 +91,6 @@ def _stage(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         operator(within, "remove_stage", text="", icon="X")
 
 
-def _size(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    layout.prop(context.scene.render, "resolution_percentage", text=iface_("Size of Pictures"))
-
-
 def _not_in_film(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """What the film would lack, below the buttons, which keep their places."""
     if not staging.fits(context.scene):
@@ -110,17 +106,15 @@ class VIEW3D_PT_mobius_flow_film(SubPanel, bpy.types.Panel):
         settings("length", "hold_end", "loop"),
         column(row(button("continue", "FF"), button("clear", "TRASH")), button("scene_range", "PREVIEW_RANGE")),
         _stage,
-        _size,
+        lambda layout, context: layout.prop(
+            context.scene.render, "resolution_percentage", text=iface_("Size of Pictures")
+        ),
         settings("look", "filepath", of="mobius_flow_film"),
         row(button("render_film", "RENDER_ANIMATION"), button("play_film", "PLAY")),
         _not_in_film,
     )
 
 
-def _options(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    settings(*(option.name for option in shown() if option.row))(layout, context)
-
-
 class VIEW3D_PT_mobius_flow_expert(SubPanel, bpy.types.Panel):
     bl_label = "Expert"
-    rows = (_options,)
+    rows = (lambda layout, context: settings(*(each.name for each in shown() if each.row))(layout, context),)

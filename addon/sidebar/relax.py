@@ -51,17 +51,13 @@ def _hints(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     if hindered and (run is None or any(obj not in objects for obj in selected_curves(context))):
         refused(layout.column(align=True), context, hindered)
     if run or not hindered:
-        _warning(layout, context, objects)
-
-
-def _warning(layout: bpy.types.UILayout, context: bpy.types.Context, objects: Sequence[bpy.types.Object]) -> None:
-    """Say what cannot be avoided, or else what might be crossed, with the button that helps."""
-    found = avoided(context)
-    if moving := unsteady(found, selected_curves(context)):
-        sentence(layout, context, moving, icon="ERROR")
-    elif unguarded := surroundings.warning(context, objects, found):
-        sentence(layout, context, unguarded, icon="ERROR")
-        operator(layout, "avoid", icon="ADD")
+        # say what cannot be avoided, or else what might be crossed, with the button that helps
+        found = avoided(context)
+        if moving := unsteady(found, selected_curves(context)):
+            sentence(layout, context, moving, icon="ERROR")
+        elif unguarded := surroundings.warning(context, objects, found):
+            sentence(layout, context, unguarded, icon="ERROR")
+            operator(layout, "avoid", icon="ADD")
 
 
 def _state(run: Run) -> Message:

@@ -18,7 +18,7 @@ from ...core.extrapolation import Extrapolation, extrapolated
 from ...core.info import PAIRS_UP_TO
 from ...core.knots import knot_type
 from ...core.smooth.rest import Rest, at_rest
-from ...core.units import check_units
+from ...core.task import check_units
 from ...core.verify import verify
 from .. import curves
 from ..main import explained

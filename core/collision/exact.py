@@ -97,7 +97,8 @@ def below(time: Fraction) -> float:
 
 
 def _free(motion: Motion) -> bool:
-    return _skew(motion) or _separated(motion)
+    # whether one of the moving planes separates the segments all the time
+    return _skew(motion) or any(all(min(gap) > 0 for gap in gaps) for gaps in _gaps(motion))
 
 
 def _skew(motion: Motion) -> bool:
@@ -131,11 +132,6 @@ def _only_root(motion: Motion) -> tuple[int, int] | None:
     return low, high
 
 
-def _separated(motion: Motion) -> bool:
-    """Whether one of the moving planes separates the segments all the time."""
-    return any(all(min(gap) > 0 for gap in gaps) for gaps in _gaps(motion))
-
-
 def _gaps(motion: Motion) -> Iterator[Iterator[Polynomial]]:
     """For each direction n that is tried, the different ones among the four ⟨n, x_i − y_j⟩."""
     D, e, f = motion
@@ -156,7 +152,11 @@ def _gaps(motion: Motion) -> Iterator[Iterator[Polynomial]]:
 def _crosses(motion: Motion) -> bool:
     """Whether the segments plainly meet during a short motion."""
     if len(motion[0]) == 2:
-        return _crosses_in_plane(_frame(motion, 1))
+        # whether two segments in the plane, standing still, cross properly
+        D, e, f = _frame(motion, 1)
+        sides = [_cross(f, D), _cross(f, _plus(D, e)), _cross(e, D), _cross(e, _minus(D, f))]
+        (p,), (q,), (r,), (s,) = sides
+        return p * q < 0 and r * s < 0
     volume = _volume(motion)
     return volume[0] * volume[-1] < 0 and all(_well_inside(_frame(motion, k)) for k in (0, 1))
 
@@ -171,14 +171,6 @@ def _well_inside(motion: Motion) -> bool:
         if min(part, whole - part) * _INSIDE <= whole:
             return False
     return True
-
-
-def _crosses_in_plane(motion: Motion) -> bool:
-    """Whether two segments in the plane, standing still, cross properly."""
-    D, e, f = motion
-    sides = [_cross(f, D), _cross(f, _plus(D, e)), _cross(e, D), _cross(e, _minus(D, f))]
-    (p,), (q,), (r,), (s,) = sides
-    return p * q < 0 and r * s < 0
 
 
 def _volume(motion: Motion) -> Polynomial:

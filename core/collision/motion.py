@@ -1,14 +1,16 @@
-"""How far all vertices can move along straight lines before two edges meet, or an edge and an obstacle."""
+"""How far all vertices can move along straight lines before two edges meet, or an edge and an obstacle; the answer."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import Enum
 from typing import NamedTuple
 
 import numpy as np
 
 from ..curve import Mesh
+from ..messages import EDGE, Message
 from ..obstacle import Obstacle
 from ..types import BoolArray, FloatArray, IntArray
-from .answer import Contact, FreeMotion, Limit
 from .boxes import BoxTree, Level, contact_window, still_triangles
 from .exact import first_contact
 from .exact_triangle import first_contact_with_triangle
@@ -18,6 +20,48 @@ from .planes import march
 _BATCH = 1 << 13  # pairs marched together, so that their arrays stay in the cache
 _SHARPNESS = 0.985  # a time proved up to this part of a known contact time is near enough to it
 _EARLY_START = 0.875  # part of the time at which boxes meet where marching begins: the pair is clearly apart there
+
+
+class Limit(Enum):
+    """What ends a free motion."""
+
+    NONE = "the whole motion is free of contact"
+    CONTACT = "edges, or an edge and an obstacle, meet, or come too near to each other to be told apart"
+    TOUCHING_START = "edges, or an edge and an obstacle, touch, or cannot be told apart, at the start"
+    NOT_FINITE = "a vertex is not finite"
+    UNTESTED = "in more than three dimensions, where nothing is knotted, contact is not tested"
+
+
+@dataclass(frozen=True)
+class Contact:
+    """What is in the way of a motion."""
+
+    edges: tuple[int, ...]  # the two edges that meet, or the one that meets an obstacle
+    obstacle: str | None = None  # what sentences call it; None if edges meet
+
+    @property
+    def message(self) -> Message:
+        """The two, as sentences call them."""
+        edge, *other = (Message(EDGE, number=edge + 1) for edge in self.edges)
+        return Message("{edge} and {other}", edge=edge, other=self.obstacle or other[0])
+
+
+@dataclass(frozen=True)
+class FreeMotion:
+    """How much of a motion is proved free of contact.
+
+    No two non-neighbour edges, and no edge and obstacle, meet at any time t in [0, time], unless time is 0.  If two
+    meet, this is at most 2 % before the contact.
+    """
+
+    time: float  # 1 if the whole motion is free
+    contact: Contact | None = None  # what limits it, None if nothing does
+    limit: Limit = Limit.NONE  # the reason
+
+    @property
+    def proved(self) -> bool:
+        """Whether the whole motion is proved free of contact."""
+        return self.limit is Limit.NONE
 
 
 def free_motion(mesh: Mesh, start: FloatArray, end: FloatArray, obstacles: Sequence[Obstacle] = ()) -> FreeMotion:

@@ -25,8 +25,6 @@ from ..symmetry import NO_SYMMETRY, Symmetry
 from ..types import FloatArray, IntArray
 from .barycenters import Barycenters, Parts, weighted_barycenter
 
-__all__ = ["BLOCKS", "Barycenters", "Block", "ConstraintDerivative", "Constraints", "Parts", "weighted_barycenter"]
-
 _Block = TypeVar("_Block", bound="Block")
 
 

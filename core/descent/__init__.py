@@ -3,5 +3,3 @@
 from .methods import METHODS, Method
 from .problem import Point, Problem
 from .step import Leg, NoStep, State, Step
-
-__all__ = ["METHODS", "Leg", "Method", "NoStep", "Point", "Problem", "State", "Step"]

@@ -1,17 +1,31 @@
-"""Products with second derivatives, of the objective and of the Lagrangian, and Newton's direction by means of them."""
+"""Products with second derivatives, of the objective and of the Lagrangian, Newton's direction by them, and soft modes.
+
+Soft modes are tangent directions in which the Lagrangian's Hessian is least against the metric, by products alone.
+J_C⁻¹ D²L is an operator of order 0: on every mesh all but a few of its eigenvalues lie in a bulk from 0.2 to 2 or so,
+so that 100 to 200 products find those below it, for any number of vertices.  This is Davidson's method in blocks: the
+basis grows by the residuals of the lowest Ritz pairs, projected to the tangent space in the metric.  With exact
+projections it is the block Lanczos method; loose ones, such as those of `saddle.iterative`, do no harm.
+
+SciPy's solvers do not serve: ARPACK's may miss copies of multiple eigenvalues, which symmetric knots have; `lobpcg`
+takes forces normal to the constraints for errors, and solves small problems in the whole space.
+"""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..deadline import check_time
-from ..energies.moebius_hessian import OwnBlocks
+from ..energies.moebius import OwnBlocks
 from ..saddle import TangentSpace
 from ..types import FloatArray
 from .problem import Point
 
 LinearMap = Callable[[FloatArray], FloatArray]
 ASSEMBLED_SIZE = 3000  # unknowns up to which one assembled matrix beats products that go through all pairs
+BULK = 0.1  # against J_C: flat and soft directions of knots are below, all others above
+ROUNDING = 1e-10  # relative to the largest Ritz value: residuals so short are rounding errors
+DEPENDENT = 1e-10  # of squared lengths: vectors that add so little to the others are left out
 
 
 def energy_hessian(point: Point) -> LinearMap:
@@ -91,3 +105,93 @@ def projected_conjugate_gradient(
 def newton_direction(point: Point, hessian: LinearMap, tolerance: float, max_iterations: int = 200) -> FloatArray:
     """Tangent w with (D²L w + DE) orthogonal to the tangent space, by projected conjugate gradients."""
     return projected_conjugate_gradient(hessian, -point.derivative, point.tangent_space, tolerance, max_iterations)
+
+
+@dataclass(frozen=True, eq=False)
+class SoftModes:
+    """All Ritz pairs of J⁻¹(D²E − Σ λ_I D²Φ_I) on ker DΦ after a search, ascending; the lowest are good."""
+
+    values: FloatArray  # Ritz values θ, each at least the eigenvalue in its place; shape (k,)
+    vectors: FloatArray  # Ritz vectors w, tangent and orthonormal in the metric; shape (k, n, m)
+    # norms of the projected J⁻¹ D²L w − θ w in the metric, within which of θ there is an eigenvalue, for those of the
+    # lowest pairs that were examined; shape (j,), j ≤ k
+    residuals: FloatArray
+
+
+def soft_modes(
+    point: Point, starts: FloatArray, tolerance: float = 1e-6, below: float = BULK, most: int = 400
+) -> SoftModes:
+    """Look for the lowest eigenvalues at a point, in the metric J_C or one as strong.
+
+    Starts are tangent vectors, such as `smooth_starts`; shape (b, n, m).  Of multiple eigenvalues b copies can be
+    found, and b pairs are improved at a time, or more if more are ``below`` a bound.  Those, and the lowest one, are
+    near enough to eigenvalues where their residuals are within the tolerance.  After ``most`` products with the Hessian
+    and as many projections pairs are left as they are.
+    """
+    basis = _Basis(point)
+    most = min(most, basis.dimension)
+    basis.extend(starts[:most].reshape(-1, point.vertices.size))
+    while True:
+        values, turns = basis.ritz()
+        wanted = max(1, np.count_nonzero(values < below))
+        forces = basis.forces(values, turns, max(len(starts), wanted))
+        new = basis.each(lambda force: basis.space.gradient(force)[0], forces)
+        residuals = np.sqrt(np.maximum(0.0, np.einsum("ij,ij->i", new, forces)))
+        far = residuals > max(tolerance, ROUNDING * np.abs(values).max(initial=0.0))
+        if len(basis) >= most or not far[:wanted].any():
+            return SoftModes(values, basis.combined(turns), residuals)
+        basis.extend((new[far] / residuals[far, None])[: most - len(basis)])
+
+
+def smooth_starts(point: Point, rng: np.random.Generator, count: int = 8) -> FloatArray:
+    """Gradients of random forces, in which soft modes have a large part on every mesh; shape (count, n, m)."""
+    forces = rng.normal(size=(count, *point.vertices.shape))
+    return np.stack([point.tangent_space.gradient(force)[0] for force in forces])
+
+
+class _Basis:
+    """A basis of a subspace of the tangent space, orthonormal in the metric, with its images; rows of n·m numbers."""
+
+    def __init__(self, point: Point) -> None:
+        self.space, self._hessian = point.tangent_space, lagrangian_hessian(point)
+        self._shape = point.vertices.shape
+        self._vectors, self._duals, self._images = np.empty((3, 0, point.vertices.size))
+
+    def __len__(self) -> int:
+        return len(self._vectors)
+
+    @property
+    def dimension(self) -> int:
+        (n, m), constraints = self._shape, self.space.constraints
+        return m * (n - len(constraints.pins)) - constraints.count
+
+    def each(self, operator: LinearMap, rows: FloatArray) -> FloatArray:
+        """An operator on arrays of shape (n, m), row by row."""
+        return np.array([operator(row.reshape(self._shape)).ravel() for row in rows]).reshape(rows.shape)
+
+    def extend(self, new: FloatArray) -> None:
+        """Add what tangent vectors have that the basis has not."""
+        duals = self.each(self.space.apply, new)
+        for _ in range(2):  # once leaves rounding errors
+            part = new @ self._duals.T
+            new, duals = new - part @ self._vectors, duals - part @ self._duals
+            squares, turns = np.linalg.eigh(new @ duals.T)
+            kept = squares > DEPENDENT * squares.max(initial=0.0)
+            turn = (turns[:, kept] / np.sqrt(squares[kept])).T
+            new, duals = turn @ new, turn @ duals
+        self._vectors, self._duals = np.vstack([self._vectors, new]), np.vstack([self._duals, duals])
+        self._images = np.vstack([self._images, self.each(self._hessian, new)])
+
+    def ritz(self) -> tuple[FloatArray, FloatArray]:
+        """Ritz values, ascending, and the vectors' coefficients as rows; none points away from the first start."""
+        projected = self._vectors @ self._images.T
+        values, turns = np.linalg.eigh(0.5 * (projected + projected.T))
+        return values, (turns * np.copysign(1.0, turns[:1])).T
+
+    def forces(self, values: FloatArray, turns: FloatArray, count: int) -> FloatArray:
+        """What the lowest Ritz pairs leave of (D²L − θ J) w."""
+        turns = turns[:count]
+        return np.asarray(turns @ self._images - values[:count, None] * (turns @ self._duals))
+
+    def combined(self, turns: FloatArray) -> FloatArray:
+        return np.reshape(turns @ self._vectors, (-1, *self._shape))

@@ -20,8 +20,8 @@ from ..metrics import InnerProduct, Metric, SparseInnerProduct
 from ..obstacle import Obstacle
 from ..saddle import TangentSpace
 from ..symmetry import NO_SYMMETRY, Symmetry
+from ..task import Units
 from ..types import FloatArray
-from ..units import Units
 
 NEGLIGIBLE = 1e-8  # displacement, in the program's units, that changes no energy visibly
 

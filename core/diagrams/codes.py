@@ -16,7 +16,6 @@ import re
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from itertools import islice
-from types import MappingProxyType
 from typing import NamedTuple
 
 from ..arguments import check_known
@@ -233,11 +232,9 @@ def gauss_text(diagram: Diagram) -> str:
     return f"Gauss: {' / '.join(parts)}"
 
 
-NOTATIONS: Mapping[str, Notation] = MappingProxyType(
-    {
-        "pd": Notation(r"(?:PD|Link(?=\())", "PD[X[1,5,2,4], X[3,1,4,6], X[5,3,6,2]]", _planar),
-        "dt": Notation("DT", "DT: [4 6 2]", _dowker_thistlethwaite),
-        "gauss": Notation(r"Gauss(?:\s?code)?", "Gauss: 1 -2 3 -1 2 -3", _gauss),
-    }
-)
+NOTATIONS: Mapping[str, Notation] = {
+    "pd": Notation(r"(?:PD|Link(?=\())", "PD[X[1,5,2,4], X[3,1,4,6], X[5,3,6,2]]", _planar),
+    "dt": Notation("DT", "DT: [4 6 2]", _dowker_thistlethwaite),
+    "gauss": Notation(r"Gauss(?:\s?code)?", "Gauss: 1 -2 3 -1 2 -3", _gauss),
+}
 """How codes may be written."""

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..curve import Curve, check_closed
-from .alexander import FIELDS, alexander_values
 from .diagram import Diagram
+from .polynomials import FIELDS, alexander_values
 from .projection import views
 
 FIELD = FIELDS[0]

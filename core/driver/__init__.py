@@ -7,19 +7,3 @@ from .outcome import Outcome, Status
 from .relax import Result, finish, minimize, relax
 from .time_left import TimeLeft
 from .trajectory import Iterate, Trajectory
-
-__all__ = [
-    "Hand",
-    "Iterate",
-    "Outcome",
-    "RelaxOptions",
-    "Relaxation",
-    "Result",
-    "Status",
-    "TimeLeft",
-    "Trajectory",
-    "WithOutcome",
-    "finish",
-    "minimize",
-    "relax",
-]

@@ -10,7 +10,7 @@ from ..arguments import checked
 from ..constraints import Barycenters
 from ..curve.pins import Pins
 from ..descent import NoStep, Point, Step
-from ..descent.searches.trials import on_target
+from ..descent.searches.armijo import on_target
 from ..descent.step import leg
 from ..energies.components import energy_scale
 from ..energies.pull import Pull

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..arguments import checked_fields, number
 from ..descent import Leg, Point, Step
-from ..descent.soft_modes import soft_modes
+from ..descent.hessian import soft_modes
 from ..descent.step import attempt
 from ..energies.components import energy_scale
 from ..errors import OptionError

@@ -7,13 +7,12 @@ from reprlib import repr as short
 
 import numpy as np
 
-from ..arguments import check_known, is_list
+from ..arguments import check_known, declared, documented, is_list, option
 from ..curve import Curve
 from ..descent import METHODS
 from ..energies import ENERGIES, TERMS, Energy, Term
 from ..errors import OptionError
 from ..metrics import METRICS, Metric
-from ..option import declared, documented, option
 from ..symmetry import IS_NAME
 
 EDGE_LENGTHS = ("auto", "equal", "keep")

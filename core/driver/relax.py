@@ -15,9 +15,8 @@ from ..deadline import TimeLimit
 from ..errors import CurveError, OptionError, counted
 from ..hierarchy import moebius_energy
 from ..messages import COMPONENT, VERTEX_COUNT, Message
-from ..task import Task
+from ..task import Task, centred
 from ..threads import BLAS
-from ..units import centred
 from .hand import Hand, Hold
 from .hopping import hopping
 from .loop import Relaxation, WithOutcome, within

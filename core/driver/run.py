@@ -16,8 +16,7 @@ from ..messages import Message
 from ..passes import Stage
 from ..types import FloatArray
 from .options import RelaxOptions
-from .outcome import Outcome, Status, converged, degenerate
-from .rises import Rises
+from .outcome import Outcome, Rises, Status, converged, degenerate
 from .trajectory import Iterate, StrandMoves
 
 HELD_METRIC_STEPS = 10  # while a hand pulls, where answers at once matter more than few steps

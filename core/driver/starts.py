@@ -5,7 +5,7 @@ import numpy as np
 from ..curve import Curve
 from ..diagrams.projection import views
 from ..errors import MobiusFlowError
-from ..knots.lattice import lattice_closure
+from ..knots.braids import lattice_closure
 from ..knots.names import braid_word, knot, table_name
 from ..knots.planar import drawn
 from ..knots.scrambles import scramble

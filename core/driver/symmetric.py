@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from ..collision import is_free, survives_rounding
 from ..curve import Curve
-from ..curve.joint import refined_alike
+from ..curve.refine import refined_alike
 from ..descent import Leg, Step
 from ..errors import CurveError
 from ..messages import Message

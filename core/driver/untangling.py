@@ -10,7 +10,7 @@ from ..curve import Curve, refine
 from ..curve.pins import arcs, holds
 from ..deadline import TimeIsUp
 from ..descent import Leg, Point, Step
-from ..descent.searches.trials import on_target
+from ..descent.searches.armijo import on_target
 from ..descent.step import attempt
 from ..diagrams import QuickInvariants, quick_invariants
 from ..errors import MobiusFlowError

@@ -1,41 +1,36 @@
 """Energies of polygons, and the table they are chosen from."""
 
 from collections.abc import Mapping
-from types import MappingProxyType
 
 from ..quadrature import Rule
 from .barrier import Barrier
-from .bending import Bending
 from .densities import EDGE_ENERGY, TANGENT_POINT_ENERGY, VERTEX_ENERGY, moebius_kpoint
 from .density import Density
 from .energy import Energy, Stiff, Term, TwiceDifferentiable, is_moebius_invariant
 from .kpoint import KPointEnergy
 from .moebius import MoebiusEnergy
 from .objective import Objective, Weighted
+from .pull import Bending
 
-ENERGIES: Mapping[str, Energy] = MappingProxyType(
-    {
-        energy.name: energy
-        for energy in (
-            MoebiusEnergy(),
-            VERTEX_ENERGY,
-            EDGE_ENERGY,
-            moebius_kpoint(2),
-            moebius_kpoint(3),
-            TANGENT_POINT_ENERGY,
-        )
-    }
-)
+ENERGIES: Mapping[str, Energy] = {
+    energy.name: energy
+    for energy in (
+        MoebiusEnergy(),
+        VERTEX_ENERGY,
+        EDGE_ENERGY,
+        moebius_kpoint(2),
+        moebius_kpoint(3),
+        TANGENT_POINT_ENERGY,
+    )
+}
 """Every energy that users can choose, by name; the first is the default."""
 
-TERMS: Mapping[str, Term] = MappingProxyType(
-    {
-        term.name: term
-        for term in [
-            Bending(),
-        ]
-    }
-)
+TERMS: Mapping[str, Term] = {
+    term.name: term
+    for term in [
+        Bending(),
+    ]
+}
 """What users can add to an energy, by name."""
 
 __all__ = [

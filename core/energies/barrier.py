@@ -17,10 +17,8 @@ import scipy.sparse as sp
 from ..arguments import checked_fields
 from ..curve import Curve
 from ..curve.distances import near_by_octave
-from ..curve.tiles import EdgePairIndices
 from ..types import BoolArray, FloatArray, IntArray
-from .complex_steps import change, stepped
-from .edge_pairs import DELTA, E, EdgePairs, F, Jet, scatter_first, scatter_second
+from .edge_pairs import DELTA, E, EdgePairIndices, EdgePairs, F, Jet, change, scatter_first, scatter_second, stepped
 from .inverse_square import inverse_square
 
 NEAR = 1.0  # of q, up to which only the exact energy of a pair counts,

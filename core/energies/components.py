@@ -14,7 +14,7 @@ import numpy as np
 
 from ..curve import Curve, Mesh
 from ..types import FloatArray, IntArray
-from .complex_steps import change, stepped
+from .edge_pairs import change, stepped
 
 
 def energy_scale(mesh: Mesh, energy: float) -> float:

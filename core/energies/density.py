@@ -19,8 +19,8 @@ from scipy.spatial.distance import cdist
 
 from ..curve import Curve
 from ..curve.distances import arc_positions, periods
-from ..curve.tiles import Tile
 from ..types import BoolArray, FloatArray
+from .edge_pairs import Tile
 
 KINK = 1e-12  # difference of the two arcs, relative to the component, below which they count as equal
 

@@ -5,9 +5,9 @@ from typing import Protocol, runtime_checkable
 import scipy.sparse as sp
 
 from ..curve import Curve
-from ..curve.tiles import EdgePairIndices
 from ..quadrature import Rule
 from ..types import FloatArray
+from .edge_pairs import EdgePairIndices
 
 
 @runtime_checkable

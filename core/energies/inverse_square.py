@@ -16,8 +16,7 @@ from numpy.polynomial.polynomial import polyval
 
 from ..quadrature import gauss_legendre
 from ..types import FloatArray, IntArray
-from .complex_steps import arctan2
-from .edge_pairs import EdgePairs, Jet
+from .edge_pairs import EdgePairs, Jet, arctan2
 
 CONTACT = 1e-16  # distance of edges, relative to their length, below which they count as that far apart
 _SERIES = [(-1.0) ** k * (k + 1) / (2 * k + 3) for k in range(14)]  # of the tail, in powers of x²

@@ -12,11 +12,11 @@ import numpy as np
 from ..arguments import checked_fields
 from ..curve import Curve
 from ..curve.distances import points_at
-from ..curve.tiles import Tile, pair_tiles
 from ..quadrature import Rule
 from ..types import FloatArray
 from .components import ComponentShares
 from .density import ArcDerivative, Arcs, Density, Partials, PointPairs, PointSet
+from .edge_pairs import Tile, pair_tiles
 from .energy import is_moebius_invariant
 
 

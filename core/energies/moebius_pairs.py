@@ -6,9 +6,8 @@ import numpy as np
 from scipy.spatial.distance import cdist
 
 from ..curve import Curve, Mesh
-from ..curve.tiles import RowTile, Tile
 from ..types import FloatArray
-from .complex_steps import stepped
+from .edge_pairs import RowTile, Tile, stepped
 
 
 class Vectors(NamedTuple):

@@ -1,4 +1,4 @@
-"""The pull of a hand: a spring from a short stretch of a curve to a point, whose force is bounded."""
+"""Terms beside the energy: bending, and the pull of a hand, a spring from a short stretch of a curve to a point."""
 
 from dataclasses import dataclass
 
@@ -7,6 +7,7 @@ import scipy.sparse as sp
 
 from ..curve import Curve
 from ..curve.distances import periods, vertex_positions
+from ..curve.measures import bending, bending_and_derivative
 from ..types import FloatArray
 
 WIDTH = 0.02  # standard deviation of the stretch, in lengths of its component, unless edges are longer
@@ -84,3 +85,28 @@ def share_of(curve: Curve, component: int, point: FloatArray) -> float:
     nearest = int(np.linalg.norm(way - t[:, None] * along, axis=1).argmin())
     at = curve.arc_starts[edges][nearest] + t[nearest] * ell[nearest]
     return float(at / curve.component_lengths[component])
+
+
+@dataclass(frozen=True)
+class Bending:
+    """L ∫ κ² ds, 4π² on a round circle; see `core.curve.measures`."""
+
+    name = "bending"
+    description = "L ∫ κ² ds, 4π² on a round circle"
+    scale_exponent = 0.0
+
+    def value(self, curve: Curve) -> float:
+        return bending(curve)
+
+    def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
+        """The bending and its derivative with respect to the vertices, shape (n, m)."""
+        return bending_and_derivative(curve)
+
+    def stiffness(self, curve: Curve) -> sp.csr_array:
+        """2 L Σ |Δu₊/ℓ₊ − Δu₋/ℓ₋|²/ℓ̄, the second derivative on a nearly straight curve; shape (n, n)."""
+        mesh, ell, edges = curve.mesh, curve.edge_lengths, np.arange(curve.mesh.edges)
+        slope = sp.csr_array((1.0 / ell, (edges, mesh.heads)), shape=(mesh.edges, mesh.size))
+        slope -= sp.csr_array((1.0 / ell, (edges, mesh.tails)), shape=(mesh.edges, mesh.size))
+        before, after = mesh.incoming[mesh.inner], mesh.outgoing[mesh.inner]
+        turn = slope[after] - slope[before]
+        return sp.csr_array(turn.T @ sp.diags_array(4.0 * curve.length / (ell[before] + ell[after])) @ turn)

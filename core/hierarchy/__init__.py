@@ -4,12 +4,3 @@ from .blocks import BlockList
 from .energy import HierarchicalMoebiusEnergy
 from .inner_product import CompressedMetric, compressed
 from .sampling import SampledErrors, moebius_energy
-
-__all__ = [
-    "BlockList",
-    "CompressedMetric",
-    "HierarchicalMoebiusEnergy",
-    "SampledErrors",
-    "compressed",
-    "moebius_energy",
-]

@@ -8,7 +8,7 @@ import numpy as np
 from ..clusters import ClusterTree, ranges
 from ..curve import Curve, Mesh
 from ..curve.mesh import component_order
-from ..curve.tiles import EdgePairIndices
+from ..energies.edge_pairs import EdgePairIndices
 from ..errors import OptionError
 from ..types import BoolArray, FloatArray, IntArray
 

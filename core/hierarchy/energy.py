@@ -10,8 +10,8 @@ import numpy as np
 
 from ..arguments import checked_fields, number
 from ..curve import Curve
-from ..curve.tiles import EdgePairIndices
 from ..energies.components import ComponentShares
+from ..energies.edge_pairs import EdgePairIndices
 from ..energies.energy import Energy
 from ..energies.moebius import CONSTANT, MoebiusEnergy, energy_of_pairs
 from ..energies.moebius_pairs import DerivativeSums, Edges

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy.sparse as sp
 
-from ..curve.tiles import EdgePairIndices
+from ..energies.edge_pairs import EdgePairIndices
 from ..energies.moebius_pairs import Coefficients, DerivativeSums, Edges, Pairs, PartnerSums, Vectors
 from ..types import FloatArray, IntArray
 from .blocks import BlockList

@@ -9,7 +9,6 @@ J_C the eigenvalues are between 0.85 and 1.2, on smooth curves and on tangles, a
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from types import MappingProxyType
 
 import numpy as np
 import scipy.sparse as sp
@@ -27,8 +26,7 @@ from ..quadrature import MIDPOINT, Rule
 from ..saddle import TangentSpace
 from ..saddle.iterative import IterativeTangentSpace, IterativeWholeSpace, Tolerances
 from ..saddle.krylov import conjugate_gradients, relative
-from ..saddle.models import TwoLevel
-from ..saddle.resolvent import Resolvents
+from ..saddle.models import Resolvents, TwoLevel
 from ..saddle.symbol import Circulants
 from ..types import FloatArray
 from .blocks import BlockList
@@ -136,9 +134,10 @@ def fractional_inner_product(
     )
 
 
-_COMPRESSED: Mapping[type, Callable[[Curve, Tolerances | None, float, int], CompressedInnerProduct]] = MappingProxyType(
-    {MoebiusMetric: moebius_inner_product, FractionalMetric: fractional_inner_product}
-)
+_COMPRESSED: Mapping[type, Callable[[Curve, Tolerances | None, float, int], CompressedInnerProduct]] = {
+    MoebiusMetric: moebius_inner_product,
+    FractionalMetric: fractional_inner_product,
+}
 
 
 @checked_fields

@@ -1,4 +1,4 @@
-"""Braid words and diagrams of their closures.
+"""Braid words, diagrams of their closures, and closures as polygons on the cubic lattice.
 
 A word is a tuple of signed letters; letter i is the crossing σ_i of strands i and i+1, −i its inverse.  A positive
 letter is a positive (right-handed) crossing, so the closure of (1, 1, 1) is the right-handed trefoil.
@@ -6,13 +6,19 @@ letter is a positive (right-handed) crossing, so the closure of (1, 1, 1) is the
 
 from collections.abc import Sequence
 
+import numpy as np
+
+from ..curve import Curve
 from ..diagrams import Diagram, Pass, diagram_of
 from ..errors import CurveError
+from ..types import IntArray
 
 Word = tuple[int, ...]
 
 MAX_STRANDS = 500  # of braids of any use
 MAX_LETTERS = 20_000
+_COLUMN = 3  # length of a crossing along the strands
+_Corner = tuple[int, int, int]
 
 
 def checked_word(word: Sequence[int], strands: int | None = None) -> tuple[Word, int]:
@@ -109,3 +115,64 @@ def plat_diagram(word: Sequence[int]) -> Diagram:
         ends = [kept if edge == other else edge for edge in ends]
     diagram = diagram_of(code)
     return Diagram((*diagram.passes, *((),) * circles), diagram.signs)
+
+
+def lattice_closure(word: Sequence[int], *, strands: int | None = None) -> Curve:
+    """Make the closure of a braid as a polygon with corners on the integer lattice and edges along its axes.
+
+    Strands run along y at x = 0, 1, …, one step below those that cross over them, and return in the plane z = 0.
+
+    Parameters
+    ----------
+    word
+        Letters ±i, see :mod:`mobius_flow.core.knots.braids`.
+    strands
+        Number of strands, by default as few as the word needs.
+
+    Raises
+    ------
+    CurveError
+        If the word is none.
+
+    Examples
+    --------
+    >>> len(lattice_closure([1, 1, 1]))
+    29
+    """
+    letters, count = checked_word(word, strands)
+    places, width = columns(letters)
+    crossings = {}
+    for letter, column in zip(letters, places, strict=True):
+        left, over = abs(letter) - 1, letter > 0
+        crossings[column, left] = 1, over
+        crossings[column, left + 1] = -1, not over
+    components = []
+    for cycle in cycles(letters, count):
+        path: list[_Corner] = []
+        for place in cycle:
+            path += _strand(crossings, width, place, count)
+        components.append(_corners(np.array(path)))
+    return Curve.from_components(components)
+
+
+def _strand(crossings: dict[tuple[int, int], tuple[int, bool]], width: int, place: int, count: int) -> list[_Corner]:
+    """The strand that starts at a place, and its way back to where the next one starts."""
+    path = [(place, 0, 0)]
+    for column in range(width):
+        step, over = crossings.get((column, place), (0, False))
+        y, beyond = _COLUMN * column, place + step
+        if over:
+            path += [(place, y, 0), (place, y, 1), (place, y + 2, 1), (beyond, y + 2, 1), (beyond, y + 2, 0)]
+        elif step:
+            path += [(place, y + 1, 0), (beyond, y + 1, 0)]
+        place = beyond
+    outward = count - place
+    top, side, bottom = _COLUMN * width + outward, count - 1 + outward, -outward
+    return [*path, (place, top, 0), (side, top, 0), (side, bottom, 0), (place, bottom, 0)]
+
+
+def _corners(path: IntArray) -> IntArray:
+    """The vertices of a closed lattice path at which it turns."""
+    path = path[np.any(path != np.roll(path, -1, axis=0), axis=1)]
+    before, after = path - np.roll(path, 1, axis=0), np.roll(path, -1, axis=0) - path
+    return np.asarray(path[np.any(np.sign(before) != np.sign(after), axis=1)])

@@ -7,7 +7,7 @@ from functools import cache
 from itertools import product
 
 from ..diagrams import Diagram, Laurent, normalized_bracket
-from ..diagrams.bracket import times
+from ..diagrams.polynomials import times
 from .braids import braid_diagram
 from .names import braid_word
 from .table import AMPHICHEIRAL, KNOTS

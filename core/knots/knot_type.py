@@ -9,18 +9,8 @@ from math import prod
 
 from ..arguments import checked, checked_fields, number
 from ..curve import Curve
-from ..diagrams import (
-    Diagram,
-    alexander,
-    doubled_bracket,
-    factors,
-    is_least,
-    jones,
-    shuffled_down,
-    signature,
-    simplified,
-    views,
-)
+from ..diagrams import Diagram, factors, is_least, shuffled_down, signature, simplified, views
+from ..diagrams.polynomials import alexander, doubled_bracket, jones
 from ..errors import counted
 from .catalogue import KNOTS_TO, LINKS_TO, Key, bracket_key, crossing_number, invariant_of, key, types_with
 from .exterior import FLOER, Floer, Group, floer, group, names_by_exterior

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable, Mapping
-from types import MappingProxyType
 
 import numpy as np
 
@@ -71,5 +70,5 @@ def _end(last: FloatArray, before: FloatArray) -> FloatArray:
     return np.asarray(last + _ENDS * (last - before) / np.linalg.norm(last - before))
 
 
-ARCS: Mapping[str, Callable[[int | None], Curve]] = MappingProxyType({"overhand": overhand})
+ARCS: Mapping[str, Callable[[int | None], Curve]] = {"overhand": overhand}
 """Arcs with names."""

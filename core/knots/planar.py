@@ -17,7 +17,7 @@ from ..curve import Curve, refine
 from ..curve.curve import MAKERS
 from ..diagrams import Diagram, PlanarCrossing, diagram_of
 from ..diagrams.codes import diagram_from_code
-from ..diagrams.simplify import without_nugatory
+from ..diagrams.rerouting import without_nugatory
 from ..errors import CurveError
 from ..types import FloatArray
 from .inscribed import MAX_VERTICES

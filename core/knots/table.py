@@ -4,7 +4,6 @@ import re
 from collections.abc import Mapping
 from configparser import ConfigParser
 from pathlib import Path
-from types import MappingProxyType
 
 from ..diagrams import PlanarCrossing
 from ..errors import MobiusFlowError
@@ -24,24 +23,24 @@ def _word(letters: str) -> Word:
     return tuple(map(int, letters.split()))
 
 
-KNOTS: Mapping[str, Word] = MappingProxyType({name: _word(letters) for name, letters in _FILE["braids"].items()})
+KNOTS: Mapping[str, Word] = {name: _word(letters) for name, letters in _FILE["braids"].items()}
 """Braid words of all prime knots to ten crossings and links to seven.
 
 Handedness is the word's, positive letters being right-handed crossings: 3_1 is the right-handed trefoil.
 """
 
-HARD_UNKNOTS: Mapping[str, tuple[PlanarCrossing, ...]] = MappingProxyType(
-    {name: tuple(zip(*[iter(_word(edges))] * 4, strict=True)) for name, edges in _FILE["hard unknots"].items()}
-)
+HARD_UNKNOTS: Mapping[str, tuple[PlanarCrossing, ...]] = {
+    name: tuple(zip(*[iter(_word(edges))] * 4, strict=True)) for name, edges in _FILE["hard unknots"].items()
+}
 """Planar diagram codes of famous unknots that are hard to untangle, from 10 to 141 crossings."""
 
 AMPHICHEIRAL = frozenset(" ".join(_FILE["amphicheiral"].values()).split())
 """The knots that are their own mirror images, whatever their orientation, and such links."""
 
-ROLFSEN: Mapping[str, str] = MappingProxyType(dict(_FILE["rolfsen"]))
+ROLFSEN: Mapping[str, str] = dict(_FILE["rolfsen"])
 """Names of links in D. Rolfsen's table (*Knots and Links*, 1976): crossings, components, number."""
 
-ALIASES: Mapping[str, str] = MappingProxyType(dict(_FILE["other names"]))
+ALIASES: Mapping[str, str] = dict(_FILE["other names"])
 """Other names for knots and links of the table, and for sums of them."""
 
 

@@ -17,8 +17,14 @@ from ..curve import Curve
 from ..curve.pins import NOWHERE
 from ..quadrature import Rule
 from ..saddle import TangentSpace
-from ..saddle.dense import DenseTangentSpace, DenseWholeSpace, cholesky
-from ..saddle.sparse import SparseTangentSpace, SparseWholeSpace, factorised
+from ..saddle.dense import (
+    DenseTangentSpace,
+    DenseWholeSpace,
+    SparseTangentSpace,
+    SparseWholeSpace,
+    cholesky,
+    factorised,
+)
 from ..types import FloatArray, IntArray
 
 MAX_DENSE_ROWS = 12_000  # some six matrices of so many rows make 7 GB

@@ -24,7 +24,7 @@ from scipy.spatial.distance import cdist
 from ..arguments import checked_fields
 from ..curve import Curve, Mesh
 from ..curve.distances import arc_distance_of_pairs, arc_distances, points_at
-from ..curve.tiles import ROWS_TIMES_COLUMNS
+from ..energies.edge_pairs import ROWS_TIMES_COLUMNS
 from ..quadrature import MIDPOINT, Rule
 from ..types import FloatArray, IntArray
 from .inner_product import MAX_DENSE_ROWS, DenseInnerProduct, InnerProduct

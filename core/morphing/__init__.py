@@ -2,5 +2,3 @@
 
 from .evidence import DifferentError, NoMotionError, compare
 from .morph import morph, morphing, moving
-
-__all__ = ["DifferentError", "NoMotionError", "compare", "morph", "morphing", "moving"]

@@ -4,21 +4,22 @@ All curves that they come to by Möbius maps have the same energy.  The images t
 the same minimum have one in common, up to a similarity.
 """
 
-from collections.abc import Sequence
-from itertools import product
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from itertools import pairwise, product
 
 import numpy as np
 
-from ..collision import survives_rounding
-from ..curve import Curve
+from ..collision import is_free, survives_rounding
+from ..curve import Curve, Mesh
 from ..curve.alignment import Alignment, Freedom, alignments
-from ..curve.joint import refined_alike
 from ..curve.measures import bending
+from ..curve.refine import refined_alike
+from ..deadline import check_time
 from ..driver import Iterate
 from ..driver.interventions.balance import MoebiusImages, least_bending, turn
 from ..obstacle import Obstacle
 from ..types import FloatArray
-from .ways import back, followed, gone, on_mesh, renamed
 
 IMAGES = 3  # of each curve, those that bend least, besides itself
 TRIES = 8  # to join them, the best alignment first
@@ -27,6 +28,7 @@ LEG = 3e-4  # radii of gyration by which shapes may be further apart to save a l
 NEAR = 1e-3  # half the angle of rotation, in radians, of a Möbius map that is hardly any
 UPWARDS = np.array([0.0, 0.0, 1.0])
 STILL = Freedom(np.zeros(3), fixed=np.zeros(3))
+SHORTEST = 1e-4  # share of a motion in one leg, with which it is given up
 
 
 def images(end: Iterate, obstacles: Sequence[Obstacle]) -> list[list[Iterate]]:
@@ -102,3 +104,59 @@ def _joint(x: Iterate, y: Iterate, alignment: Alignment, obstacles: Sequence[Obs
         return None
     begun = on_mesh(y, start, tuple(start.mesh.ends.ravel().tolist()))
     return [*gone(x, turning), begun, *gone(begun, legs), on_mesh(y, y.curve, y.pins)]
+
+
+def followed(
+    start: Curve, at: Callable[[float], FloatArray], stride: float, obstacles: Sequence[Obstacle] = ()
+) -> list[FloatArray] | None:
+    """Ends of proved legs from a curve along a motion, which gives vertices at a share of it; None if one is not free.
+
+    ``stride`` is the largest share of a leg; where legs are not free, they are halved.
+    """
+    legs, share, longest = [start.vertices], 0.0, stride
+    while share < 1.0:
+        check_time()
+        further = min(share + stride, 1.0)
+        end = at(further)
+        if is_free(start.mesh, legs[-1], end, obstacles):
+            legs.append(end)
+            share, stride = further, min(2.0 * stride, longest)
+        elif stride < SHORTEST:
+            return None
+        else:
+            stride *= 0.5
+    return legs[1:]
+
+
+def gone(before: Iterate, legs: Sequence[FloatArray]) -> Iterator[Iterate]:
+    """The iterates after another one at the ends of legs on its mesh."""
+    for leg in legs:
+        yield replace(before, curve=before.curve.with_vertices(leg), path=(leg,), step_size=0.0)
+
+
+def on_mesh(before: Iterate, curve: Curve, pins: tuple[int, ...]) -> Iterate:
+    """The iterate after another one that is the same polygon on another mesh."""
+    return replace(before, curve=curve, path=(), step_size=0.0, pins=pins)
+
+
+def back(way: Sequence[Iterate]) -> Iterator[Iterate]:
+    """The iterates after the last one on the same way back to the first: vertices that came go."""
+    for here, there in pairwise(reversed(way)):
+        path = (*here.path[-2::-1], there.curve.vertices) if here.path else ()
+        yield replace(there, path=path, step_size=here.step_size)
+
+
+def renamed(iterate: Iterate, alignment: Alignment) -> Iterate:
+    """The same with components in another order; those that are run through backwards keep their first vertex."""
+    if alignment.as_given:
+        return iterate
+    mesh, parts = iterate.curve.mesh, []
+    for component, backwards in zip(alignment.order, alignment.backwards, strict=True):
+        part = np.arange(mesh.size)[mesh.slices[component]]
+        parts.append(np.roll(part[::-1], 1) if backwards else part)
+    names = np.concatenate(parts)
+    sizes = tuple(mesh.component_sizes[k] for k in alignment.order)
+    closed = tuple(mesh.closed[k] for k in alignment.order)
+    curve = Curve(iterate.curve.vertices[names], Mesh(sizes, closed))
+    pins = tuple(np.flatnonzero(np.isin(names, iterate.pins)).tolist())
+    return replace(iterate, curve=curve, path=tuple(leg[names] for leg in iterate.path), pins=pins)

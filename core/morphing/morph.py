@@ -17,8 +17,7 @@ from ..messages import OF_GOAL, Message
 from ..task import Task
 from ..threads import BLAS
 from .evidence import NoMotionError, compare
-from .meeting import images, meeting
-from .ways import back, on_mesh, renamed
+from .meeting import back, images, meeting, on_mesh, renamed
 
 _Joining = Generator[Iterate, None, tuple[Alignment, list[Iterate]]]
 MET = "became the other curve: relaxed shapes met, {distance:.2g} radii of gyration apart"

@@ -3,5 +3,3 @@
 from .moving import Seen, Stage
 from .untangle import Untangled, untangled
 from .views import worth
-
-__all__ = ["Seen", "Stage", "Untangled", "untangled", "worth"]

@@ -10,12 +10,11 @@ import numpy as np
 from ..collision import free_motion
 from ..curve import Curve
 from ..curve.pins import NOWHERE
-from ..diagrams.rerouting import shortenings
-from ..diagrams.simplify import simplified
+from ..diagrams.rerouting import shortenings, simplified
 from ..messages import Message
 from ..obstacle import Obstacle
 from ..types import IntArray
-from .heights import combed
+from .drawing import combed
 from .moving import MovingCurve, Stage
 from .passing import passed
 from .spread import spread

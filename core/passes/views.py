@@ -13,10 +13,9 @@ from ..curve.pins import NOWHERE
 from ..deadline import check_time
 from ..diagrams.diagram import Diagram
 from ..diagrams.projection import rotation
-from ..diagrams.simplify import factors, is_least, simplified
+from ..diagrams.rerouting import factors, is_least, simplified
 from ..types import FloatArray
-from .drawing import Drawing
-from .heights import combed
+from .drawing import Drawing, combed
 from .moving import MovingCurve
 from .triangles import UnclearError
 

@@ -1,4 +1,4 @@
-"""What methods ask of a tangent space; `dense` and `sparse` are ways to answer."""
+"""What methods ask of a tangent space, which `dense` answers."""
 
 from abc import ABC, abstractmethod
 

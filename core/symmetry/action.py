@@ -1,18 +1,25 @@
-"""A finite group of isometries as it acts on the vertices of a mesh: those of an orbit are one unknown.
+"""Isometries that map a closed curve to about itself, and a finite group of them as it acts on a mesh's vertices.
 
-A symmetric polygon's energy, metric and lengths are symmetric, so that gradients are as well (Palais, The principle of
-symmetric criticality, 1979): what is left to do is to take rounding off, by means over the group.
+The vertices of an orbit are one unknown. A symmetric polygon's energy, metric and lengths are symmetric, so that
+gradients are as well (Palais, The principle of symmetric criticality, 1979): what is left to do is to take rounding
+off, by means over the group.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.spatial import cKDTree
+from scipy.spatial.transform import Rotation
 
 from ..curve import Curve, Mesh
+from ..curve.alignment import SAMPLES, Alignment
+from ..curve.smooth import at_shares
 from ..types import FloatArray, IntArray
 
 FIXED = 1e-3
+ROUNDS = 4
+_ARC = SAMPLES // 32  # over which tangents are taken, so that polygons of many edges are as good as round
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,3 +86,82 @@ class Symmetry:
 
 
 NO_SYMMETRY = Symmetry()
+
+
+@dataclass(frozen=True, eq=False)
+class Isometry:
+    """x ↦ centre + Q (x − centre), which takes what is at a share s of component c to ``signs[c]`` s + ``shifts[c]``.
+
+    That is a share of the length of component ``order[c]``.  ``distance`` is how far the image is from the curve, root
+    mean square, in radii of gyration.
+    """
+
+    matrix: FloatArray  # Q, orthogonal; shape (3, 3)
+    order: IntArray
+    signs: IntArray
+    shifts: FloatArray
+    distance: float = np.inf
+
+    @classmethod
+    def identity(cls, components: int) -> "Isometry":
+        ones = np.ones(components, dtype=np.intp)
+        return cls(np.eye(3), np.arange(components), ones, np.zeros(components), 0.0)
+
+    @classmethod
+    def of(cls, alignment: Alignment, sign: int) -> "Isometry":
+        """That of an alignment of a curve with itself, or (−1) with its reflection in its centre."""
+        signs = np.where(alignment.backwards, -1, 1)
+        return cls(sign * alignment.rotation, np.array(alignment.order), signs, signs * np.array(alignment.begins))
+
+    def after(self, first: "Isometry") -> "Isometry":
+        """This one after another one."""
+        signs = self.signs[first.order]
+        shifts = (signs * first.shifts + self.shifts[first.order]) % 1.0
+        return Isometry(self.matrix @ first.matrix, self.order[first.order], signs * first.signs, shifts)
+
+
+class Fit:
+    """The isometry nearest to a given one that maps a curve to about itself, by the method of Gauss and Newton."""
+
+    def __init__(self, curve: Curve, centre: FloatArray) -> None:
+        self._parts = [part - centre for part in curve.components]
+        self._shares = np.arange(SAMPLES) / SAMPLES
+        self._x = np.stack([at_shares(part, True, self._shares) for part in self._parts])
+        self._squares = float(np.square(self._x).sum())
+
+    @property
+    def coarseness(self) -> float:
+        """Half the distance of samples in radii of gyration, by which those of an alignment may miss each other."""
+        apart = np.linalg.norm(self._x - np.roll(self._x, 1, axis=1), axis=2).max()
+        return 0.5 * float(apart * np.sqrt(len(self._parts) * SAMPLES / self._squares))
+
+    def __call__(self, near: Isometry) -> Isometry:
+        matrix, shifts = near.matrix, near.shifts
+        for _ in range(ROUNDS):
+            y = self._images(near.order, near.signs, shifts)
+            x, slopes = self._x @ matrix.T, 0.5 * SAMPLES * (np.roll(y, -1, axis=1) - np.roll(y, 1, axis=1))
+            # x + a × x − y − slope δ, in the turn a and the shifts δ, which on torus knots are hard to tell apart
+            turns = np.cross(np.eye(3), x.reshape(-1, 1, 3)).transpose(0, 2, 1).reshape(-1, 3)
+            slides = np.einsum("c,cki,ce->ckie", near.signs, slopes, np.eye(len(y))).reshape(len(turns), -1)
+            found = np.linalg.lstsq(np.hstack([turns, -slides]), (y - x).ravel(), rcond=None)[0]
+            matrix, shifts = Rotation.from_rotvec(found[:3]).as_matrix() @ matrix, shifts + found[3:]
+        missing = self._x @ matrix.T - self._images(near.order, near.signs, shifts)
+        distance = float(np.sqrt(np.square(missing).sum() / self._squares))
+        return Isometry(matrix, near.order, near.signs, shifts % 1.0, distance)
+
+    def axis_of_rotation(self, tolerance: float) -> FloatArray | None:
+        """The axis about which small rotations move the curve along itself, for each radian by less than a tolerance.
+
+        That is in radii of gyration; None if there is no such axis.
+        """
+        tangents = np.roll(self._x, -_ARC, axis=1) - np.roll(self._x, _ARC, axis=1)
+        tangents /= np.linalg.norm(tangents, axis=2)[:, :, None]
+        fields = np.cross(np.eye(3), self._x[:, :, None])  # a × x for the axes a
+        fields -= np.einsum("ckai,cki->cka", fields, tangents)[..., None] * tangents[:, :, None]
+        values, vectors = np.linalg.eigh(np.einsum("ckai,ckbi->ab", fields, fields))
+        return np.asarray(vectors[:, 0]) if values[0] < tolerance**2 * self._squares else None
+
+    def _images(self, order: Sequence[int] | IntArray, signs: IntArray, shifts: FloatArray) -> FloatArray:
+        """Where the samples go along the curve; shape (components, samples, 3)."""
+        places = (signs[:, None] * self._shares + shifts[:, None]) % 1.0
+        return np.stack([at_shares(self._parts[c], True, s) for c, s in zip(order, places, strict=True)])

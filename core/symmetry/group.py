@@ -1,19 +1,30 @@
-"""Groups of isometries that map a curve to about itself, and the exactly symmetric polygons near it."""
+"""Groups of isometries that map a curve to about itself, how they are found and named, and symmetric polygons nearby.
 
-from collections.abc import Iterator, Sequence
+Names are those that Schoenflies gave to finite groups: C3, D2, S4, Td, …
+"""
+
+import re
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..curve import Curve, Mesh
+from ..arguments import check_number, checked
+from ..curve import Curve, Mesh, check_closed
+from ..curve.alignment import Freedom, alignments
 from ..curve.smooth import at_shares
+from ..errors import CurveError
 from ..types import FloatArray, IntArray
-from .action import Symmetry
-from .isometry import Isometry
-from .names import multiplication, schoenflies
+from .action import Fit, Isometry, Symmetry
 
 TURNS = 4  # of a mean that converges quadratically
 ROUNDING = 1e-9  # of an edge, which is what images of symmetric vertices are off at most
+IS_NAME = re.compile(r"C[1-9]\d*[vh]?|S[1-9]\d*|D[2-9][dh]?|D[1-9]\d+[dh]?|C[si]|T[dh]?|Oh?|Ih?")
+_POLYHEDRAL = {(12, 3): "T", (24, 4): "O", (60, 5): "I"}  # by the number of rotations and their largest order
+TOLERANCE = 0.02  # radii of gyration: relaxed and balanced polygons are some .002 off
+DISTINCT = 0.15  # norm of the difference of matrices that are not the same element
+MOST = 120  # elements: those of the icosahedron's group; more have only curves that are round
+MOST_COMPONENTS = 10  # for which all orders are looked at in a second
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,3 +128,95 @@ def _generated(elements: set[int], table: IntArray) -> frozenset[int]:
         size, own = len(elements), list(elements)
         elements = set(table[np.ix_(own, own)].ravel().tolist())
     return frozenset(elements)
+
+
+def multiplication(matrices: FloatArray) -> IntArray:
+    """The elements g·h of a group by the numbers of g and h, of approximate matrices, shape (k, 3, 3); shape (k, k)."""
+    products = np.einsum("gij,hjk->ghik", matrices, matrices)
+    return np.asarray(np.einsum("ghij,kij->ghk", products, matrices).argmax(axis=2))  # ⟨A, B⟩ is 3 where they agree
+
+
+def schoenflies(matrices: FloatArray) -> str:
+    """The name of a group of orthogonal matrices, approximate ones, the identity first; shape (k, 3, 3).
+
+    Its rotations are one of C_n, D_n, T, O and I, and how many mirror planes there are tells the rest.
+    """
+    table = multiplication(matrices)
+    proper = np.linalg.det(matrices) > 0.0
+    count, n = int(np.count_nonzero(proper)), max(order_of(table, g) for g in np.flatnonzero(proper).tolist())
+    improper = zip(np.flatnonzero(~proper).tolist(), np.trace(matrices[~proper], axis1=1, axis2=2), strict=True)
+    mirrors = sum(trace > 0.0 and order_of(table, g) == 2 for g, trace in improper)  # an inversion has -3
+    if (count, n) in _POLYHEDRAL:
+        more = "" if proper.all() else "h" if (count, mirrors) != (12, 6) else "d"
+        return _POLYHEDRAL[count, n] + more
+    if count == 2 * n:
+        return f"D{n}" + ("" if proper.all() else "h" if mirrors > n else "d")
+    if proper.all():
+        return f"C{n}"
+    if n == 1:
+        return "Cs" if mirrors else "Ci"
+    return f"C{n}v" if mirrors == n else f"C{n}h" if mirrors else f"S{2 * n}"
+
+
+def order_of(table: IntArray, element: int) -> int:
+    power, order = element, 1
+    while power:
+        power, order = int(table[power, element]), order + 1
+    return order
+
+
+@checked
+def symmetries(curve: Curve, tolerance: float = TOLERANCE) -> SymmetryGroup:
+    """Find the isometries that map a closed curve in space to itself, but for a tolerance in radii of gyration.
+
+    Directions of components are of no matter, nor is their order.  Möbius images of a symmetric curve are symmetric
+    only where they are balanced (``--balance``).  Coaxial circles have the group C∞v or D∞h, of which there are no
+    elements here but the identity.
+
+    Raises CurveError if a component is open, or the curve is in another dimension or has over 10 components.
+    """
+    check_number("tolerance", tolerance, 0.0, 1.0)
+    check_closed(curve, "symmetries")
+    components = len(curve.mesh.component_sizes)
+    if curve.dimension != 3:
+        raise CurveError(f"the curve is in dimension {curve.dimension}; symmetries are for curves in space")
+    if components > MOST_COMPONENTS:
+        raise CurveError(f"the curve has {components} components; symmetries are found with up to {MOST_COMPONENTS}")
+    centre = curve.edge_lengths @ curve.midpoints / curve.length
+    identity = Isometry.identity(components)
+    fit = Fit(curve, centre)
+    mirrored = curve.with_vertices(2.0 * centre - curve.vertices)
+    near = [
+        Isometry.of(alignment, sign)
+        for sign, other in ((1, curve), (-1, mirrored))
+        for alignment in alignments(curve, other, Freedom(fixed=centre))
+        if alignment.distance < tolerance + fit.coarseness
+    ]
+    if (axis := fit.axis_of_rotation(tolerance)) is not None:
+        flips = any(each.matrix @ axis @ axis < -1.0 + DISTINCT for each in near)
+        return SymmetryGroup("D∞h" if flips else "C∞v", centre, (identity,))
+    elements = [identity]
+    for each in sorted(map(fit, near), key=lambda each: each.distance):
+        if each.distance <= tolerance and not _has(elements, each):
+            elements = _closed([*elements, each], fit, tolerance) or elements
+    return SymmetryGroup.of(elements, centre)
+
+
+def _closed(
+    elements: Sequence[Isometry], fit: Callable[[Isometry], Isometry], tolerance: float
+) -> list[Isometry] | None:
+    """All products of elements; None if some are no symmetries within the tolerance, or there are too many."""
+    found = list(elements)
+    for k, one in enumerate(found):  # which grows
+        for other in found[: k + 1]:
+            for product in (one.after(other), other.after(one)):
+                if not _has(found, product):
+                    fitted = fit(product)
+                    if fitted.distance > tolerance or len(found) == MOST:
+                        return None
+                    found.append(fitted)
+    return found
+
+
+def _has(elements: Sequence[Isometry], one: Isometry) -> bool:
+    return any(np.linalg.norm(each.matrix - one.matrix) < DISTINCT for each in elements)

@@ -7,8 +7,7 @@ from scipy.spatial.transform import Rotation
 
 from ..curve import Curve
 from ..types import FloatArray
-from .group import SymmetryGroup
-from .names import multiplication, order_of
+from .group import SymmetryGroup, multiplication, order_of
 
 ACROSS = 0.1  # cosine of an angle that counts as a right one
 

@@ -1,6 +1,5 @@
 """Check trajectory files independently of the program that wrote them."""
 
-from .check import verify
-from .verdict import Verdict
+from .check import Verdict, verify
 
 __all__ = ["Verdict", "verify"]

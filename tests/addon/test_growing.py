@@ -8,7 +8,7 @@ from mobius_flow.addon.curves.baked_keys import BakedKeys
 from mobius_flow.addon.curves.exchange import box
 from mobius_flow.addon.curves.surroundings import Surroundings
 from mobius_flow.addon.live.requirements import avoided
-from mobius_flow.core.collision.clearance import clears
+from mobius_flow.core.collision.embedded import clears
 from shapes import regular_polygon
 
 SHORT = {"grow": 1.2, "max_iterations": 8}

@@ -14,7 +14,7 @@ from mobius_flow.addon.engine.placement import Link, Placement
 from mobius_flow.addon.sidebar.panels import VIEW3D_PT_mobius_flow_expert
 from mobius_flow.addon.sidebar.relax import VIEW3D_PT_mobius_flow
 from mobius_flow.core import METHODS, Curve, OptionError, RelaxOptions, Task, minimize
-from mobius_flow.core.option import declared, option
+from mobius_flow.core.arguments import declared, option
 from option_values import unlike_default
 from shapes import torus_trefoil
 

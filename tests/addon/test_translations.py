@@ -11,10 +11,10 @@ import bpy
 import pytest
 import shown_texts
 from mobius_flow.addon import registration, translations
-from mobius_flow.addon.curves.turned import lay_flat
+from mobius_flow.addon.curves.baked_keys import lay_flat
 from mobius_flow.addon.engine.words import named
-from mobius_flow.addon.pictures.filming import target
-from mobius_flow.addon.translations.po import ANY, read_po
+from mobius_flow.addon.pictures.movie import target
+from mobius_flow.addon.translations import ANY, read_po
 from mobius_flow.core import MobiusFlowError
 from mobius_flow.core.messages import Message
 

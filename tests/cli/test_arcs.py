@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 from curve_formats import OF_VERTICES
-from mobius_flow.cli import main, outputs
+from mobius_flow.cli import main, places
 from mobius_flow.core import read_curve, write_curve
 from shapes import half_circle
 
@@ -52,7 +52,7 @@ def test_arcs_that_double_back_are_refused_with_their_line(tmp_path, capsys):
 
 
 def test_what_is_for_closed_components(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(outputs.export, "require_blender", lambda: None)
+    monkeypatch.setattr(places.export, "require_blender", lambda: None)
     assert run("knot", "overhand", tmp_path / "a.txt", "--vertices", 50) == 0
     for output in ("o.blend", "o.mp4", "o.png"):
         assert run("relax", tmp_path / "a.txt", tmp_path / output) == 2

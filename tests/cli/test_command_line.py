@@ -7,7 +7,7 @@ import sys
 
 import numpy as np
 import pytest
-from mobius_flow.cli import main, outputs
+from mobius_flow.cli import main, places
 from mobius_flow.core import METHODS, read_curve, write_curve
 from mobius_flow.core.descent import Method
 from mobius_flow.core.knots import knot, knot_names, smooth_knot
@@ -141,8 +141,8 @@ def test_an_interrupted_film_keeps_report_and_trajectory(trefoil, tmp_path, monk
     def interrupted(*_arguments):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(outputs.export, "require_blender", lambda: None)
-    monkeypatch.setattr(outputs.export, "write_movie", interrupted)
+    monkeypatch.setattr(places.export, "require_blender", lambda: None)
+    monkeypatch.setattr(places.export, "write_movie", interrupted)
     report, trajectory = tmp_path / "r.json", tmp_path / "t.npz"
     extras = ["--report", report, "--trajectory", trajectory, "--max-iterations", "2"]
     assert run("relax", trefoil, tmp_path / "film.mp4", *extras) == 130

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from mobius_flow.cli import main
-from mobius_flow.cli.outputs import OUTPUTS
+from mobius_flow.cli.places import OUTPUTS
 from mobius_flow.core import read_curve, write_curve
 from mobius_flow.core.curve.io import FORMATS, WRITTEN_FORMATS
 from processes import finished

@@ -9,7 +9,7 @@ import pytest
 from mobius_flow.cli import main
 from mobius_flow.cli import options as relax_options
 from mobius_flow.core import OptionError, RelaxOptions, read_curve, write_curve
-from mobius_flow.core.option import declared, option
+from mobius_flow.core.arguments import declared, option
 from option_values import unlike_default
 from shapes import torus_trefoil
 

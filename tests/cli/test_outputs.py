@@ -9,7 +9,7 @@ import tempfile
 from pathlib import Path
 
 import pytest
-from mobius_flow.cli import main, outputs, places
+from mobius_flow.cli import main, places
 from mobius_flow.cli import relax as relax_command
 from mobius_flow.core import read_curve, write_curve
 from mobius_flow.core.curve.io import FORMATS
@@ -92,7 +92,7 @@ def test_what_an_output_cannot_hold_is_refused_before_the_work(
     trefoil: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     write_curve("four.json", regular_polygon(30, dimension=4))
-    monkeypatch.setattr(outputs.export, "require_blender", lambda: None)
+    monkeypatch.setattr(places.export, "require_blender", lambda: None)
     for output in ("o.txt", "o.obj", "o.vect", "o.blend", "o.mp4", "o.png"):
         assert output in refused(["relax", "four.json", output], capsys, monkeypatch)
 
@@ -248,8 +248,8 @@ def test_of_a_film_that_fails_the_curve_is_kept(
     def failing(*_arguments: object) -> None:
         raise MobiusFlowError("film.mp4: cannot be written: no")
 
-    monkeypatch.setattr(outputs.export, "require_blender", lambda: None)
-    monkeypatch.setattr(outputs.export, "write_movie", failing)
+    monkeypatch.setattr(places.export, "require_blender", lambda: None)
+    monkeypatch.setattr(places.export, "write_movie", failing)
     assert main(["relax", trefoil, "film.mp4", *SHORT]) == 2
     (curve,) = kept_as(capsys.readouterr().err)
     assert curve.endswith("film.obj")
@@ -260,8 +260,8 @@ def test_how_films_are_played_reaches_them_and_nothing_else(
     trefoil: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     played = []
-    monkeypatch.setattr(outputs.export, "require_blender", lambda: None)
-    monkeypatch.setattr(outputs.export, "write_movie", lambda *arguments: played.append(arguments[-1]))
+    monkeypatch.setattr(places.export, "require_blender", lambda: None)
+    monkeypatch.setattr(places.export, "write_movie", lambda *arguments: played.append(arguments[-1]))
     assert main(["relax", trefoil, "film.mp4", "--loop", "--quiet", *SHORT]) == 0
     assert (played[0].loop, played[0].constant_radius) == (True, False)
     for out in ("o.obj", "o.png"):
@@ -312,5 +312,5 @@ def test_formats_that_are_only_read_are_no_outputs(
 def test_looks_are_known_ones_and_of_scenes(
     trefoil: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, words: list[str], said: str
 ) -> None:
-    monkeypatch.setattr(outputs.export, "require_blender", lambda: None)
+    monkeypatch.setattr(places.export, "require_blender", lambda: None)
     assert said in refused(["relax", trefoil, *words], capsys, monkeypatch)

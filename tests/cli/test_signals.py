@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from mobius_flow.cli import compare as compare_command
-from mobius_flow.cli import main, outputs, signals
+from mobius_flow.cli import main, places, signals
 from mobius_flow.cli.progress import Progress
 from mobius_flow.core import Curve, Iterate, Result, Trajectory, read_curve, relax, write_curve
 from mobius_flow.core.deadline import termination_raises
@@ -196,8 +196,8 @@ def test_a_film_can_be_interrupted_and_the_curve_is_kept(
 
     monkeypatch.setattr(Progress, "update", interrupted)
     monkeypatch.setattr(signals, "_TOGETHER", 0.0)
-    monkeypatch.setattr(outputs.export, "require_blender", lambda: None)
-    monkeypatch.setattr(outputs.export, "write_movie", film)
+    monkeypatch.setattr(places.export, "require_blender", lambda: None)
+    monkeypatch.setattr(places.export, "write_movie", film)
     command[2] = str(tmp_path / "film.mp4")
     assert main([*command, "--max-iterations", "3"]) == 130
     assert sorted(os.listdir(tmp_path)) == ["r.json", "t.npz", "trefoil.txt"]
@@ -223,8 +223,8 @@ def test_an_interrupt_while_a_report_is_written_keeps_the_curve_of_a_film_that_i
         Path(path).write_text("a film")
 
     monkeypatch.setattr(Trajectory, "save", interrupted_save)
-    monkeypatch.setattr(outputs.export, "require_blender", lambda: None)
-    monkeypatch.setattr(outputs.export, "write_movie", film)
+    monkeypatch.setattr(places.export, "require_blender", lambda: None)
+    monkeypatch.setattr(places.export, "write_movie", film)
     command[2] = str(tmp_path / "film.mp4")
     assert main([*command, "--max-iterations", "3"]) == 130
     assert sorted(os.listdir(tmp_path)) == ["r.json", "t.npz", "trefoil.txt"]

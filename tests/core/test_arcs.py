@@ -11,7 +11,7 @@ from mobius_flow.core.driver import Trajectory
 from mobius_flow.core.driver.interventions.links import split
 from mobius_flow.core.knots import knot_type, overhand
 from mobius_flow.core.knots.composite import knotted_ball
-from mobius_flow.core.units import Units
+from mobius_flow.core.task import Units
 from mobius_flow.core.verify import verify
 from shapes import half_circle, opened, regular_polygon, straight_arc, torus_trefoil
 

@@ -8,10 +8,9 @@ import pytest
 from mobius_flow.core import Curve, Iterate, MoebiusEnergy, OptionError, RelaxOptions, Status, Trajectory, minimize
 from mobius_flow.core.constraints import Constraints
 from mobius_flow.core.curve.measures import bending
-from mobius_flow.core.curve.moebius_map import moebius_image
 from mobius_flow.core.descent import Point, Step
 from mobius_flow.core.driver.interventions import balance
-from mobius_flow.core.driver.interventions.balance import CUT_OFF, Balance, MoebiusImages
+from mobius_flow.core.driver.interventions.balance import CUT_OFF, Balance, MoebiusImages, moebius_image
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.driver.run import Run
 from mobius_flow.core.knots import knot, torus_knot

@@ -12,7 +12,7 @@ from mobius_flow.core import Curve, Iterate, Outcome, RelaxOptions, Status, Traj
 from mobius_flow.core.curve import Mesh
 from mobius_flow.core.curve.smooth import smoothed
 from mobius_flow.core.driver.interventions import CoarseStart
-from mobius_flow.core.driver.rises import Rises
+from mobius_flow.core.driver.outcome import Rises
 from mobius_flow.core.knots import knot, scramble
 from mobius_flow.core.verify import verify
 from shapes import regular_polygon, torus_trefoil

@@ -15,7 +15,7 @@ from mobius_flow.core.knots import knot, torus_knot
 from mobius_flow.core.metrics import DenseInnerProduct, MoebiusMetric
 from mobius_flow.core.saddle import TangentSpace
 from mobius_flow.core.saddle.iterative import IterativeTangentSpace, Tolerances
-from mobius_flow.core.units import centred
+from mobius_flow.core.task import centred
 from shapes import chain_of_rings, graded_trefoil, hopf_link, torus_trefoil
 
 CURVES = {

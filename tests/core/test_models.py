@@ -8,10 +8,10 @@ from mobius_flow.core.constraints import ConstraintDerivative
 from mobius_flow.core.curve import refine
 from mobius_flow.core.hierarchy.inner_product import moebius_inner_product
 from mobius_flow.core.knots import knot
-from mobius_flow.core.knots.lattice import lattice_closure
+from mobius_flow.core.knots.braids import lattice_closure
 from mobius_flow.core.metrics import MoebiusMetric
 from mobius_flow.core.saddle.krylov import conjugate_gradients, relative
-from mobius_flow.core.saddle.resolvent import Resolvents
+from mobius_flow.core.saddle.models import Resolvents
 from mobius_flow.core.saddle.symbol import Circulants, ComponentTransform, Parameter
 from scipy.linalg import circulant, eigvalsh
 from shapes import chain_of_rings, graded_trefoil, regular_polygon, torus_trefoil

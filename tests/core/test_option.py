@@ -5,10 +5,9 @@ from dataclasses import dataclass, fields
 import numpy as np
 import pytest
 from mobius_flow.core import METHODS, OptionError, RelaxOptions
-from mobius_flow.core.arguments import check_known
+from mobius_flow.core.arguments import check_known, declared, documented, option
 from mobius_flow.core.energies import ENERGIES
 from mobius_flow.core.metrics import METRICS
-from mobius_flow.core.option import declared, documented, option
 
 DECLARED = {each.name: each for each in declared(RelaxOptions)}
 

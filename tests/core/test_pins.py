@@ -14,7 +14,7 @@ from mobius_flow.core.curve.remesh import MIN_VERTICES, superfluous
 from mobius_flow.core.curve.smooth import smoothed
 from mobius_flow.core.descent.hessian import lagrangian_hessian
 from mobius_flow.core.driver.compare import compare
-from mobius_flow.core.driver.interventions.saddle import stability
+from mobius_flow.core.driver.interventions.rest import stability
 from mobius_flow.core.knots import knot, torus_knot
 from mobius_flow.core.taylor import taylor_slope
 from mobius_flow.core.types import FloatArray

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError, Iterate, OptionError, RelaxOptions, Task, Trajectory, minimize
 from mobius_flow.core.curve.measures import bending
-from mobius_flow.core.curve.moebius_map import moebius_image
 from mobius_flow.core.descent import METHODS
+from mobius_flow.core.driver.interventions.balance import moebius_image
 from mobius_flow.core.extrapolation import extrapolated
 from mobius_flow.core.knots import knot, smooth_knot, torus_knot
 from mobius_flow.core.symmetry import NO_SYMMETRY, Symmetry, symmetries

@@ -26,7 +26,7 @@ from mobius_flow.core.driver.compare import compare
 from mobius_flow.core.driver.outcome import converged
 from mobius_flow.core.knots import knot, scramble
 from mobius_flow.core.passes import Stage
-from mobius_flow.core.units import Units
+from mobius_flow.core.task import Units
 from mobius_flow.core.verify import verify
 from solids import plate
 

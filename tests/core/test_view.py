@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError, MobiusFlowError, RelaxOptions, Trajectory, minimize, relax
 from mobius_flow.core.collision.gap import thickness
-from mobius_flow.core.gltf import animation
 from mobius_flow.core.knots import knot
-from mobius_flow.core.solids import solid, wire
+from mobius_flow.core.solids import animation, solid, wire
 from mobius_flow.core.view import figure, motion, page, still
 
 

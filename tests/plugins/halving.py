@@ -7,7 +7,7 @@ import numpy as np
 from ...types import FloatArray
 from ..problem import Point
 from ..step import Leg, NoStep, Step, attempt
-from .trials import FirstTrial
+from .armijo import FirstTrial
 
 
 @dataclass(frozen=True)

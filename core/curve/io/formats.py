@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from types import MappingProxyType
 from typing import BinaryIO, TextIO
 
 from ...arguments import checked
@@ -40,31 +39,27 @@ _COLUMNS = Format(
     xyz.separated(" "),
 )
 
-FORMATS: Mapping[str, Format] = MappingProxyType(
-    {
-        ".txt": _COLUMNS,
-        ".xyz": _COLUMNS,
-        ".obj": Format("Wavefront OBJ, vertices (v) and polylines (l)", obj.read, obj.write),
-        ".vect": Format("Geomview VECT, polylines", vect.read, vect.write),
-        ".json": Format(
-            '{"components": [[[x, y, z], ...], ...], "closed": [true, ...]}, "closed" only if some are open',
-            json_lists.read,
-            json_lists.write,
-        ),
-        ".csv": Format(
-            "x, y, z between commas, with or without a first line of names", xyz.read, xyz.separated(",", True)
-        ),
-        ".tsv": Format("x y z between tabs, or Knoodle's crossings", codes.read_tsv, xyz.separated("\t")),
-        ".raw": _COLUMNS,
-        ".kp": _COLUMNS,
-        ".kndlxyz": _COLUMNS,
-        ".pdb": Format("Protein Data Bank, the alpha carbons of each chain as an open arc (read only)", pdb.read, None),
-        ".cif": Format("PDBx/mmCIF, likewise (read only)", pdb.read_cif, None),
-        ".pd": Format("planar diagram code of a knot or link, PD[X[1,5,2,4], ...]", codes.read_pd, codes.write_pd),
-        ".dt": Format("Dowker-Thistlethwaite code, DT: [4 6 2] or DT: cacbca (read only)", codes.read_dt, None),
-        ".gauss": Format("Gauss code, 1 -2 3 ... or with signs O1+U2+O3+...", codes.read_gauss, codes.write_gauss),
-    }
-)
+FORMATS: Mapping[str, Format] = {
+    ".txt": _COLUMNS,
+    ".xyz": _COLUMNS,
+    ".obj": Format("Wavefront OBJ, vertices (v) and polylines (l)", obj.read, obj.write),
+    ".vect": Format("Geomview VECT, polylines", vect.read, vect.write),
+    ".json": Format(
+        '{"components": [[[x, y, z], ...], ...], "closed": [true, ...]}, "closed" only if some are open',
+        json_lists.read,
+        json_lists.write,
+    ),
+    ".csv": Format("x, y, z between commas, with or without a first line of names", xyz.read, xyz.separated(",", True)),
+    ".tsv": Format("x y z between tabs, or Knoodle's crossings", codes.read_tsv, xyz.separated("\t")),
+    ".raw": _COLUMNS,
+    ".kp": _COLUMNS,
+    ".kndlxyz": _COLUMNS,
+    ".pdb": Format("Protein Data Bank, the alpha carbons of each chain as an open arc (read only)", pdb.read, None),
+    ".cif": Format("PDBx/mmCIF, likewise (read only)", pdb.read_cif, None),
+    ".pd": Format("planar diagram code of a knot or link, PD[X[1,5,2,4], ...]", codes.read_pd, codes.write_pd),
+    ".dt": Format("Dowker-Thistlethwaite code, DT: [4 6 2] or DT: cacbca (read only)", codes.read_dt, None),
+    ".gauss": Format("Gauss code, 1 -2 3 ... or with signs O1+U2+O3+...", codes.read_gauss, codes.write_gauss),
+}
 WRITTEN_FORMATS = [suffix for suffix, form in FORMATS.items() if form.write is not None]
 """Those that are not only read."""
 

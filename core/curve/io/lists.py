@@ -5,7 +5,6 @@ import os
 import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from types import MappingProxyType
 
 from ...arguments import checked
 from ...diagrams import Diagram
@@ -15,13 +14,11 @@ from .codes import knoodle_diagrams
 from .source import Source
 
 _NAMES = ("name", "knot", "link", "id", "knot_name", "link_name")
-CODES: Mapping[str, str] = MappingProxyType(
-    {
-        "pd_notation": "PD: ", "pd_notation_math": "", "pd_notation_vector": "PD: ", "pd_code": "PD: ", "pd": "PD: ",
-        "dt_notation": "DT: ", "dt_code": "DT: ", "dt": "DT: ", "gauss_notation": "Gauss: ", "gauss_code": "Gauss: ",
-        "gauss": "Gauss: ", "braid_notation": "braid", "braid_word": "braid", "braid": "braid",
-    }
-)  # fmt: skip
+CODES: Mapping[str, str] = {
+    "pd_notation": "PD: ", "pd_notation_math": "", "pd_notation_vector": "PD: ", "pd_code": "PD: ", "pd": "PD: ",
+    "dt_notation": "DT: ", "dt_code": "DT: ", "dt": "DT: ", "gauss_notation": "Gauss: ", "gauss_code": "Gauss: ",
+    "gauss": "Gauss: ", "braid_notation": "braid", "braid_word": "braid", "braid": "braid",
+}  # fmt: skip
 """Columns that are read, the first one that a list has, and what must stand before their codes."""
 _BRAID = re.compile(r"[\[({]\s*(?:(\d+)\s*,\s*[\[({])?([^\[\](){}]*)[\])}\s]*")
 _CODE = re.compile(r"[^\[({]*[\[({].*\d.*|[\d\s,;+-]+|[a-zA-Z]{4,}(\.[01]+)?", re.DOTALL)  # no title of a column

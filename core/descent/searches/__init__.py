@@ -1,19 +1,6 @@
 """Searches for a step: frozen values whose constants are their fields."""
 
-from .armijo import Armijo, LineSearch
+from .armijo import Armijo, FirstTrial, LineSearch, TowardsTargets
 from .backward_euler import BackwardEuler
-from .trials import FirstTrial, TowardsTargets
 from .trust_region import Escape, TrustRegion
 from .wolfe import Accelerated, WeakWolfe
-
-__all__ = [
-    "Accelerated",
-    "Armijo",
-    "BackwardEuler",
-    "Escape",
-    "FirstTrial",
-    "LineSearch",
-    "TowardsTargets",
-    "TrustRegion",
-    "WeakWolfe",
-]

@@ -21,8 +21,7 @@ from ...types import FloatArray
 from ..hessian import LinearMap, lagrangian_hessian, newton_direction
 from ..problem import Point
 from ..step import Leg, NoStep, Rejected, State, Step, attempt
-from .armijo import Armijo
-from .trials import NOTHING, FirstTrial, on_target
+from .armijo import NOTHING, Armijo, FirstTrial, on_target
 
 ROUNDING = 1e-13  # of the energy: reductions below it cannot be measured, and there the model is believed
 

@@ -13,8 +13,7 @@ from ...metrics import Metric
 from ...types import FloatArray
 from ..problem import Point
 from ..step import Leg, NoStep, Rejected, State, Step, attempt
-from .armijo import ROUNDING, Armijo
-from .trials import NOTHING, FirstTrial, on_target
+from .armijo import NOTHING, ROUNDING, Armijo, FirstTrial, on_target
 
 
 @checked_fields

@@ -9,8 +9,7 @@ from .fallback import CheckAccuracy, Fallback
 from .grow import Grow
 from .links import Composite, SplitLinks
 from .remesh import FinerMesh, Remesh
-from .rest import Rest
-from .saddle import EscapeSaddle
+from .rest import EscapeSaddle, Rest
 
 INTERVENTIONS: Sequence[Callable[[Run], Intervention]] = (
     Grow,

@@ -1,4 +1,16 @@
-"""Among the Möbius images of a curve, which have the same energy, the one that bends least, and a proved way there."""
+"""Among the Möbius images of a curve, which have the same energy, the one that bends least, and a proved way there.
+
+Möbius maps of R^m up to similarities are the points that they send to infinity, as rotations of the sphere above it.
+
+Stereographic projection to the sphere S^m, a rotation in the plane of the north pole and a direction v/|v|, and
+projection back.  With the cosine c and the sine |v| of half the angle this is
+
+    y = ((c² + |v|²) x + (c (|x|² − 1) − 2 ⟨v, x⟩) v) / D,    D = c² + 2 c ⟨v, x⟩ + |v|² |x|²,
+
+a map for each q = (c, v) ≠ 0, the same for all multiples of q.  The pole −c v/|v|² is where D = 0; at (1, 0) it is the
+point at infinity, and the map the identity.  Every Möbius map that keeps the orientation is one of these and then a
+similarity.
+"""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
@@ -11,7 +23,6 @@ from ...arguments import checked_fields, number
 from ...constraints import weighted_barycenter
 from ...curve import Curve
 from ...curve.measures import bending, bending_and_derivative
-from ...curve.moebius_map import moebius_image, moebius_pullback
 from ...curve.smooth import arc_lengths, cubic_spline, sample_parameters
 from ...descent import Leg, Point, Problem, Step
 from ...types import FloatArray
@@ -21,6 +32,7 @@ from ..run import Change, Intervention
 BALANCED = "balanced: bending reduced from {before:.4g} to {after:.4g} (4π² for a round circle)"
 CUT_OFF = "the Möbius image of least bending has not converged yet"
 IS_BALANCED = "no Möbius image within reach bends less"
+NEAREST = 1e-24  # the least D: what lies on the pole goes far away, not to infinity
 
 
 class MoebiusImages:
@@ -178,3 +190,28 @@ def _problem_of(problem: Problem, image: Curve) -> Problem:
         lengths[part] *= image.edge_lengths[part].sum() / lengths[part].sum()
     blocks = tuple(block.on(image) for block in problem.constraints.blocks)
     return replace(problem, constraints=replace(problem.constraints, lengths=lengths, blocks=blocks))
+
+
+def moebius_image(points: FloatArray, q: FloatArray) -> FloatArray:
+    """Images of points, shape (n, m), under the map of ``q``, shape (m + 1,)."""
+    c, v = float(q[0]), q[1:]
+    along, square = points @ v, np.einsum("ij,ij->i", points, points)
+    numerator = (q @ q) * points + np.multiply.outer(c * (square - 1.0) - 2.0 * along, v)
+    return np.asarray(numerator / _denominator(q, along, square)[:, None])
+
+
+def moebius_pullback(points: FloatArray, q: FloatArray, covector: FloatArray) -> FloatArray:
+    """From a function's derivative by the images of points, shape (n, m), to that by ``q``, shape (m + 1,)."""
+    c, v = float(q[0]), q[1:]
+    along, square = points @ v, np.einsum("ij,ij->i", points, points)
+    g = covector / _denominator(q, along, square)[:, None]
+    shrink = -np.einsum("ij,ij->i", g, moebius_image(points, q))  # the weight of dD
+    on_points, on_v = float(np.sum(points * g)), g @ v
+    by_c = 2.0 * c * on_points + on_v @ (square - 1.0) + 2.0 * shrink @ (c + along)
+    by_v = 2.0 * (on_points + shrink @ square) * v + 2.0 * (c * shrink - on_v) @ points
+    return np.concatenate([[by_c], by_v + (c * (square - 1.0) - 2.0 * along) @ g])
+
+
+def _denominator(q: FloatArray, along: FloatArray, square: FloatArray) -> FloatArray:
+    c, v = q[0], q[1:]
+    return np.asarray(np.maximum(c**2 + 2.0 * c * along + (v @ v) * square, NEAREST))

@@ -12,11 +12,11 @@ from ...curve.pins import spans
 from ...curve.refine import affordable_pieces
 from ...curve.remesh import SPLIT, graded_spacing
 from ...descent import Leg, NoStep, Point, Step
-from ...descent.searches.trials import on_target
+from ...descent.searches.armijo import on_target
 from ...descent.step import attempt
 from ...energies.components import energy_scale
+from ...task import Units
 from ...types import IntArray
-from ...units import Units
 from ..outcome import Outcome
 from ..run import Change, Event, Intervention, Run
 from .remesh import FinerMesh, split_edges
@@ -91,7 +91,10 @@ class Grow(Intervention):
         """The shortest motion in the metric to what can be had of the change that is left; None if it is nothing."""
         point, problem = self.run.point, self.run.problem
         space, change = point.tangent_space, float(np.clip(left, -self._longest, self._longest))
-        least = self._slowest(left)
+        # the least change worth an iteration: of an arc that is all but straight, half of its slack
+        spanned = spans(self.run.point.curve, self.run.problem.constraints.pins.vertices)
+        slack = (0.5 * float(np.log(span.length / span.distance)) for span in spanned if not span.taut)
+        least = min(self.slowest, abs(left), *slack)
         while abs(change) >= least:
             constraints = problem.constraints.scaled(np.exp(change), problem.mesh)
             base = point.changing(constraints=constraints)
@@ -103,12 +106,6 @@ class Grow(Intervention):
             change *= 0.5
         self._enough *= self.later
         return None
-
-    def _slowest(self, left: float) -> float:
-        """The least change worth an iteration: of an arc that is all but straight, half of its slack."""
-        spanned = spans(self.run.point.curve, self.run.problem.constraints.pins.vertices)
-        slack = (0.5 * float(np.log(span.length / span.distance)) for span in spanned if not span.taut)
-        return min(self.slowest, abs(left), *slack)
 
     def _is_cheap(self, end: Point) -> bool:
         return end.energy - self.run.point.energy <= self.rise * self._energy_scale

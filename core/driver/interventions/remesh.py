@@ -12,7 +12,7 @@ from ...curve.refine import Resolution, affordable_pieces, subdivide
 from ...curve.remesh import Remeshed, graded_spacing, needs_remesh, remesh, superfluous
 from ...curve.smooth import halved
 from ...descent import Leg, NoStep, Point, Problem, Step
-from ...descent.soft_modes import BULK
+from ...descent.hessian import BULK
 from ...energies import is_moebius_invariant
 from ...energies.components import energy_scale
 from ...errors import MobiusFlowError

@@ -1,13 +1,20 @@
-"""The end of a relaxation: by second derivatives to the last digits, with the index of the critical point."""
+"""The end of a relaxation: by second derivatives to the last digits, with the index of the critical point.
+
+A saddle is left on a way down, where that is wanted.
+"""
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
 from ...arguments import checked_fields, number
+from ...curve import Curve
 from ...descent import METHODS, Point, Step
+from ...descent.hessian import SoftModes, smooth_starts, soft_modes
 from ...descent.newton import Curvature, Newton
-from ...descent.searches.trials import on_target
+from ...descent.searches import Escape
+from ...descent.searches.armijo import on_target
 from ...energies.components import energy_scale
 from ...messages import Message
 from ...metrics import MoebiusMetric
@@ -16,12 +23,14 @@ from ...symmetry import NO_SYMMETRY
 from ..outcome import Outcome
 from ..run import Change, Intervention
 from .links import is_unresolved
-from .saddle import stability, unresolved
 
 MINIMUM = "a minimum"
 SADDLE = "a saddle of index {index}"
 AMONG = "{kind} among curves of symmetry {group}, {whole} among all"
 ILL_CONDITIONED = "the Hessian is too ill-conditioned to tell a minimum from a saddle"
+ZERO = 1e-5  # eigenvalues against J_C below this count as 0: rotations and sliding are flat directions
+MOEBIUS = 20.0  # and so do Möbius maps on a mesh: in units of (h/L)², h the longest edge, they have 11 at most at knots
+RESOLVED = 1e-5  # residual at which Ritz values count as eigenvalues: their errors are of the order of its square
 
 
 @checked_fields
@@ -112,3 +121,57 @@ class Rest(Intervention):
 def _kind(index: int | None) -> Message:
     """What critical points of an index are, if it is known."""
     return Message(ILL_CONDITIONED) if index is None else Message(SADDLE, index=index) if index else Message(MINIMUM)
+
+
+@dataclass(frozen=True, eq=False)
+class Stability:
+    """Second-order information at a critical point: D²E − Σ λ_I D²Φ_I on ker DΦ against J_C."""
+
+    point: Point  # in the metric J_C
+
+    @cached_property
+    def zero(self) -> float:
+        """Size up to which the mesh cannot distinguish an eigenvalue from 0."""
+        return unresolved(self.point.curve)
+
+    @cached_property
+    def modes(self) -> SoftModes:
+        """The lowest eigenvalues and eigenvectors, by some hundred products."""
+        return soft_modes(self.point, smooth_starts(self.point, np.random.default_rng(1)), RESOLVED)
+
+    @cached_property
+    def index(self) -> int | None:
+        """Number of negative eigenvalues: 0 at a minimum, more at a saddle; None if they could not be computed."""
+        if Curvature.is_known(self.point):
+            return Curvature(self.point).shifted(self.zero).negative
+        negative = int(np.count_nonzero(self.modes.values < -self.zero))
+        return negative if (self.modes.residuals[: negative + 1] <= RESOLVED).all() else None
+
+
+def stability(point: Point) -> Stability:
+    """That of a point, in the metric J_C whatever metric its problem has: eigenvalues are counted against it."""
+    if point.problem.metric.name != MoebiusMetric.name:
+        point = point.changing(metric=point.problem.solver.of_metric(MoebiusMetric()))
+    return Stability(point)
+
+
+def unresolved(curve: Curve) -> float:
+    """Size of eigenvalues of Möbius maps, which change nothing of the energy but what the mesh makes of it."""
+    ell = curve.edge_lengths
+    return max(ZERO, MOEBIUS * max(float(ell[s].max() / ell[s].sum()) ** 2 for s in curve.mesh.edge_slices))
+
+
+@dataclass(eq=False)
+class EscapeSaddle(Intervention):
+    """Step off a saddle along its most negative direction."""
+
+    search: Escape = field(default_factory=Escape)
+
+    def converged(self, outcome: Outcome) -> Outcome | Change | None:
+        if not self.run.options.escape_saddles:
+            return None
+        found = stability(self.run.point)
+        if not found.index:
+            return None
+        step = self.search.step(self.run.point, found.modes.vectors[0], float(found.modes.values[0]))
+        return Change((step,)) if isinstance(step, Step) else outcome.adding("no step down from it was found")

@@ -1,5 +1,3 @@
 """The repulsive potential between a curve and still obstacles."""
 
 from .repulsion import Repulsion
-
-__all__ = ["Repulsion"]

@@ -18,7 +18,7 @@ from ...curve import Curve
 from ...obstacle import Obstacle
 from ...quadrature import gauss_legendre
 from ...types import FloatArray
-from ..complex_steps import change, stepped
+from ..edge_pairs import change, stepped
 from .schedule import Schedule
 from .simplices import Clusters, Simplices, norm
 

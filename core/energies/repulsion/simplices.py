@@ -18,7 +18,7 @@ from numpy.polynomial.polynomial import polyval
 
 from ...clusters import ClusterTree, ranges
 from ...types import BoolArray, FloatArray, IntArray, frozen
-from ..complex_steps import arctan2
+from ..edge_pairs import arctan2
 from ..inverse_square import CONTACT
 
 Form = tuple[FloatArray, FloatArray, FloatArray, FloatArray]

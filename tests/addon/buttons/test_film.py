@@ -9,8 +9,7 @@ from blender_scenes import add_trefoil, contents, sentence
 from mobius_flow.addon.buttons import film as buttons
 from mobius_flow.addon.buttons.film import CURVE_OT_mobius_flow_render_film, CURVE_OT_mobius_flow_set_up_stage
 from mobius_flow.addon.pictures import staging
-from mobius_flow.addon.pictures.filming import Filming
-from mobius_flow.addon.pictures.movie import length_of
+from mobius_flow.addon.pictures.movie import Filming, length_of
 
 OPS = bpy.ops.curve
 

@@ -13,11 +13,10 @@ from blender_scenes import (
     relax,
     stored,
 )
-from mobius_flow.addon.curves import bevel, sampling
+from mobius_flow.addon.curves import bevel, splines
 from mobius_flow.addon.curves.keyframes import end_of
 from mobius_flow.addon.curves.surroundings import near
-from mobius_flow.addon.engine.colours import PALETTE, ramp
-from mobius_flow.addon.engine.vertex_values import strand_distances
+from mobius_flow.addon.engine.colours import PALETTE, ramp, strand_distances
 from mobius_flow.core import Curve
 from mobius_flow.core.energies.moebius import moebius_by_length
 from shapes import hopf_link, torus_trefoil
@@ -213,7 +212,7 @@ def test_smooth_splines_are_where_it_is_said(kind, place, capfd):
     (spline,) = made.data.splines
     assert (spline.type, spline.use_cyclic_u) == (kind, True)
     assert len(spline.bezier_points if kind == "BEZIER" else spline.points) == 20
-    drawn = in_world(made, np.concatenate(sampling.sampled(made)))
+    drawn = in_world(made, np.concatenate(splines.sampled(made)))
     polygon = in_world(curve, end_of(curve.data))
     distance = np.linalg.norm(drawn[:, None] - polygon, axis=-1).min(axis=1).max()
     assert distance < 0.12 * curve.scale.x
@@ -224,7 +223,7 @@ def test_both_kinds_are_the_same_curve():
     drawn = []
     for kind in ("BEZIER", "NURBS"):
         made = smooth(kind=kind, hide_curve=False)
-        (points,) = sampling.sampled(made)
+        (points,) = splines.sampled(made)
         drawn.append(points)
         made.select_set(False)
         curve.select_set(True)

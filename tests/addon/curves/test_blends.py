@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from blender_scenes import add_curve
 from mobius_flow import Relaxation
-from mobius_flow.addon.curves.fcurves import fcurves_of
-from mobius_flow.addon.curves.nodes import copied
+from mobius_flow.addon.curves.blends import copied
+from mobius_flow.addon.curves.keyframes import fcurves_of
 
 SHORT = {"vertices": 12, "length": 31, "untangle": "never"}
 RECTANGLE = np.array([(0.0, 0, 0), (3, 0, 0), (3, 1, 0), (0, 1, 0)])

@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_curve, contents, relax, stored, values
-from mobius_flow.addon.curves import sampling
+from mobius_flow.addon.curves import splines
 from shapes import hopf_link
 
 SAMPLED = {"sample_splines": True, "max_iterations": 0, "keyframes": "RESULT"}
@@ -27,7 +27,7 @@ def smooth_link(kind, resolution):
 @pytest.mark.parametrize("kind", ["BEZIER", "NURBS"])
 def test_the_polygon_is_the_one_drawn(kind, resolution):
     obj = smooth_link(kind, resolution)
-    drawn = sampling.sampled(obj)
+    drawn = splines.sampled(obj)
     assert [len(loop) for loop in drawn] == 2 * [6 * resolution]
     relax(**SAMPLED, vertices=12 * resolution if resolution > 2 else 0)
     points = stored(obj.data)
@@ -83,12 +83,12 @@ def test_a_segment_is_no_polygon():
 
 def test_the_questions_count_points():
     question = "'Knot' has 2 Bézier splines; they become polygons of 60 points in all"
-    assert sampling.questions([smooth_link("BEZIER", 5)]) == [question]
+    assert splines.questions([smooth_link("BEZIER", 5)]) == [question]
 
 
 def test_of_many_objects_some_are_asked_about():
     objects = [smooth_link("NURBS", 3) for _ in range(8)] + [add_curve([hopf_link(6).vertices[:6]])]
-    assert len(sampling.questions(objects[5:])) == 3
-    lines = sampling.questions(objects)
+    assert len(splines.questions(objects[5:])) == 3
+    lines = splines.questions(objects)
     assert [line.split("'")[1] for line in lines[:-1]] == [obj.name for obj in objects[:5]]
     assert lines[-1] == "3 more objects have smooth splines too"

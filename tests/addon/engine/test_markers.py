@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from mobius_flow.addon.engine.markers import Markers
+from mobius_flow.addon.engine.interpolation import Markers
 from mobius_flow.addon.engine.motion import Motion
 from mobius_flow.addon.engine.placement import Link, Placement
 from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, relax

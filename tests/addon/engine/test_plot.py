@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from mobius_flow.addon.engine.plot import dashes, plot
-from mobius_flow.addon.engine.rest import Target
+from mobius_flow.addon.engine.rest import Target, dashes, plot
 
 WIDTH, HEIGHT = 280.0, 120.0
 CIRCLE = Target(4.0, "circle = 4")

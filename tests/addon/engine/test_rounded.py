@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 from mobius_flow.addon.engine.motion import Key, Keys
-from mobius_flow.addon.engine.rounded import rounded, tube_radii
-from mobius_flow.addon.engine.tube import thickest_radius
+from mobius_flow.addon.engine.tube import rounded, thickest_radius, tube_radii
 from mobius_flow.core import Curve
 from mobius_flow.core.collision import is_free
 from mobius_flow.core.curve import Mesh

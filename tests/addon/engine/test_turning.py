@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from mobius_flow.addon.engine.placement import DrawingPlane, Turn, orthonormal, principal_axes
 from mobius_flow.addon.engine.size import barycenter
-from mobius_flow.addon.engine.turning import DrawingPlane, Turn, orthonormal, principal_axes
 from mobius_flow.core import Curve, CurveError
 from shapes import regular_polygon, torus_trefoil
 

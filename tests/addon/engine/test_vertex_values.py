@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from mobius_flow.addon.engine import vertex_values
-from mobius_flow.addon.engine.vertex_values import strand_distances
+from mobius_flow.addon.engine import colours
+from mobius_flow.addon.engine.colours import strand_distances
 from mobius_flow.core import Curve
 from shapes import hopf_link, regular_polygon, torus_trefoil
 
@@ -41,7 +41,7 @@ def test_a_circle_has_no_other_strand():
 def test_blocks_do_not_matter(monkeypatch, block):
     curve = hopf_link(40)
     whole = strand_distances(curve)
-    monkeypatch.setattr(vertex_values, "_BLOCK", block)
+    monkeypatch.setattr(colours, "_BLOCK", block)
     np.testing.assert_array_equal(strand_distances(curve), whole)
 
 

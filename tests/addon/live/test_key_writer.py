@@ -4,8 +4,8 @@ import threading
 from types import SimpleNamespace
 
 import pytest
-from mobius_flow.addon.live import key_writer
-from mobius_flow.addon.live.key_writer import KeyWriter
+from mobius_flow.addon.live import viewing
+from mobius_flow.addon.live.viewing import KeyWriter
 from mobius_flow.core import MobiusFlowError
 from processes import PATIENCE
 
@@ -19,7 +19,7 @@ def started(session, proof):
 
 
 def test_keys_are_written_a_piece_at_a_time(monkeypatch):
-    monkeypatch.setattr(key_writer, "_SLICE", 0.0)
+    monkeypatch.setattr(viewing, "_SLICE", 0.0)
     written = []
     session = SimpleNamespace(
         prepare=lambda proof: proof("mesh", "start", "end"),

@@ -43,7 +43,7 @@ def test_the_timeline_shows_any_iterate_while_the_run_goes_on(operator, monkeypa
     operator.given |= {"timing": "ITERATE", "vertices": 0}
     operator.start()
     operator.reach(3)
-    start = operator.run._session.start.vertices.astype(np.float32)
+    start = operator.run._session.motion.start.vertices.astype(np.float32)
 
     monkeypatch.setattr(run, "looks_back", lambda: True)
     scene = bpy.context.scene

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from blender_scenes import add_curve, add_hopf_link, add_trefoil, stored
 from mobius_flow.addon.curves.splines import Splines
-from mobius_flow.addon.live import key_writer
+from mobius_flow.addon.live import viewing
 from mobius_flow.addon.live.modal import Listening
 from mobius_flow.addon.live.run import State
 from mobius_flow.addon.properties import SETTINGS
@@ -302,7 +302,7 @@ def test_without_a_process_a_thread(operator):
 
 
 def test_esc_while_keys_are_written(operator, monkeypatch):
-    monkeypatch.setattr(key_writer, "_SLICE", 0.0)  # a key at a tick
+    monkeypatch.setattr(viewing, "_SLICE", 0.0)  # a key at a tick
     obj = add_trefoil()
     before = Splines.of(obj.data)
     actions = len(bpy.data.actions)

@@ -7,7 +7,7 @@ from blender_scenes import add_curve, add_trefoil, stored
 from mobius_flow.addon.curves import keyframes
 from mobius_flow.addon.curves.splines import Splines
 from mobius_flow.addon.engine import worker
-from mobius_flow.addon.live import key_writer
+from mobius_flow.addon.live import viewing
 from mobius_flow.addon.live.run import State
 from modal_operator import keys, restored
 from shapes import hopf_link
@@ -141,7 +141,7 @@ def test_a_file_saved_meanwhile_has_all_objects_as_they_were(operator, rings, tm
 
 
 def test_esc_while_keys_of_the_second_object_are_written(operator, rings, monkeypatch):
-    monkeypatch.setattr(key_writer, "_SLICE", 0.0)  # a key at a tick
+    monkeypatch.setattr(viewing, "_SLICE", 0.0)  # a key at a tick
     before = [Splines.of(obj.data) for obj in rings]
     operator.start()
     operator.until(lambda: rings[1].data.shape_keys is not None)

@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_curve, add_hopf_link, add_trefoil, contents, linked, relax, sentence, show
-from mobius_flow.addon.curves import sampling
+from mobius_flow.addon.curves import splines
 from shapes import torus_trefoil
 
 
@@ -180,8 +180,8 @@ def test_a_stray_smooth_spline_changes_nothing(kind, count):
 
 def test_splines_that_are_not_drawn_are_refused(monkeypatch):
     add_curve([torus_trefoil(9).vertices, torus_trefoil(9).vertices + 9], kind="NURBS")
-    drawn = sampling._drawn
-    monkeypatch.setattr(sampling, "_drawn", lambda data: drawn(data)[1:])
+    drawn = splines._drawn
+    monkeypatch.setattr(splines, "_drawn", lambda data: drawn(data)[1:])
     assert "draws nothing for" in refused(sample_splines=True)
 
 

@@ -6,7 +6,7 @@ import pytest
 from baked_curves import two_rings
 from blender_scenes import add_trefoil, evaluated, relax, stored
 from mobius_flow.addon.curves import bake, keyframes
-from mobius_flow.addon.live import key_writer
+from mobius_flow.addon.live import viewing
 from mobius_flow.addon.live.run import State
 from modal_operator import keys
 
@@ -14,7 +14,7 @@ from modal_operator import keys
 @pytest.fixture(autouse=True)
 def slowly(monkeypatch):
     """Let a key be written at a tick."""
-    monkeypatch.setattr(key_writer, "_SLICE", 0.0)
+    monkeypatch.setattr(viewing, "_SLICE", 0.0)
 
 
 def save(path):

@@ -2,10 +2,9 @@
 
 import bpy
 import pytest
-from mobius_flow.addon.pictures import filming, movie, rendering
-from mobius_flow.addon.pictures.filming import CHOICES, Filming
+from mobius_flow.addon.pictures import movie, rendering
 from mobius_flow.addon.pictures.looks import LOOKS
-from mobius_flow.addon.pictures.movie import length_of
+from mobius_flow.addon.pictures.movie import CHOICES, Filming, length_of
 from mobius_flow.core import MobiusFlowError
 
 
@@ -123,7 +122,7 @@ def test_beside_a_file_that_was_never_saved(scene):
 
 def test_beside_the_file(scene, tmp_path):
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "a.blend"))
-    assert filming.target("//film") == tmp_path / "film.mp4"
+    assert movie.target("//film") == tmp_path / "film.mp4"
 
 
 def test_an_unknown_look(scene, tmp_path):

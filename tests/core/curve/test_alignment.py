@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, Mesh
 from mobius_flow.core.curve.alignment import Alignment, Freedom, alignments
-from mobius_flow.core.curve.joint import refined_alike
-from mobius_flow.core.curve.refine import subdivide
+from mobius_flow.core.curve.refine import refined_alike, subdivide
 from mobius_flow.core.knots import knot, smooth_knot
 from scipy.spatial.transform import Rotation
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, MoebiusEnergy
 from mobius_flow.core.curve.measures import bending, bending_and_derivative
-from mobius_flow.core.curve.moebius_map import moebius_image, moebius_pullback
+from mobius_flow.core.driver.interventions.balance import moebius_image, moebius_pullback
 from mobius_flow.core.taylor import taylor_slope
 from shapes import hopf_link, regular_polygon, torus_trefoil
 from smooth_curves import SMOOTH_CURVES, random_polygon

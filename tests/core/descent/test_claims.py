@@ -7,7 +7,7 @@ from descent_contracts import with_geometry
 from mobius_flow.core import METHODS, Curve, OptionError, RelaxOptions, Status, minimize, relax
 from mobius_flow.core.descent.geometries import Constrained
 from mobius_flow.core.descent.hessian import lagrangian_hessian
-from mobius_flow.core.driver.interventions.saddle import stability
+from mobius_flow.core.driver.interventions.rest import stability
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.energies import ENERGIES, MoebiusEnergy
 from mobius_flow.core.taylor import taylor_slope

@@ -10,7 +10,7 @@ from mobius_flow.core import RelaxOptions, Status, Task, minimize
 from mobius_flow.core.descent.hessian import lagrangian_matrix
 from mobius_flow.core.descent.newton import Curvature, Newton
 from mobius_flow.core.descent.searches import Armijo
-from mobius_flow.core.descent.searches.trials import FirstTrial
+from mobius_flow.core.descent.searches.armijo import FirstTrial
 from mobius_flow.core.driver.interventions.rest import Rest
 from mobius_flow.core.knots import torus_knot
 from mobius_flow.core.saddle.indefinite import FactorisedHessian

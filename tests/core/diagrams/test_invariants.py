@@ -7,8 +7,8 @@ import pytest
 from hard_curves import hard_unknot, spiral
 from mobius_flow.core import Curve, CurveError
 from mobius_flow.core.diagrams import quick_invariants
-from mobius_flow.core.diagrams.alexander import _matrices, alexander_values
 from mobius_flow.core.diagrams.invariants import FIELD
+from mobius_flow.core.diagrams.polynomials import _matrices, alexander_values
 from mobius_flow.core.knots import knot, scramble, torus_knot
 from mobius_flow.core.knots.braids import braid_diagram
 from shapes import hopf_link, regular_polygon

@@ -10,8 +10,7 @@ from mobius_flow.core import CurveError
 from mobius_flow.core.diagrams import Diagram, factors, is_least, jones, shuffled_down, simplified, views
 from mobius_flow.core.diagrams.codes import diagram_from_code
 from mobius_flow.core.diagrams.diagram import ENDS, PIN
-from mobius_flow.core.diagrams.rerouting import shortened, shuffled
-from mobius_flow.core.diagrams.simplify import reduced, without_nugatory
+from mobius_flow.core.diagrams.rerouting import reduced, shortened, shuffled, without_nugatory
 from mobius_flow.core.knots import braid_word, knot, scramble
 from mobius_flow.core.knots.braids import braid_diagram
 

@@ -16,7 +16,7 @@ from mobius_flow.core.diagrams import (
     simplified,
     views,
 )
-from mobius_flow.core.diagrams.alexander import MAX_CROSSINGS
+from mobius_flow.core.diagrams.polynomials import MAX_CROSSINGS
 from mobius_flow.core.knots import KNOTS, braid_word, knot
 from mobius_flow.core.knots.braids import braid_diagram
 from spherogram import Link

@@ -7,8 +7,7 @@ from hypothesis import strategies as st
 from mobius_flow.core import Curve, MoebiusEnergy, Objective
 from mobius_flow.core.energies import Barrier
 from mobius_flow.core.energies.barrier import closeness, cutoff, exact, midpoint, near_pairs
-from mobius_flow.core.energies.complex_steps import change, stepped
-from mobius_flow.core.energies.edge_pairs import EdgePairs
+from mobius_flow.core.energies.edge_pairs import EdgePairs, change, stepped
 from mobius_flow.core.knots import knot
 from mobius_flow.core.taylor import taylor_slope
 from shapes import lattice_knot, regular_polygon

@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 from energy_references import inverse_square_integral
 from families import crossed
-from mobius_flow.core.energies.complex_steps import change, stepped
-from mobius_flow.core.energies.edge_pairs import EdgePairs
+from mobius_flow.core.energies.edge_pairs import EdgePairs, change, stepped
 from mobius_flow.core.energies.inverse_square import inverse_square, moments
 
 Points = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]

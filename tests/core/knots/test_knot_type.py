@@ -17,9 +17,9 @@ from mobius_flow.core.knots import (
     scramble,
     smooth_knot,
 )
+from mobius_flow.core.knots.braids import lattice_closure
 from mobius_flow.core.knots.catalogue import crossing_number
 from mobius_flow.core.knots.knot_type import ALEXANDER, DOUBLED, JONES, Effort, type_of_diagram
-from mobius_flow.core.knots.lattice import lattice_closure
 from mobius_flow.core.knots.table import AMPHICHEIRAL, ROLFSEN
 
 # The one prime knot to ten crossings whose mirror image has the same invariants of all those that are computed.

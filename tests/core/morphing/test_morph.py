@@ -21,8 +21,7 @@ from mobius_flow.core import (
 )
 from mobius_flow.core.knots import knot, overhand, smooth_knot
 from mobius_flow.core.morphing import morphing
-from mobius_flow.core.morphing.meeting import meeting
-from mobius_flow.core.morphing.ways import back
+from mobius_flow.core.morphing.meeting import back, meeting
 from mobius_flow.core.verify import verify
 
 QUICK = RelaxOptions(tolerance=1e-3, mesh="fixed", untangle="never")

@@ -11,8 +11,7 @@ from mobius_flow.core.diagrams.diagram import ENDS, PIN
 from mobius_flow.core.diagrams.projection import rotation
 from mobius_flow.core.diagrams.rerouting import shortened
 from mobius_flow.core.knots import knot, knot_type, scramble
-from mobius_flow.core.passes.drawing import Drawing
-from mobius_flow.core.passes.heights import combed
+from mobius_flow.core.passes.drawing import Drawing, combed
 from mobius_flow.core.passes.moving import MovingCurve
 from mobius_flow.core.passes.passing import passed
 from mobius_flow.core.passes.spread import spread

@@ -7,7 +7,7 @@ import pytest
 from mobius_flow.core import RelaxOptions, minimize
 from mobius_flow.core.curve.fourier import FourierCurve
 from mobius_flow.core.curve.measures import bending
-from mobius_flow.core.curve.moebius_map import moebius_image
+from mobius_flow.core.driver.interventions.balance import moebius_image
 from mobius_flow.core.knots import knot
 from mobius_flow.core.smooth.minima import balanced, distinct
 from mobius_flow.core.smooth.rest import Rest, at_rest, energy_of, index_of

@@ -11,7 +11,7 @@ from mobius_flow.core.curve.refine import subdivide
 from mobius_flow.core.descent import Point
 from mobius_flow.core.descent.newton import Curvature
 from mobius_flow.core.driver.interventions.remesh import split_edges
-from mobius_flow.core.driver.interventions.saddle import stability
+from mobius_flow.core.driver.interventions.rest import stability
 from mobius_flow.core.knots import smooth_knot, torus_knot
 from mobius_flow.core.symmetry import NO_SYMMETRY, Symmetry, symmetries
 

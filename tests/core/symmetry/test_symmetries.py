@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError, OptionError, RelaxOptions, minimize
-from mobius_flow.core.curve.moebius_map import moebius_image
-from mobius_flow.core.driver.interventions.balance import balanced
+from mobius_flow.core.driver.interventions.balance import balanced, moebius_image
 from mobius_flow.core.knots import smooth_knot, torus_knot
 from mobius_flow.core.symmetry import SymmetryGroup, standing, symmetries
-from mobius_flow.core.symmetry.names import schoenflies
+from mobius_flow.core.symmetry.group import schoenflies
 from scipy.spatial.transform import Rotation
 from shapes import chain_of_rings, half_circle, regular_polygon
 

@@ -4,8 +4,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 from mobius_flow.core.energies.barrier import exact
-from mobius_flow.core.energies.complex_steps import change, stepped
-from mobius_flow.core.energies.edge_pairs import EdgePairs
+from mobius_flow.core.energies.edge_pairs import EdgePairs, change, stepped
 from mobius_flow.core.energies.repulsion.simplices import Simplices
 from mobius_flow.core.taylor import taylor_slope
 from repulsion_references import potential_by_quadrature, solid_angle_potential

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from mobius_flow.core import Curve
-from mobius_flow.core.energies.complex_steps import change, stepped
+from mobius_flow.core.energies.edge_pairs import change, stepped
 from mobius_flow.core.energies.repulsion.repulsion import THETA
 from mobius_flow.core.energies.repulsion.schedule import Schedule
 from mobius_flow.core.energies.repulsion.simplices import Clusters
