@@ -66,7 +66,7 @@ def at_rest(polygon: Curve) -> Rest | None:
         if found and last and (error := found.error + abs(found.energy - last.energy)) <= ACCURACY * found.energy:
             polished = _stationary(found.curve, found.energy, _FINALLY, way)
             proved = polished and _is_isotopic([(given, at), *map(_inscribed, way)])
-            return replace(polished, error=error) if polished and proved else None
+            return replace(polished, error=error + polished.error) if polished and proved else None
         if found and found.error <= _RESOLVED * energy:
             last = found
     return None
@@ -120,9 +120,10 @@ def _stationary(start: FourierCurve, energy: float, enough: tuple[float, int], w
     model, (gain, steps) = Model.of(basis, z), enough
     for _ in range(steps):
         better = None if model.gain < gain * model.energy else _searched(basis, z, model)
-        if better is None:
+        there = None if better is None else Model.of(basis, better)
+        if better is None or there is None or (model.is_near and there.gain >= model.gain):
             break
-        z, model = better, Model.of(basis, better)
+        z, model = better, there
         way.append(basis.curve(z))
     found = Pairs.of(finer, z).energy
     return Rest(basis.curve(z), found, model.gain + abs(found - Pairs.of(basis, z).energy), model.index)
