@@ -3,6 +3,7 @@
 import json
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -62,10 +63,7 @@ class Runs:
         return "; ".join(_told(why, names) for why, names in self.left_out.items())
 
     def _add(self, folder: Path, report: Mapping[str, object], row: Row) -> None:
-        try:
-            name, mirrored = table_name(row.type_after or "")
-        except MobiusFlowError:
-            name, mirrored = "", False
+        name, mirrored = _type_of(row)
         try:
             curve = FourierCurve.of_lists(report["smooth"])  # type: ignore[arg-type]
         except (KeyError, TypeError, ValueError):
@@ -73,16 +71,21 @@ class Runs:
             return
         if not (row.certified and row.verified):
             self.left_out[CHECKED].append(folder.name)
-        elif not name or not (row.proved or _as_it_began(row)):
+        elif not name:
             self.left_out[PROVED].append(folder.name)
         else:
             curve = curve.mirrored if mirrored else curve
             self.by_type[name].append(Run(row, curve, json.dumps(report["files"])))
 
 
-def _as_it_began(row: Row) -> bool:
-    """Whether a run, which is proved to keep its type, began as the curve that the table makes of that type's name."""
-    return row.kind != "file" and row.name == row.type_before == row.type_after
+def _type_of(row: Row) -> tuple[str, bool]:
+    """The table's name of what a run, which keeps its type, began with or ended as, and whether it is mirrored."""
+    made = row.kind != "file" and row.type_before == row.type_after
+    for name, known in ((row.name, made), (row.type_after or "", row.proved)):
+        with suppress(MobiusFlowError):
+            if known:
+                return table_name(name)
+    return "", False
 
 
 def _order(run: Run) -> tuple[str, int, str]:

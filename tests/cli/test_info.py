@@ -7,7 +7,7 @@ from mobius_flow.core.knots import smooth_knot
 
 KEYS = {
     "input", "components", "vertices", "type", "energies", "length", "thickness", "ropelength", "writhe",
-    "average_crossing_number", "edges", "gap", "gradient_norm", "at_rest", "index", "symmetry",
+    "average_crossing_number", "edges", "gap", "gradient_norm", "at_rest", "index", "smooth", "symmetry",
 }  # fmt: skip
 TYPE_KEYS = {
     "name", "names", "proved", "evidence", "crossings", "linking_numbers", "alexander", "determinant", "jones",
