@@ -5,6 +5,7 @@ import pytest
 from mobius_flow.core import Curve, CurveError, RelaxOptions, minimize
 from mobius_flow.core.extrapolation import extrapolated
 from mobius_flow.core.knots import knot, knot_type, overhand, torus_knot
+from mobius_flow.core.knots.shapes import least_energies
 from mobius_flow.core.smooth import rest
 from mobius_flow.core.smooth.rest import Rest, at_rest, index_of
 from shapes import torus_trefoil
@@ -35,6 +36,27 @@ def test_symmetric_torus_knots_are_saddles(p: int, q: int, index: int) -> None:
     smooth = found(torus_knot(p, q, 300, minor=torus_knot_tube(p, q)))
     assert abs(smooth.energy - torus_knot_minimum(p, q)) < 1e-6 * smooth.energy
     assert smooth.index == index_of(smooth.curve) == index
+
+
+@pytest.mark.parametrize("name", ["8_19", "8_21"])
+def test_neither_too_few_modes_nor_last_steps_lead_astray(name: str) -> None:
+    """What 24 modes make of 8_21 leads nowhere, and Newton's last steps on 8_19 away, where its Hessian is singular."""
+    smooth, (energy, error) = found(minimize(knot(name)).curve), least_energies()[name]
+    assert abs(smooth.energy - energy) <= smooth.error + error <= 2e-6 * energy
+
+
+def test_a_long_way_is_proved_in_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
+    curve, straight, asked = minimize(knot("4_1", 100), RelaxOptions(vertices=100)).curve, rest.is_isotopic, []
+
+    def not_at_once(*ends: object) -> bool:
+        asked.append(ends)
+        return len(asked) > 1 and straight(*ends)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(rest, "is_isotopic", not_at_once)
+    assert at_rest(curve) is not None
+    assert len(asked) > 2
+    monkeypatch.setattr(rest, "is_isotopic", lambda *ends: False)
+    assert at_rest(curve) is None
 
 
 def test_it_does_not_depend_on_the_start() -> None:
