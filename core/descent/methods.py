@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Protocol
 
 from ..metrics import METRICS, Metric
@@ -93,5 +94,7 @@ def _penalised() -> Iterator[Method]:
         yield Method(f"penalty-{name}", text, rule, geometry=geometry, label=label, comparison=True)
 
 
-METHODS: Mapping[str, Method] = {method.name: method for method in sorted(_all(), key=lambda each: each.comparison)}
+METHODS: Mapping[str, Method] = MappingProxyType(
+    {method.name: method for method in sorted(_all(), key=lambda each: each.comparison)}
+)
 """Every method that can be chosen, by name; those for comparison come last."""
