@@ -46,7 +46,7 @@ def hopped(curve: Curve, seed: int) -> Curve:
     """A curve after one of the motions that hops begin with."""
     options = RelaxOptions()
     point = Run(start_problem(curve, options), curve, options).point
-    steps = MOTIONS[seed % len(MOTIONS)](point, np.random.default_rng(seed))
+    steps = MOTIONS[seed // 2 % len(MOTIONS)](point, np.random.default_rng(seed))
     path = [leg.end.placed for step in steps for leg in step.legs]
     return curve.with_vertices(path[-1]) if path else curve
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import eigh, null_space
+from scipy.linalg import LinAlgError, cho_factor, cho_solve, eigh, orth
 
 from ..arguments import checked
 from ..curve import Curve, check_closed
@@ -43,7 +43,7 @@ class Rest:
 
     curve: FourierCurve
     energy: float
-    error: float  # how far the stationary value may be off: what the last modes and twice as many points change
+    error: float  # how far its energy may be off: what more modes and points changed, and a next step would gain
     index: int  # independent directions in which the energy falls, 0 at a minimum
 
 
@@ -62,13 +62,15 @@ def at_rest(polygon: Curve) -> Rest | None:
         if sum(modes := _shared(most, given)) > MOST:
             break
         start = last.curve.with_modes(modes) if last else FourierCurve.of(given, at, modes)
-        found = _stationary(start, last.energy if last else energy, _ROUGHLY, way)
-        if found and last and (error := found.error + abs(found.energy - last.energy)) <= ACCURACY * found.energy:
-            polished = _stationary(found.curve, found.energy, _FINALLY, way)
-            proved = polished and _is_isotopic([(given, at), *map(_inscribed, way)])
+        found, trail = _stationary(start, last.energy if last else energy, _ROUGHLY)
+        if found is None or found.error > _RESOLVED * energy:
+            continue
+        way += trail
+        if last and (error := found.error + abs(found.energy - last.energy)) <= ACCURACY * found.energy:
+            polished, trail = _stationary(found.curve, found.energy, _FINALLY)
+            proved = polished and _is_isotopic([(given, at), *map(_inscribed, way + trail)])
             return replace(polished, error=error + polished.error) if polished and proved else None
-        if found and found.error <= _RESOLVED * energy:
-            last = found
+        last = found
     return None
 
 
@@ -110,23 +112,23 @@ def _is_isotopic(way: Sequence[Placed]) -> bool:
     return len(way) > 2 and _is_isotopic(way[: half + 1]) and _is_isotopic(way[half:])
 
 
-def _stationary(start: FourierCurve, energy: float, enough: tuple[float, int], way: list[FourierCurve]) -> Rest | None:
-    """Where Newton's method leads from a curve of about an energy, and its way; None if it does not have that."""
+def _stationary(start: FourierCurve, energy: float, enough: tuple[float, int]) -> tuple[Rest | None, list[FourierCurve]]:
+    """Where Newton's method leads from a curve of about an energy, and by which curves; None if it does not have that."""
     basis, finer = (Basis.of(start.modes, points) for points in (_PER_MODE, 2 * _PER_MODE))
     z = basis.unknowns(start)
     if abs(Pairs.of(basis, z).energy - energy) > _FOLLOWS * energy:
-        return None
-    way.append(start)
-    model, (gain, steps) = Model.of(basis, z), enough
-    for _ in range(steps):
-        better = None if model.gain < gain * model.energy else _searched(basis, z, model)
+        return None, []
+    model, trail, (gain, steps) = Model.of(basis, z), [start], enough
+    while model.gain >= gain * model.energy and len(trail) <= steps:
+        better = _searched(basis, z, model)
         there = None if better is None else Model.of(basis, better)
         if better is None or there is None or (model.is_near and there.gain >= model.gain):
             break
         z, model = better, there
-        way.append(basis.curve(z))
+        trail.append(basis.curve(z))
     found = Pairs.of(finer, z).energy
-    return Rest(basis.curve(z), found, model.gain + abs(found - Pairs.of(basis, z).energy), model.index)
+    error = model.gain + abs(found - Pairs.of(basis, z).energy)
+    return Rest(trail[-1], found, error, model.index), trail
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,42 +136,39 @@ class Model:
     """The quadratic model of the energy at unknowns, without the directions in which it does not change."""
 
     energy: float
-    slopes: FloatArray  # along eigenvectors of the Hessian
-    eigenvalues: FloatArray  # ascending
-    eigenvectors: FloatArray  # as columns, orthonormal; shape (3N, k)
+    index: int  # directions in which the energy is concave
+    step: FloatArray  # Newton's, but downhill where the energy is not convex, unless a saddle is near; shape (N, 3)
+    gain: float  # what the model says that the step gains
 
     @classmethod
     def of(cls, basis: Basis, z: FloatArray) -> "Model":
         """That at unknowns z."""
-        pairs, free = Pairs.of(basis, z), null_space(invariant(basis, z))
-        values, vectors = eigh(free.T @ (pairs.hessian + _STIFFNESS * sliding(basis, z)) @ free)
-        slopes = (free @ vectors).T @ pairs.gradient.ravel()
-        return cls(pairs.energy, slopes, values, free @ vectors)
-
-    @property
-    def index(self) -> int:
-        """The number of directions in which the energy is concave."""
-        return int(np.count_nonzero(self.eigenvalues < -_SOFT * self.eigenvalues[-1]))
-
-    @property
-    def step(self) -> FloatArray:
-        """Newton's step, but downhill where the energy is not convex, unless a saddle is near; shape (N, 3)."""
-        signs = np.sign(self.eigenvalues) if self.is_near else 1.0
-        return np.asarray(-self.eigenvectors @ (signs * self.slopes / self._stiffness)).reshape(-1, 3)
+        pairs = Pairs.of(basis, z)
+        slope, hessian = _free(pairs.gradient.ravel(), pairs.hessian + _STIFFNESS * sliding(basis, z), invariant(basis, z))
+        least = _SOFT * float(np.linalg.norm(hessian, np.inf))
+        try:  # most are convex, which this finds out ten times as fast as eigenvalues do
+            step = -cho_solve(cho_factor(hessian - least * np.eye(len(hessian))), slope)
+            index, gain = 0, -0.5 * float(slope @ step)
+        except LinAlgError:
+            values, vectors = eigh(hessian)
+            along, stiffness = vectors.T @ slope, np.maximum(np.abs(values), least)
+            index, gain = int(np.count_nonzero(values < -least)), 0.5 * float(np.sum(along**2 / stiffness))
+            signs = np.sign(values) if gain < _NEAR * pairs.energy else 1.0
+            step = -vectors @ (signs * along / stiffness)
+        return cls(pairs.energy, index, np.reshape(step, (-1, 3)), gain)
 
     @property
     def is_near(self) -> bool:
         """Whether so little is left to gain that the next point at rest is where Newton's step leads."""
         return self.gain < _NEAR * self.energy
 
-    @property
-    def gain(self) -> float:
-        """What the model says that the step gains."""
-        return 0.5 * float(np.sum(self.slopes**2 / self._stiffness))
 
-    @property
-    def _stiffness(self) -> FloatArray:
-        return np.maximum(np.abs(self.eigenvalues), _SOFT * self.eigenvalues[-1])
+def _free(slope: FloatArray, hessian: FloatArray, fields: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Both without some directions, in which the Hessian is as stiff as it is on average instead."""
+    fixed = orth(fields.T)
+    across = hessian @ fixed
+    shifts = 0.5 * fixed @ (fixed.T @ across + np.trace(hessian) / len(hessian) * np.eye(fixed.shape[1])) - across
+    return slope - fixed @ (fixed.T @ slope), hessian + shifts @ fixed.T + fixed @ shifts.T
 
 
 def _searched(basis: Basis, z: FloatArray, model: Model) -> FloatArray | None:
