@@ -28,6 +28,7 @@ from .threads import BLAS
 ENERGIES = ("moebius", "edge", "vertex")
 PAIRS_UP_TO = 50_000  # vertices, where all pairs of edges are summed: a minute or so, growing with the square
 SAME = 1e-6  # of the energy, by which those of one minimum differ beside their errors
+_ROUNDING = 1e-15  # of the energy: the least error that is told
 REST_UP_TO = 12_000  # vertices: some minutes where curves are at rest
 
 
@@ -84,7 +85,8 @@ class Smooth:
 
     @property
     def sentence(self) -> str:
-        energy = f"{self.energy:.{max(1 - math.floor(math.log10(self.error)), 1)}f} ± {self.error:.1g}"
+        told = max(self.error, _ROUNDING * self.energy)
+        energy = f"{self.energy:.{max(1 - math.floor(math.log10(told)), 1)}f} ± {told:.1g}"
         if self.least is None:
             return energy
         least, error = self.least

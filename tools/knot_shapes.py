@@ -4,10 +4,10 @@
     tools/knot_shapes.py [NAME ...]
 
 Each closed braid is relaxed as a polygon of few equal edges, which keeps its strands so far apart that they can be
-seen: smooth minima have some at a hundredth of that distance. It is balanced, turned so that it faces +z with little
-hidden, and fitted by Fourier series. What is not proved is an error: that the relaxation kept the type, and that the
-straight motion from the relaxed polygon to the one inscribed in the stored, rounded shape does. Relaxations take eleven
-minutes of processor time in all; they are kept in build/knot_shapes, and those that are there are not done again.
+seen: smooth minima have some at a tenth of that distance or less. It is balanced, turned so that it faces +z with
+little hidden, and fitted by Fourier series. What is not proved is an error: that the relaxation kept the type, and that
+the straight motion from the relaxed polygon to the one inscribed in the stored, rounded shape does. Relaxations take a
+quarter of an hour in all; they are kept in build/knot_shapes, and those that are there are not done again.
 """
 
 import argparse

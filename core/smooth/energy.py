@@ -11,14 +11,12 @@ where s is 1 on one component and 0 between two.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import combinations_with_replacement
 
 import numpy as np
 
-from ..types import FloatArray
+from ..types import FloatArray, IntArray
 from .basis import Basis
-
-Block = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
-"""∂²f by (r, r), (r, v), (r, w), (v, v) and (v, w), of one coordinate each; shape (n, n)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,18 +73,12 @@ class Pairs:
     @property
     def hessian(self) -> FloatArray:
         """By the unknowns, coordinate by coordinate within each; shape (3N, 3N)."""
-        B, D = self.basis.values, self.basis.slopes
-        count, twice = len(self.basis.scale), 2.0 * self.weights
-        here = np.arange(len(B))
-        hessian = np.zeros((count, 3, count, 3))
-        for k, m, (rr, rv, rw, vv, vw) in self._blocks():
-            xx, xv, by_v = -twice * rr, -twice * rw, twice * vw
-            xx[here, here] = -xx.sum(axis=1)
-            xv[here, here] = -(twice * rv).sum(axis=1)
-            by_v[here, here] = (twice * vv).sum(axis=1)
-            mixed = B.T @ xv @ D
-            hessian[:, k, :, m] += B.T @ xx @ B + D.T @ by_v @ D + mixed
-            hessian[:, m, :, k] += mixed.T
+        B, D, count = self.basis.values, self.basis.slopes, len(self.basis.scale)
+        hessian = np.empty((count, 3, count, 3))
+        mixed = [[B.T @ block @ D for block in row] for row in self._by_x_and_v()]
+        for k, m, by_x, by_v in self._blocks():
+            block = B.T @ by_x @ B + D.T @ by_v @ D + mixed[k][m] + mixed[m][k].T
+            hessian[:, k, :, m], hessian[:, m, :, k] = block, block.T
         return hessian.reshape(3 * count, 3 * count)
 
     @property
@@ -94,22 +86,38 @@ class Pairs:
         """What r itself is multiplied by in ∂f/∂r."""
         return np.asarray(8.0 * self.p * self.q * self.u**3 - 2.0 * self.g * self.u**2)
 
-    def _blocks(self) -> Iterator[tuple[int, int, Block]]:
-        """The second derivatives of f for each pair of coordinates."""
-        u, p, q, g, s, speeds = self.u, self.p, self.q, self.g, self.same, self.speeds
-        along, su2 = self._along_r, self.same * u**2
-        ratio, product = speeds / speeds[:, None], np.outer(speeds, speeds)
-        double = 8.0 * g * u**3 - 48.0 * p * q * u**4
+    def _blocks(self) -> Iterator[tuple[int, int, FloatArray, FloatArray]]:
+        """Second derivatives of Σ f by two points, and by two velocities, for coordinates k ≤ m; shape (n, n)."""
+        twice, u, p, q, g, speeds, here = 2.0 * self.weights, self.u, self.p, self.q, self.g, self.speeds, self._here
+        along, cubic, su2 = self._along_r, 8.0 * u**3, self.same * u**2
+        double = g * cubic - 48.0 * p * q * u**4
+        by_speeds, by_product = twice * u * speeds / speeds[:, None], u / np.outer(speeds, speeds)
+        for k, m in combinations_with_replacement(range(3), 2):
+            rk, rm, v, w, same = self.r[k], self.r[m], self.velocities[:, k], self.velocities[:, m], float(k == m)
+            tk, tm = q * v[:, None] + p * v, q * w[:, None] + p * w
+            vw = np.outer(v, w)
+            rr = same * along + double * (rk * rm) - 2.0 * su2 * (vw + vw.T) + cubic * (tk * rm + rk * tm)
+            by_x = -twice * rr
+            by_x[here, here] = -by_x.sum(axis=1)
+            by_v = twice * (by_product * vw + same * self.same * u - 2.0 * su2 * (rk * rm))
+            by_v[here, here] = by_speeds.sum(axis=1) * (same - v * w / speeds**2)
+            yield k, m, by_x, by_v
+
+    def _by_x_and_v(self) -> Iterator[list[FloatArray]]:
+        """Those by coordinate k of a point and m of a velocity, row by row; f is the same at (y, x) as at (x, y)."""
+        twice, u, s, ratio, here = 2.0 * self.weights, self.u, self.same, self.speeds / self.speeds[:, None], self._here
+        cubic, quadratic, q = 8.0 * twice * u**3 * self.q, -2.0 * twice * u**2, self.q
         for k in range(3):
+            row, rk, v = [], self.r[k], self.velocities[:, k]
             for m in range(3):
-                rk, rm, rkm, same = self.r[k], self.r[m], self.r[k] * self.r[m], float(k == m)
-                wk, wm = self.velocities[:, k], self.velocities[:, m]
-                vk, vm = wk[:, None], wm[:, None]
-                tk, tm = q * vk + p * wk, q * vm + p * wm
-                rr = same * along + double * rkm - 2.0 * su2 * (vk * wm + wk * vm) + 8.0 * u**3 * (tk * rm + rk * tm)
-                by_v, by_w = ratio * vm + s * wm, wm / ratio + s * vm
-                rv = 8.0 * u**3 * q * rkm - 2.0 * u**2 * (rk * by_v + same * q) - 2.0 * su2 * wk * rm
-                rw = 8.0 * u**3 * p * rkm - 2.0 * u**2 * (rk * by_w + same * p) - 2.0 * su2 * vk * rm
-                vv = u * ratio * (same - vk * vm / speeds[:, None] ** 2)
-                vw = u * (vk * wm / product + s * same) - 2.0 * su2 * rkm
-                yield k, m, (rr, rv, rw, vv, vw)
+                w = self.velocities[:, m]
+                by_v = ratio * w[:, None] + s * w
+                rv = cubic * (rk * self.r[m]) + quadratic * (rk * by_v + float(k == m) * s * q + s * v * self.r[m])
+                block = rv.T
+                block[here, here] = -rv.sum(axis=1)
+                row.append(block)
+            yield row
+
+    @property
+    def _here(self) -> IntArray:
+        return np.arange(len(self.u))

@@ -36,6 +36,9 @@ _SOFT = 1e-9  # of the largest eigenvalue: the sign of smaller ones is not known
 Placed = tuple[Curve, Sequence[FloatArray]]
 """A polygon and the parameters of its components' vertices."""
 
+Trail = list[FourierCurve]
+"""Curves between which Newton's steps are."""
+
 
 @dataclass(frozen=True, eq=False)
 class Rest:
@@ -57,7 +60,7 @@ def at_rest(polygon: Curve) -> Rest | None:
     if polygon.dimension != 3:
         raise CurveError(f"the curve has dimension {polygon.dimension}; smooth curves at rest are found in space")
     given, energy = _normalized(polygon), MoebiusEnergy().value(polygon)
-    at, last, way = parameters(given), None, list[FourierCurve]()
+    at, last, way = parameters(given), None, Trail()
     for most in MODES:
         if sum(modes := _shared(most, given)) > MOST:
             break
@@ -112,8 +115,8 @@ def _is_isotopic(way: Sequence[Placed]) -> bool:
     return len(way) > 2 and _is_isotopic(way[: half + 1]) and _is_isotopic(way[half:])
 
 
-def _stationary(start: FourierCurve, energy: float, enough: tuple[float, int]) -> tuple[Rest | None, list[FourierCurve]]:
-    """Where Newton's method leads from a curve of about an energy, and by which curves; None if it does not have that."""
+def _stationary(start: FourierCurve, energy: float, enough: tuple[float, int]) -> tuple[Rest | None, Trail]:
+    """Where Newton's method leads from a curve of about an energy, and its trail; None if it does not have that."""
     basis, finer = (Basis.of(start.modes, points) for points in (_PER_MODE, 2 * _PER_MODE))
     z = basis.unknowns(start)
     if abs(Pairs.of(basis, z).energy - energy) > _FOLLOWS * energy:
@@ -143,11 +146,11 @@ class Model:
     @classmethod
     def of(cls, basis: Basis, z: FloatArray) -> "Model":
         """That at unknowns z."""
-        pairs = Pairs.of(basis, z)
-        slope, hessian = _free(pairs.gradient.ravel(), pairs.hessian + _STIFFNESS * sliding(basis, z), invariant(basis, z))
+        pairs, stiff = Pairs.of(basis, z), _STIFFNESS * sliding(basis, z)
+        slope, hessian = _free(pairs.gradient.ravel(), pairs.hessian + stiff, invariant(basis, z))
         least = _SOFT * float(np.linalg.norm(hessian, np.inf))
-        try:  # most are convex, which this finds out ten times as fast as eigenvalues do
-            step = -cho_solve(cho_factor(hessian - least * np.eye(len(hessian))), slope)
+        try:  # most are convex, as this finds out ten times as fast as eigenvalues do
+            step = -cho_solve(cho_factor(hessian + least * np.eye(len(hessian))), slope)
             index, gain = 0, -0.5 * float(slope @ step)
         except LinAlgError:
             values, vectors = eigh(hessian)
@@ -155,7 +158,7 @@ class Model:
             index, gain = int(np.count_nonzero(values < -least)), 0.5 * float(np.sum(along**2 / stiffness))
             signs = np.sign(values) if gain < _NEAR * pairs.energy else 1.0
             step = -vectors @ (signs * along / stiffness)
-        return cls(pairs.energy, index, np.reshape(step, (-1, 3)), gain)
+        return cls(pairs.energy, index, step.reshape(-1, 3), gain)
 
     @property
     def is_near(self) -> bool:

@@ -113,6 +113,7 @@ def test_a_circle_is_the_least_known_unknot() -> None:
         (100.0, 1e-4, "100.00000 ± 0.0001, the least known of 9_9"),
         (101.0, 1e-4, "101.00000 ± 0.0001, 1 % above the least known of 9_9, 100"),
         (99.0, 0.01, "99.000 ± 0.01, 1 % below the least known of 9_9, 100"),
+        (100.0, 0.0, "100.00000000000000 ± 1e-13, the least known of 9_9"),
     ],
 )
 def test_other_minima_are_told_apart_from_the_least_known(energy: float, error: float, told: str) -> None:
