@@ -16,9 +16,8 @@ from ...core.curve.measures import writhe_and_crossings
 from ...core.errors import CurveError
 from ...core.knots import knot_type
 from ...core.knots.catalogue import crossing_number
-from ...core.knots.table import AMPHICHEIRAL
 from ...core.smooth.minima import balanced, distinct
-from ...core.smooth.rest import Rest, index_of
+from ...core.smooth.rest import index_of
 from ...core.symmetry import standing, symmetries
 from ..batch.job import folder_name
 from ..batch.table import Row
@@ -50,17 +49,16 @@ def curve_of(minimum: Mapping[str, Any]) -> FourierCurve:
 
 
 def _made(name: str, runs: Sequence[Run]) -> Values:
-    ends = [balanced(run.rest) for run in runs]
-    groups = distinct(ends, name in AMPHICHEIRAL)
+    groups = distinct([run.rest for run in runs])
     minima = [
-        {"number": number} | _described(name, ends[group[0]], [runs[k] for k in group])
-        for number, group in enumerate(groups, start=1)
+        {"number": number} | _described(name, [runs[k] for k in group]) for number, group in enumerate(groups, start=1)
     ]
     return {"type": name, "lower_bound": _lower_bound(name), "runs": len(runs), "minima": minima}
 
 
-def _described(name: str, rest: Rest, runs: Sequence[Run]) -> Values:
-    """What is known of a curve, by the names of the tables' columns; it is an image of what the first run led to."""
+def _described(name: str, runs: Sequence[Run]) -> Values:
+    """What is known of a curve, by the names of the tables' columns: the balanced end of the first run."""
+    rest = balanced(runs[0].rest)
     curve, polygon = rest.curve, rest.curve.polygon(rest.curve.sizes)
     group = symmetries(polygon)
     upright = FourierCurve(tuple(c @ standing(polygon, group).T for c in curve.coefficients))
@@ -93,7 +91,7 @@ def _proves() -> bool:
 
 
 def _proved(name: str, curve: FourierCurve) -> tuple[float, float] | None:
-    """Bounds of a curve's energy that are proved, as its type is; None where one of them is not."""
+    """Bounds of a curve's energy that are proved, as its type is, or its mirror image's; None where one is not."""
     if not _proves():
         return None
     from ...core.smooth.bounds import energy_bounds
@@ -101,7 +99,8 @@ def _proved(name: str, curve: FourierCurve) -> tuple[float, float] | None:
 
     try:
         kind = knot_type(inscribed(curve.coefficients))  # at first: it takes less time, in vain too
-        return energy_bounds(curve.coefficients) if kind.proved and kind.names == (name,) else None
+        same = kind.proved and {each.removeprefix("m") for each in kind.names} == {name}
+        return energy_bounds(curve.coefficients) if same else None
     except CurveError:
         return None
 

@@ -52,8 +52,12 @@ class Pairs:
     @property
     def energy(self) -> float:
         """4 for each component, and Σ f."""
-        f = self.u * (self.g - 2.0 * self.p * self.q * self.u)
-        return 4.0 * len(self.basis.modes) + float(np.sum(self.weights * f))
+        return 4.0 * len(self.basis.modes) + float(np.sum(self.shares))
+
+    @property
+    def shares(self) -> FloatArray:
+        """What each pair has of Σ f, which no Möbius map changes; shape (n, n)."""
+        return np.asarray(self.weights * self.u * (self.g - 2.0 * self.p * self.q * self.u))
 
     @property
     def gradient(self) -> FloatArray:

@@ -1,20 +1,25 @@
-"""Which smooth curves at rest are the same one: alike in energy, and in shape up to Möbius maps and isometries."""
+"""Which smooth curves at rest are the same one, up to Möbius maps and isometries, and how it is shown."""
 
 import math
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.linalg import eigh
 
 from ..arguments import checked
-from ..curve.alignment import Freedom, alignments
 from ..curve.fourier import FourierCurve
 from ..curve.measures import bending
 from ..driver.interventions.balance import MoebiusImages, least_bending
+from ..types import FloatArray
+from .basis import Basis
+from .energy import Pairs
 from .rest import Rest, energy_of
 
 SAME_ENERGY = 1e-6  # of the energy, by which those of one curve differ beside their errors
-SAME_SHAPE = 0.05  # radii of gyration: curves are compared at samples, half a spacing of which is up to 0.03
+SAME_SHAPE = 1e-3  # of eigenvalues up to 1: those of one curve differ by up to 3e-5, those of two types by 3e-2
+EIGENVALUES = 24
+_NONE = 1e-9  # energy at a point of a round circle, about
 _GROWN = (1.0, 1.25, 1.5, 2.0, 2.5)  # times the modes, that a Möbius image needs
 _POINTS = 8  # of the trapezoidal rule for each mode there was
 
@@ -38,27 +43,33 @@ def balanced(rest: Rest) -> Rest:
 
 
 @checked
-def distinct(ends: Sequence[Rest], amphicheiral: bool = False) -> list[list[int]]:
-    """Sort balanced curves of one type into those that are the same: numbers of each group, that of least energy first.
+def distinct(ends: Sequence[Rest]) -> list[list[int]]:
+    """Sort curves of one type into those that are the same: numbers of each group, that of least energy first.
 
-    The first of the same has the smallest error.  Mirror images of each other are the same where the type is
-    ``amphicheiral``.
+    The first of the same has the smallest error.
     """
+    spectra = [_spectrum(end.curve) for end in ends]
     groups: list[list[int]] = []
     for number in sorted(range(len(ends)), key=lambda k: (ends[k].error, k)):
-        same = (group for group in groups if _same(ends[group[0]], ends[number], amphicheiral))
-        group = next(same, None)
-        if group is None:
-            groups.append([number])
+        end, spectrum = ends[number], spectra[number]
+        for group in groups:
+            first = ends[group[0]]
+            near = abs(end.energy - first.energy) <= end.error + first.error + SAME_ENERGY * end.energy
+            if near and np.abs(spectrum - spectra[group[0]]).max() <= SAME_SHAPE:
+                group.append(number)
+                break
         else:
-            group.append(number)
+            groups.append([number])
     return sorted(groups, key=lambda group: ends[group[0]].energy)
 
 
-def _same(one: Rest, other: Rest, amphicheiral: bool) -> bool:
-    if abs(one.energy - other.energy) > one.error + other.error + SAME_ENERGY * one.energy:
-        return False
-    images = [other.curve, other.curve.mirrored][: 1 + amphicheiral]
-    polygons = (image.polygon(image.sizes) for image in images)
-    here = one.curve.polygon(one.curve.sizes)
-    return any(alignments(polygon, here, Freedom())[0].distance < SAME_SHAPE for polygon in polygons)
+def _spectrum(curve: FourierCurve) -> FloatArray:
+    """The largest eigenvalues of the random walk on a curve that goes from x to y as often as the pair has energy.
+
+    Neither Möbius maps nor parameters change them, and they are the same for mirror images.  Round circles have zeros.
+    """
+    basis = Basis.of(curve.modes, _POINTS)
+    shares = Pairs.of(basis, basis.unknowns(curve)).shares
+    rates = np.sqrt(shares.sum(axis=1) + _NONE)
+    walk, count = shares / np.outer(rates, rates), len(rates)
+    return np.asarray(eigh(walk, eigvals_only=True, subset_by_index=(count - EIGENVALUES, count - 1)))
