@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, RelaxOptions
 from mobius_flow.core.descent import Point
+from mobius_flow.core.driver import starts
 from mobius_flow.core.driver.motions import MOTIONS, Motion, Push, Stir, radius, root_mean_square
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.knots import torus_knot
@@ -75,3 +76,11 @@ def test_a_way_is_as_long_as_asked_and_steps_grow_again_where_there_is_room() ->
 def test_a_field_that_constraints_hold_back_moves_nothing() -> None:
     """What is left of a translation, with the barycenter held, is rounding errors."""
     assert not list(Stir().along(saddle(), np.ones_like, np.inf))
+
+
+def test_starts_of_a_batch_that_hop_take_turns(monkeypatch: pytest.MonkeyPatch) -> None:
+    taken: list[int] = []
+    monkeypatch.setattr(starts, "MOTIONS", [lambda point, rng, k=k: taken.append(k) or () for k in range(2)])
+    for number in range(5, 12):
+        starts.start("3_1", number, number)
+    assert taken == [0, 1, 0, 1]
