@@ -27,7 +27,6 @@ from .runs import Run
 
 Values = dict[str, Any]
 _FINER = 2  # times the vertices that represent a curve, where it is measured
-_KNOTTED = 6.0 * math.pi + 4.0
 
 
 def entry(folder: Folder, name: str, runs: Sequence[Run]) -> Values:
@@ -106,11 +105,8 @@ def _proved(name: str, curve: FourierCurve) -> tuple[float, float] | None:
 
 
 def _lower_bound(name: str) -> float | None:
-    """What the literature proves for all curves of a type: 4, 6π + 4 and 2πc + 4; None for links."""
-    crossings = crossing_number(name)
-    if name.startswith("L"):
-        return None
-    return max(_KNOTTED, 2.0 * math.pi * crossings + 4.0) if crossings else 4.0
+    """What Freedman, He and Wang prove for all curves of a type: 2πc + 4 with c crossings; None for links."""
+    return None if name.startswith("L") else 2.0 * math.pi * crossing_number(name) + 4.0
 
 
 def _command(row: Row) -> str:
