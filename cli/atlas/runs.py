@@ -80,7 +80,7 @@ class Runs:
 
 def _type_of(row: Row) -> tuple[str, bool]:
     """The table's name of what a run, which keeps its type, began with or ended as, and whether it is mirrored."""
-    made = row.kind != "file" and row.type_before == row.type_after
+    made = row.input_sha256 is None and row.type_before == row.type_after
     for name, known in ((row.name, made), (row.type_after or "", row.proved)):
         with suppress(MobiusFlowError):
             if known:

@@ -15,7 +15,7 @@ from itertools import combinations_with_replacement
 
 import numpy as np
 
-from ..types import FloatArray, IntArray
+from ..types import FloatArray
 from .basis import Basis
 
 
@@ -92,7 +92,7 @@ class Pairs:
 
     def _blocks(self) -> Iterator[tuple[int, int, FloatArray, FloatArray]]:
         """Second derivatives of Σ f by two points, and by two velocities, for coordinates k ≤ m; shape (n, n)."""
-        twice, u, p, q, g, speeds, here = 2.0 * self.weights, self.u, self.p, self.q, self.g, self.speeds, self._here
+        twice, u, p, q, g, speeds = 2.0 * self.weights, self.u, self.p, self.q, self.g, self.speeds
         along, cubic, su2 = self._along_r, 8.0 * u**3, self.same * u**2
         double = g * cubic - 48.0 * p * q * u**4
         by_speeds, by_product = twice * u * speeds / speeds[:, None], u / np.outer(speeds, speeds)
@@ -102,14 +102,14 @@ class Pairs:
             vw = np.outer(v, w)
             rr = same * along + double * (rk * rm) - 2.0 * su2 * (vw + vw.T) + cubic * (tk * rm + rk * tm)
             by_x = -twice * rr
-            by_x[here, here] = -by_x.sum(axis=1)
+            np.fill_diagonal(by_x, -by_x.sum(axis=1))
             by_v = twice * (by_product * vw + same * self.same * u - 2.0 * su2 * (rk * rm))
-            by_v[here, here] = by_speeds.sum(axis=1) * (same - v * w / speeds**2)
+            np.fill_diagonal(by_v, by_speeds.sum(axis=1) * (same - v * w / speeds**2))
             yield k, m, by_x, by_v
 
     def _by_x_and_v(self) -> Iterator[list[FloatArray]]:
         """Those by coordinate k of a point and m of a velocity, row by row; f is the same at (y, x) as at (x, y)."""
-        twice, u, s, ratio, here = 2.0 * self.weights, self.u, self.same, self.speeds / self.speeds[:, None], self._here
+        twice, u, s, ratio = 2.0 * self.weights, self.u, self.same, self.speeds / self.speeds[:, None]
         cubic, quadratic, q = 8.0 * twice * u**3 * self.q, -2.0 * twice * u**2, self.q
         for k in range(3):
             row, rk, v = [], self.r[k], self.velocities[:, k]
@@ -117,11 +117,6 @@ class Pairs:
                 w = self.velocities[:, m]
                 by_v = ratio * w[:, None] + s * w
                 rv = cubic * (rk * self.r[m]) + quadratic * (rk * by_v + float(k == m) * s * q + s * v * self.r[m])
-                block = rv.T
-                block[here, here] = -rv.sum(axis=1)
-                row.append(block)
+                np.fill_diagonal(rv, -rv.sum(axis=1))
+                row.append(rv.T)
             yield row
-
-    @property
-    def _here(self) -> IntArray:
-        return np.arange(len(self.u))

@@ -17,9 +17,9 @@ from .energy import Pairs
 from .rest import Rest, energy_of
 
 SAME_ENERGY = 1e-6  # of the energy, by which those of one curve differ beside their errors
-SAME_SHAPE = 1e-3  # of eigenvalues up to 1: those of one curve differ by up to 3e-5, those of two types by 3e-2
+SAME_SHAPE = 1e-3  # of eigenvalues up to 1: those of one curve differ by up to 3e-5, of two types by 3e-2
 EIGENVALUES = 24
-_NONE = 1e-9  # energy at a point of a round circle, about
+_ROUNDING = 1e-13  # of the energy
 _GROWN = (1.0, 1.25, 1.5, 2.0, 2.5)  # times the modes, that a Möbius image needs
 _POINTS = 8  # of the trapezoidal rule for each mode there was
 
@@ -28,7 +28,8 @@ _POINTS = 8  # of the trapezoidal rule for each mode there was
 def balanced(rest: Rest) -> Rest:
     """The Möbius image that bends least, about the origin, with radius 1, and the energy but for its error.
 
-    It has hardly more modes, as the speeds that curves at rest have are those of their Möbius images, too.
+    It has hardly more modes, as the speeds that curves at rest have are those of their Möbius images, too; where the
+    most are not enough, its error says so.
     """
     polygon = rest.curve.polygon(rest.curve.sizes)
     images = MoebiusImages(polygon, polygon.edge_lengths)
@@ -37,9 +38,10 @@ def balanced(rest: Rest) -> Rest:
     image = image.with_vertices(points / np.linalg.norm(points, axis=1).max())
     for more in _GROWN:
         found = FourierCurve.through(image, [round(k * more) for k in rest.curve.modes])
-        if abs(energy_of(found, math.ceil(_POINTS / more)) - rest.energy) <= rest.error:
-            break
-    return replace(rest, curve=found)
+        lost = abs(energy_of(found, math.ceil(_POINTS / more)) - rest.energy)
+        if lost <= max(rest.error, _ROUNDING * rest.energy):
+            return replace(rest, curve=found)
+    return replace(rest, curve=found, error=rest.error + lost)
 
 
 @checked
@@ -68,8 +70,8 @@ def _spectrum(curve: FourierCurve) -> FloatArray:
 
     Neither Möbius maps nor parameters change them, and they are the same for mirror images.  Round circles have zeros.
     """
-    basis = Basis.of(curve.modes, _POINTS)
+    basis = Basis.of(curve.modes, _POINTS // 2)
     shares = Pairs.of(basis, basis.unknowns(curve)).shares
-    rates = np.sqrt(shares.sum(axis=1) + _NONE)
+    rates = np.sqrt(shares.sum(axis=1) + SAME_ENERGY * basis.weights)
     walk, count = shares / np.outer(rates, rates), len(rates)
     return np.asarray(eigh(walk, eigvals_only=True, subset_by_index=(count - EIGENVALUES, count - 1)))

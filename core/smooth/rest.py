@@ -31,7 +31,7 @@ _ROUGHLY = 1e-8, 20  # of the energy, what a next step would gain, and steps, af
 _FINALLY = 1e-11, 4  # the same in the end
 _STIFFNESS = 2.0  # against sliding
 _NEAR = 1e-7  # of the energy, that a step may gain where Newton's own is taken
-_SOFT = 1e-9  # of the largest eigenvalue: the sign of smaller ones is not known
+_SOFT = 1e-9  # of the Hessian's norm: the sign of smaller eigenvalues is not known
 
 Placed = tuple[Curve, Sequence[FloatArray]]
 """A polygon and the parameters of its components' vertices."""
@@ -124,14 +124,12 @@ def _stationary(start: FourierCurve, energy: float, enough: tuple[float, int]) -
     model, trail, (gain, steps) = Model.of(basis, z), [start], enough
     while model.gain >= gain * model.energy and len(trail) <= steps:
         better = _searched(basis, z, model)
-        there = None if better is None else Model.of(basis, better)
-        if better is None or there is None or (model.is_near and there.gain >= model.gain):
+        if better is None or ((there := Model.of(basis, better)).gain >= model.gain and model.is_near):
             break
         z, model = better, there
         trail.append(basis.curve(z))
     found = Pairs.of(finer, z).energy
-    error = model.gain + abs(found - Pairs.of(basis, z).energy)
-    return Rest(trail[-1], found, error, model.index), trail
+    return Rest(trail[-1], found, model.gain + abs(found - model.energy), model.index), trail
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,8 +147,10 @@ class Model:
         pairs, stiff = Pairs.of(basis, z), _STIFFNESS * sliding(basis, z)
         slope, hessian = _free(pairs.gradient.ravel(), pairs.hessian + stiff, invariant(basis, z))
         least = _SOFT * float(np.linalg.norm(hessian, np.inf))
-        try:  # most are convex, as this finds out ten times as fast as eigenvalues do
-            step = -cho_solve(cho_factor(hessian + least * np.eye(len(hessian))), slope)
+        shift = least * np.eye(len(hessian))
+        try:  # most are convex, as this finds out faster than eigenvalues do
+            cho_factor(hessian + shift)
+            step = -cho_solve(cho_factor(hessian + 2.0 * shift), slope)
             index, gain = 0, -0.5 * float(slope @ step)
         except LinAlgError:
             values, vectors = eigh(hessian)
