@@ -15,7 +15,8 @@ import pytest
 import yaml
 from batch_results import write_run
 from mobius_flow.addon.pictures import export
-from mobius_flow.cli.atlas import data, entries, pages, pictures
+from mobius_flow.cli.atlas import data, entries, pages, pictures, runs
+from mobius_flow.cli.batch.table import Row
 from mobius_flow.core import MobiusFlowError, RelaxOptions, minimize, read_curve
 from mobius_flow.core.knots import knot, knot_type
 from mobius_flow.core.smooth.rest import Rest, at_rest, energy_of
@@ -79,6 +80,7 @@ def test_minima_are_counted_measured_and_described(atlas, tmp_path: Path, trefoi
     assert least["kinds"] == "named 1, drawn 1"
     assert float(least["writhe"]) > 3.3  # right-handed
     assert float(least["lower_bound"]) == pytest.approx(6.0 * np.pi + 4.0)
+    assert 0.0 <= float(least["upper_bound"]) - trefoil.energy < 1e-5
     assert least["command"] == "mobius-flow batch 3_1 --starts 1 --extrapolate -o results"
     (short,) = table(place / "data/atlas.csv")
     assert short["energy"] == data.rounded(trefoil.energy, trefoil.error)
@@ -104,6 +106,23 @@ def test_minima_are_counted_measured_and_described(atlas, tmp_path: Path, trefoi
     assert 'data-name="3_1"' in index
     assert page.count('class="bar"') == 2
     assert f"{100 * HIGHER / trefoil.energy:.3f} %" in page
+
+
+def test_bounds_are_those_of_the_type_that_is_proved_or_of_its_mirror_image(trefoil: Rest) -> None:
+    for curve in (trefoil.curve, trefoil.curve.mirrored):
+        lower, upper = entries._proved("3_1", curve) or (np.nan, np.nan)
+        assert lower <= upper < lower + 1e-5
+        assert upper == pytest.approx(trefoil.energy, abs=1e-5)
+        assert entries._proved("4_1", curve) is None
+
+
+def test_made_knots_have_the_type_of_their_name_and_files_what_is_proved() -> None:
+    kinds = {"start": 2, "seed": 2, "status": "converged", "message": "", "options": "{}", "kind": "scrambled"}
+    made = Row(name="m10_71", type_before="10_71 or m10_71", type_after="10_71 or m10_71", proved=False, **kinds)
+    file = Row(name="5_1", type_before="5_2", type_after="5_2", proved=True, input_sha256="1f", **kinds)
+    assert runs._type_of(made) == ("10_71", True)
+    assert runs._type_of(file) == ("5_2", False)
+    assert runs._type_of(replace(file, proved=False)) == ("", False)
 
 
 def test_links_lead_to_files(atlas, tmp_path: Path) -> None:
