@@ -109,3 +109,14 @@ def test_a_curve_that_the_polygon_is_not_proved_to_become_is_not_taken(monkeypat
 def test_arcs_and_other_dimensions_are_refused(curve: Curve, told: str) -> None:
     with pytest.raises(CurveError, match=told):
         at_rest(curve)
+
+
+def test_directions_that_are_taken_out_are_stiff_and_others_stay_as_they_are() -> None:
+    rng = np.random.default_rng(1)
+    half, fields, slope = rng.normal(size=(9, 9)), rng.normal(size=(2, 9)), rng.normal(size=9)
+    hessian = half + half.T
+    onto = fields.T @ np.linalg.pinv(fields.T)
+    others = np.eye(9) - onto
+    left, model = rest._free(slope, hessian, np.vstack([fields, fields[:1]]))
+    np.testing.assert_allclose(left, others @ slope, atol=1e-12)
+    np.testing.assert_allclose(model, others @ hessian @ others + np.trace(hessian) / 9 * onto, atol=1e-12)
