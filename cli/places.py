@@ -70,6 +70,12 @@ def check_place(path: str) -> None:
         raise OutputError(path, error) from error
 
 
+def foreign(path: Path, command: str) -> MobiusFlowError:
+    """What to say of what is in the way of a command's files, which replaces nothing but its own."""
+    why = f"was not written by mobius-flow {command}, or has been changed since"
+    return MobiusFlowError(f"{path}: {why}; move it, or name another directory")
+
+
 def is_file(path: str) -> bool:
     """Whether a path is one of a file, or of nothing yet, rather than of a stream or device, where one may wait."""
     try:

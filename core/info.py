@@ -20,6 +20,7 @@ from .hierarchy import moebius_energy
 from .knots import KnotType, knot_type
 from .knots.names import table_name
 from .knots.shapes import least_energies
+from .smooth.minima import SAME_ENERGY
 from .smooth.rest import at_rest
 from .symmetry import SymmetryGroup, symmetries
 from .task import centred, check_units
@@ -27,7 +28,6 @@ from .threads import BLAS
 
 ENERGIES = ("moebius", "edge", "vertex")
 PAIRS_UP_TO = 50_000  # vertices, where all pairs of edges are summed: a minute or so, growing with the square
-SAME = 1e-6  # of the energy, by which those of one minimum differ beside their errors
 _ROUNDING = 1e-15  # of the energy: the least error that is told
 REST_UP_TO = 12_000  # vertices: some minutes where curves are at rest
 
@@ -91,7 +91,7 @@ class Smooth:
             return energy
         least, error = self.least
         excess, known = self.energy - least, f"the least known of {self.name}"
-        if abs(excess) <= self.error + error + SAME * least:
+        if abs(excess) <= self.error + error + SAME_ENERGY * least:
             return f"{energy}, {known}"
         side = "above" if excess > 0.0 else "below"
         return f"{energy}, {abs(100.0 * excess / least):.2g} % {side} {known}, {least:.9g}"

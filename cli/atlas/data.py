@@ -5,7 +5,8 @@ import io
 import json
 import math
 import zipfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 from functools import cache
 from importlib.resources import files
 from importlib.util import find_spec
@@ -18,6 +19,8 @@ from .folder import Folder
 TITLE = "Curves at rest under the Möbius energy"
 CURVES = (".json", ".vect")
 ARCHIVE = "data/moebius-energy-atlas.zip"
+_OUTWARDS = {"upper_bound": ROUND_CEILING, "lower_bound": ROUND_FLOOR}
+_MILLIONTH = Decimal("1e-6")
 _FROM = ("number", "modes", "kinds", "version", "command", "folder")  # columns that atlas.csv leaves out
 _ABSTRACT = """\
 {types} prime knots and links and {minima} smooth curves at which the Möbius energy is stationary, found by
@@ -94,13 +97,13 @@ def _without_curve(minimum: Values) -> Values:
 def _short(row: Values) -> Values:
     kept = {name: value for name, value in row.items() if name not in _FROM}
     short = {name: f"{value:.4f}" if isinstance(value, float) else value for name, value in kept.items()}
-    short |= {"upper_bound": bound(row["upper_bound"], math.ceil), "lower_bound": bound(row["lower_bound"], math.floor)}
-    return short | {"energy": rounded(row["energy"], row["error"]), "error": f"{row['error']:.0e}"}
+    return short | bounds(row) | {"energy": rounded(row["energy"], row["error"]), "error": f"{row['error']:.0e}"}
 
 
-def bound(value: float | None, towards: Callable[[float], int]) -> str:
-    """A bound to six decimals, which is one still."""
-    return "" if value is None else f"{towards(1e6 * value) / 1e6:.6f}"
+def bounds(row: Values) -> dict[str, str]:
+    """Those of a type's least energy that are proved, to six decimals, rounded outwards; empty where there is none."""
+    values = {name: row[name] for name in _OUTWARDS}
+    return {k: "" if x is None else str(Decimal(x).quantize(_MILLIONTH, _OUTWARDS[k])) for k, x in values.items()}
 
 
 def rounded(energy: float, error: float) -> str:

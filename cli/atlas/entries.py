@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-import math
 import shlex
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -15,7 +14,7 @@ from ...core.curve.fourier import FourierCurve
 from ...core.curve.measures import writhe_and_crossings
 from ...core.errors import CurveError
 from ...core.knots import knot_type
-from ...core.knots.catalogue import crossing_number
+from ...core.smooth.least import lower_bound
 from ...core.smooth.minima import balanced, distinct
 from ...core.smooth.rest import index_of
 from ...core.symmetry import standing, symmetries
@@ -52,7 +51,7 @@ def _made(name: str, runs: Sequence[Run]) -> Values:
     minima = [
         {"number": number} | _described(name, [runs[k] for k in group]) for number, group in enumerate(groups, start=1)
     ]
-    return {"type": name, "lower_bound": _lower_bound(name), "runs": len(runs), "minima": minima}
+    return {"type": name, "lower_bound": lower_bound(name), "runs": len(runs), "minima": minima}
 
 
 def _described(name: str, runs: Sequence[Run]) -> Values:
@@ -104,13 +103,9 @@ def _proved(name: str, curve: FourierCurve) -> tuple[float, float] | None:
         return None
 
 
-def _lower_bound(name: str) -> float | None:
-    """What Freedman, He and Wang prove for all curves of a type: 2πc + 4 with c crossings; None for links."""
-    return None if name.startswith("L") else 2.0 * math.pi * crossing_number(name) + 4.0
-
-
 def _command(row: Row) -> str:
-    """The command that makes a run again, with all those of the starts before."""
+    """The command that makes a run again, with all those of the starts before; FILE stands for a file."""
     seed = [] if row.seed in (None, row.start) else ["--seed", str(row.seed - row.start)]
-    words = [row.name, "--starts", str(row.start), *seed, *flags(json.loads(row.options)), "--extrapolate"]
-    return shlex.join(["mobius-flow", "batch", *words, "-o", "results"])
+    name, file = (row.name, "") if row.input_sha256 is None else ("FILE", f"  # SHA-256 of FILE: {row.input_sha256}")
+    words = [name, "--starts", str(row.start), *seed, *flags(json.loads(row.options)), "--extrapolate"]
+    return shlex.join(["mobius-flow", "batch", *words, "-o", "results"]) + file

@@ -3,10 +3,10 @@
 import hashlib
 from pathlib import Path
 
-from ...core import MobiusFlowError
 from ...core.errors import OutputError
 from ...core.files import atomic_write
 from ..batch.job import sha256_of
+from ..places import foreign
 
 SUMS = "SHA256SUMS"
 _MARK = "# mobius-flow atlas; check with: sha256sum -c SHA256SUMS\n"
@@ -25,7 +25,7 @@ class Folder:
         self._kept: dict[str, str] = {}  # those of this time
         text = self._sums.read_text(encoding="utf-8", errors="replace") if self._sums.is_file() else ""
         if not text.startswith(_MARK) and (path.is_symlink() or (path.exists() and not path.is_dir()) or self._any()):
-            raise _foreign(path)
+            raise foreign(path, "atlas")
         for line in text.splitlines()[1:]:
             digest, _, name = line.partition("  ")
             if not (Path(name).is_absolute() or ".." in Path(name).parts):  # what is elsewhere is not ours
@@ -76,15 +76,9 @@ class Folder:
         path = self.path / name
         digest = sha256_of(path)
         if path.is_symlink() or (path.exists() and digest not in self._ours.get(name, ())):
-            raise _foreign(path)
+            raise foreign(path, "atlas")
         return digest
 
     def _write(self, name: str, data: bytes) -> None:
         with atomic_write(self.path / name) as temporary:
             temporary.write_bytes(data)
-
-
-def _foreign(path: Path) -> MobiusFlowError:
-    return MobiusFlowError(
-        f"{path}: was not written by mobius-flow atlas, or has been changed since; move it, or name another directory"
-    )

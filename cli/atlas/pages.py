@@ -1,6 +1,5 @@
 """The pages: an index that can be sorted and filtered, and one for each knot or link."""
 
-import math
 import re
 from collections.abc import Iterable, Sequence
 from html import escape
@@ -9,7 +8,7 @@ from importlib.util import find_spec
 
 from ... import __version__
 from ...core.errors import counted
-from .data import ARCHIVE, CURVES, TITLE, bound, curve_path, rounded, template
+from .data import ARCHIVE, CURVES, TITLE, bounds, curve_path, rounded, template
 from .entries import Values
 from .folder import Folder
 
@@ -51,7 +50,7 @@ def _index_row(entry: Values, place: int) -> str:
         _cell(f'{link} tabindex="-1" aria-hidden="true">{picture}</a>' if (picture := _picture(least, "")) else ""),
         f'<th scope="row" data-value="{place}">{link}>{typeset(name)}</a></th>',
         _cell(_energy(least), least["energy"]),
-        *(_cell(text, float(text) if text else None) for text in _bounds(entry)),
+        *(_cell(text, float(text) if text else None) for text in bounds(entry | least).values()),
         *(_cell(str(count), count) for count in (len(entry["minima"]) - saddles, saddles)),
         _cell(f"{least['met']} of {entry['runs']}", least["met"] / entry["runs"]),
         _cell(_group(least)),
@@ -62,11 +61,11 @@ def _index_row(entry: Values, place: int) -> str:
 
 def _knot(entry: Values, before: Values | None, after: Values | None) -> str:
     least, name = entry["minima"][0], entry["type"]
-    upper, lower = _bounds(entry)
+    proved = bounds(entry | least)
     facts = {
         "Möbius energy": _energy(least),
-        "proved: least energy of the type ≤": upper,
-        "proved: least energy of the type ≥": lower,
+        "proved: least energy of the type ≤": proved["upper_bound"],
+        "proved: least energy of the type ≥": proved["lower_bound"],
         "at rest": _index(least),
         "symmetry": _group(least),
         "met by": f"{least['met']} of {counted(entry['runs'], 'run')}",
@@ -102,11 +101,6 @@ def _knot_row(entry: Values, minimum: Values) -> str:
         " ".join(curves),
     ]
     return f"<tr>{''.join(map(_cell, cells))}</tr>"
-
-
-def _bounds(entry: Values) -> tuple[str, str]:
-    """What is proved of the least energy of a type, from above and from below; empty where nothing is."""
-    return bound(entry["minima"][0]["upper_bound"], math.ceil), bound(entry["lower_bound"], math.floor)
 
 
 def _group(minimum: Values) -> str:

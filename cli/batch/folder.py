@@ -13,8 +13,9 @@ from typing import Any
 
 from ...core import MobiusFlowError, Status
 from ...core.errors import reason_of
+from ..places import foreign
 from .job import CURVE, REPORT, TRAJECTORY, Job, limit_of, sha256_of
-from .table import Row, foreign
+from .table import Row
 
 _ROOM = ".mobius-flow-{}.partial"  # short, so that whatever can be the name of results has one beside it
 _NOTE = "note"  # in a room while it is filled
@@ -83,10 +84,10 @@ def check_replaceable(path: Path) -> None:
     report = _report(path)
     written = report.pop(_FILES, None)
     if path.is_symlink() or not isinstance(written, dict) or written.pop(REPORT, None) != _sha256_of(report):
-        raise foreign(path)
+        raise foreign(path, "batch")
     for each in sorted(path.iterdir()):
         if each.is_symlink() or (each.name != REPORT and written.get(each.name, "") != sha256_of(each)):
-            raise foreign(each)
+            raise foreign(each, "batch")
 
 
 def _report(folder: Path) -> dict[str, Any]:

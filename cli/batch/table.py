@@ -11,9 +11,10 @@ from pathlib import Path
 from typing import get_args, get_type_hints
 
 from ... import __version__
-from ...core import MobiusFlowError, RelaxOptions
+from ...core import RelaxOptions
 from ...core.errors import OutputError, counted
 from ...core.files import atomic_write
+from ..places import foreign
 from ..streams import one_line
 from .job import CSV, PARQUET, Job, as_text, sha256_of
 
@@ -110,16 +111,9 @@ def check_tables(directory: Path) -> None:
     table, parquet = directory / CSV, directory / PARQUET
     marks = _marks(parquet) if parquet.exists() else []
     if parquet.exists() and not marks:
-        raise foreign(parquet)
+        raise foreign(parquet, "batch")
     if table.exists() and sha256_of(table) not in marks:
-        raise foreign(table)
-
-
-def foreign(path: Path) -> MobiusFlowError:
-    """What to say of files that are not ours."""
-    return MobiusFlowError(
-        f"{path}: was not written by mobius-flow batch, or has been changed since; move it, or name another directory"
-    )
+        raise foreign(table, "batch")
 
 
 def _marks(parquet: Path) -> list[str]:

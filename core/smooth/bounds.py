@@ -54,15 +54,6 @@ def energy_bounds(coefficients: Sequence[ComplexArray], tolerance: float = 1e-8)
         return math.nextafter(float(ball.lower()), -math.inf), math.nextafter(float(ball.upper()), math.inf)
 
 
-@checked
-def least_energy(crossings: int) -> float:
-    """A lower bound of the energies of all knots of a type with such a crossing number c, rounded down: 4 + 2πc.
-
-    M. Freedman, Z.-X. He and Z. Wang, *Möbius energy of knots and unknots*, Annals of Mathematics 139 (1994).
-    """
-    return math.nextafter(4.0 + 2.0 * math.pi * crossings, 0.0) if crossings else 4.0
-
-
 @dataclass(frozen=True)
 class _Strip:
     """Where |Im s| ≤ height, f is analytic in s for every real t, and |f| ≤ bound."""

@@ -13,8 +13,8 @@ _SHARE = 4.0  # energy of a circle, which its pairs do not have: it is spread ov
 def parameters(curve: Curve) -> list[FloatArray]:
     """Parameters of a closed polygon's vertices that grow with the energy, for each component from 0 to below 1.
 
-    They make curves slow where strands are near: the density of energy beside a strand at distance d is about π/d.  As
-    it is Möbius-invariant, so are they.
+    They make curves slow where strands are near: the density of energy beside a strand at distance d is about π/d, and
+    that density is Möbius-invariant.
     """
     cuts, found = curve.mesh.offsets[1:-1], []
     for density, ell in zip(np.split(moebius_by_length(curve), cuts), np.split(curve.edge_lengths, cuts), strict=True):

@@ -239,6 +239,18 @@ def test_without_blender_there_are_no_pictures(monkeypatch: pytest.MonkeyPatch) 
         pictures.usable("STUDIO")
 
 
+def test_bounds_are_rounded_outwards() -> None:
+    known = {"upper_bound": 74.4120430000001, "lower_bound": 22.849556}
+    assert data.bounds(known) == {"upper_bound": "74.412044", "lower_bound": "22.849555"}  # of doubles, not of decimals
+    assert data.bounds({"upper_bound": None, "lower_bound": 4.0}) == {"upper_bound": "", "lower_bound": "4.000000"}
+
+
+def test_commands_of_files_have_their_hash() -> None:
+    row = Row(name="5_1", start=2, seed=2, status="converged", message="", options="{}", input_sha256="1f")
+    found = entries._command(row)
+    assert found == "mobius-flow batch FILE --starts 2 --extrapolate -o results  # SHA-256 of FILE: 1f"
+
+
 def test_energies_are_rounded_to_their_errors() -> None:
     assert [data.rounded(74.4120429, error) for error in (3e-8, 2e-3, 0.3, 1e-15)] == [
         *("74.41204290", "74.412", "74.4", "74.412042900")

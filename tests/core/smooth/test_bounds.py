@@ -10,6 +10,7 @@ from mobius_flow.core.curve.fourier import FourierCurve
 from mobius_flow.core.knots.shapes import shapes, smooth_knot
 from mobius_flow.core.smooth.basis import Basis
 from mobius_flow.core.smooth.energy import Pairs
+from mobius_flow.core.smooth.least import lower_bound
 from smooth_curves import SMOOTH_CURVES
 from torus_energies import torus_knot_energy
 
@@ -56,7 +57,7 @@ def test_torus_knots_by_their_integrals(q, a, energy):
     """Of the minimum, where the energy is known, modes that are left out and the last digits of a hardly matter."""
     lower, upper = bounds.energy_bounds([fitted(torus_knot(2, q, a, 512), 60)])
     assert lower - 1e-7 <= (energy or torus_knot_energy(2, q, a)) <= upper + 1e-7
-    assert bounds.least_energy(q) < lower
+    assert lower_bound(f"{q}_1") < lower
 
 
 def test_a_fit_to_a_polygon_at_rest_is_above_the_minimum_by_little():
@@ -140,8 +141,3 @@ def test_curves_without_energy(curves, message):
 def test_tolerances_that_there_are_not(tolerance):
     with pytest.raises(OptionError, match="give a number from 1e-10 on"):
         bounds.energy_bounds([CIRCLE], tolerance)
-
-
-def test_lower_bounds_by_crossing_number():
-    assert bounds.least_energy(0) == 4.0
-    assert 22.8495559 < bounds.least_energy(3) < 4.0 + 6.0 * np.pi < 22.8495560
