@@ -53,6 +53,12 @@ def test_images_are_the_same_and_other_energies_are_not(trefoil: Rest) -> None:
     assert distinct(ends) == [[3, 1, 2], [0]]
 
 
+@pytest.mark.parametrize(("apart", "groups"), [(1.9, [[0, 1]]), (2.1, [[0], [1]])])
+def test_errors_of_both_count(trefoil: Rest, apart: float, groups: list[list[int]]) -> None:
+    ends = [replace(trefoil, energy=trefoil.energy + more, error=1.0) for more in (0.0, apart)]
+    assert distinct(ends) == groups
+
+
 def test_links_whose_components_change_places_are_the_same() -> None:
     link = at_rest(minimize(knot("L4a1", 80), RelaxOptions(vertices=80)).curve)
     assert link is not None
