@@ -96,7 +96,7 @@ def _without_curve(minimum: Values) -> Values:
 
 def _short(row: Values) -> Values:
     kept = {name: value for name, value in row.items() if name not in _FROM}
-    short = {name: f"{value:.4f}" if isinstance(value, float) else value for name, value in kept.items()}
+    short = {name: f"{value:z.4f}" if isinstance(value, float) else value for name, value in kept.items()}
     return short | bounds(row) | {"energy": rounded(row["energy"], row["error"]), "error": f"{row['error']:.0e}"}
 
 

@@ -131,7 +131,7 @@ def _cell(text: str, value: float | None = None) -> str:
 
 
 def _number(value: float, decimals: int) -> str:
-    return f"{round(value, decimals) + 0.0:.{decimals}f}".replace("-", "−")
+    return f"{value:z.{decimals}f}".replace("-", "−")
 
 
 def _energy(minimum: Values) -> str:
