@@ -28,10 +28,11 @@ _FOLLOWS = 0.03  # of the energy: how far that of a first fit may be from the po
 _RESOLVED = 1e-4  # of the energy: the error up to which more modes go on where fewer ended
 _REACH = 0.3  # of their distance: how far a Newton step moves points towards each other, or away
 _ROUGHLY = 1e-8, 20  # of the energy, what a next step would gain, and steps, after which more modes do better
-_FINALLY = 1e-11, 4  # the same in the end
+_FINALLY = 1e-11, 20  # the same in the end
 _STIFFNESS = 2.0  # against sliding
-_NEAR = 1e-7  # of the energy, that a step may gain where Newton's own is taken
-_SOFT = 1e-9  # of the Hessian's norm: the sign of smaller eigenvalues is not known
+_NEAR = 1e-10  # of the energy, that a step may gain where Newton's own is taken
+_ROUNDING = 1e-13  # of the Hessian's norm, to which its eigenvalues are known
+_CONCAVE = 1e-9  # of the Hessian's norm: modes left out make the sign of smaller eigenvalues uncertain
 
 Placed = tuple[Curve, Sequence[FloatArray]]
 """A polygon and the parameters of its components' vertices."""
@@ -146,7 +147,8 @@ class Model:
         """That at unknowns z."""
         pairs, stiff = Pairs.of(basis, z), _STIFFNESS * sliding(basis, z)
         slope, hessian = _free(pairs.gradient.ravel(), pairs.hessian + stiff, invariant(basis, z))
-        least = _SOFT * float(np.linalg.norm(hessian, np.inf))
+        norm = float(np.linalg.norm(hessian, np.inf))
+        least = _ROUNDING * norm
         shift = least * np.eye(len(hessian))
         try:  # most are convex, as this finds out faster than eigenvalues do
             cho_factor(hessian + shift)
@@ -155,7 +157,7 @@ class Model:
         except LinAlgError:
             values, vectors = eigh(hessian)
             along, stiffness = vectors.T @ slope, np.maximum(np.abs(values), least)
-            index, gain = int(np.count_nonzero(values < -least)), 0.5 * float(np.sum(along**2 / stiffness))
+            index, gain = int(np.count_nonzero(values < -_CONCAVE * norm)), 0.5 * float(np.sum(along**2 / stiffness))
             signs = np.sign(values) if gain < _NEAR * pairs.energy else 1.0
             step = -vectors @ (signs * along / stiffness)
         return cls(pairs.energy, index, step.reshape(-1, 3), gain)
