@@ -63,10 +63,10 @@ class Extrapolation:
 
 @checked
 def extrapolated(curve: Curve | Task, options: RelaxOptions) -> Extrapolation | None:
-    """Relax a relaxed curve, in the user's units, on with every edge halved, and halved again; None if a run stalls.
+    """Go on relaxing a curve, in the user's units, with every edge halved, and halved again; None if a run stalls.
 
     There are twice and four times as many vertices, and few iterations. The options are those it was relaxed with;
-    tolerances above `TOLERANCE` are taken for that.
+    tolerances above `TOLERANCE` are lowered to it.
     """
     task, energies = Task.of(curve), []
     for pieces in (1, 2, 2):

@@ -1,4 +1,4 @@
-"""What there is to say about a curve as it stands: what ``mobius-flow energy`` and ``mobius-flow info`` print."""
+"""Facts about a curve as it stands: what ``mobius-flow energy`` and ``mobius-flow info`` print."""
 
 import math
 from collections.abc import Mapping
@@ -27,8 +27,8 @@ from .task import centred, check_units
 from .threads import BLAS
 
 ENERGIES = ("moebius", "edge", "vertex")
-PAIRS_UP_TO = 50_000  # vertices, where all pairs of edges are summed: a minute or so, growing with the square
-_ROUNDING = 1e-15  # of the energy: the least error that is told
+PAIRS_UP_TO = 50_000  # vertices where all pairs of edges are summed: a minute or so, growing with the square
+_ROUNDING = 1e-15  # of the energy: the least error that is reported
 REST_UP_TO = 12_000  # vertices: some minutes where curves are at rest
 
 
@@ -37,8 +37,8 @@ REST_UP_TO = 12_000  # vertices: some minutes where curves are at rest
 def measure(curve: Curve, energy: str = "moebius") -> float:
     """The energy of a curve, in the user's units.
 
-    A CurveError if the curve has too many vertices, touches itself, or has strands too near, or units too large or
-    small, to compute with; an OptionError if the energy is unknown.
+    Raises CurveError if the curve has too many vertices, touches itself, or has strands too near, or units too large or
+    small, to compute with, and OptionError if the energy is unknown.
     """
     check_known("energy", energy, KNOWN)
     wanted = KNOWN[energy]
@@ -58,7 +58,7 @@ class Rest:
 
     objective: float  #: the Möbius energy with its barrier
     gradient_norm: float  #: of the projected gradient in the metric J_C, edge lengths being prescribed
-    bound: float  #: of that at rest, as `relax` has it by default
+    bound: float  #: largest norm at rest, as `relax` has it by default
     index: int | None  #: of the Hessian, 0 at a minimum; None away from rest, or if it is not resolved
 
     @property
@@ -80,7 +80,7 @@ class Smooth:
 
     energy: float
     error: float  #: how far the energy may be off
-    name: str | None  #: of the table's knot or link that it is
+    name: str | None  #: of the knot or link of the table that it is
     least: tuple[float, float] | None  #: the least energy known of that type, and its error
 
     @property
@@ -114,7 +114,7 @@ class Info:
     shortest_edge: float
     longest_edge: float
     symmetry: SymmetryGroup | None
-    gap: float  #: least distance of edges that are no neighbours; infinite for a triangle
+    gap: float  #: least distance between edges that are not neighbours; infinite for a triangle
 
     def __repr__(self) -> str:
         return f"<Info: {self.type}, {sum(self.components)} vertices, length {self.length:.6g}>"

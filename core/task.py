@@ -1,4 +1,4 @@
-"""What is to be relaxed, what stands still meanwhile, and the units of both.
+"""The curve to be relaxed, the obstacles and pins that stand still meanwhile, and units for all.
 
 The program's own units are similar to the user's: the curve is about 2π long in them.
 """
@@ -20,7 +20,7 @@ from .messages import VERTEX, Message
 from .obstacle import MAX_COORDINATE, Obstacle
 from .types import FloatArray, frozen
 
-# of obstacles, in the program's units: beyond, their repulsion is lost in the rounding of their corners
+# of obstacles, in the program's units: beyond it, their repulsion is lost in the rounding of their corners
 MAX_REACH = 1e12
 _log = logging.getLogger(__name__)
 
@@ -114,7 +114,7 @@ class Task:
 
     @classmethod
     def of(cls, given: "Task | Curve") -> "Task":
-        """The task itself, or that of a curve with nothing around it."""
+        """The task itself, or the task of a curve with nothing around it."""
         return given if isinstance(given, Task) else cls(curve=given)
 
     @property
@@ -142,10 +142,10 @@ class Task:
 
 
 def check_refined(curve: Curve, refined: Curve, obstacles: Sequence[Obstacle]) -> None:
-    """Refuse a refined curve that is not what the curve was, or that cannot be computed with.
+    """Refuse a refined curve that is no longer the same curve, or that cannot be computed with.
 
-    A CurveError if strands are too near to compute with, or the new vertices, rounded to doubles, might not be on their
-    edges for all that matters.
+    Raises CurveError if strands are too near to compute with, or the new vertices, rounded to doubles, might not be
+    near enough to their edges.
     """
     if len(refined) > len(curve) and not survives_rounding(refined, obstacles):
         digits = (

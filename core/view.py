@@ -1,4 +1,4 @@
-"""Curves and motions as pictures that turn in a browser or a notebook, by Plotly."""
+"""Curves and motions as pictures that can be turned in a browser or a notebook, with Plotly."""
 
 import os
 from collections.abc import Iterator, Sequence
@@ -28,14 +28,14 @@ _THICKEST, _THINNEST = 0.012, 0.002  # radius of tubes in lengths of the curve
 
 @dataclass(frozen=True)
 class Motion:
-    """Curves on one mesh that follow each other, in space, with their energies; or one, with those of a whole run."""
+    """Successive curves on one mesh, in space, with their energies; or one curve, with the energies of a whole run."""
 
     curves: tuple[Curve, ...]
     energies: tuple[float, ...] = ()
 
     @property
     def radius(self) -> float:
-        """Of tubes that are well seen, and thinner where strands are near each other."""
+        """Radius of tubes that are easy to see, but thinner where strands are near each other."""
         length = max(curve.length for curve in self.curves)
         gap = min(minimal_gap(curve)[0] for curve in self.curves)
         return float(np.clip(0.45 * gap, _THINNEST * length, _THICKEST * length))
@@ -43,10 +43,10 @@ class Motion:
 
 @checked
 def motion(path: str | os.PathLike[str], frames: int = FRAMES) -> Motion:
-    """Frames of a trajectory file, at most so many and about as far apart, with the first and the last.
+    """At most ``frames`` frames of a trajectory file, about equally far apart, with the first and the last.
 
-    All have as many vertices.  Raises MobiusFlowError if there is no trajectory, or a frame touches itself; that the
-    motion is free of contact is for `verify` to say.
+    All have the same number of vertices.  Raises MobiusFlowError if there is no trajectory, or a frame touches itself;
+    it is for `verify` to say that the motion is free of contact.
     """
     path = os.fspath(path)
     try:
@@ -61,14 +61,14 @@ def motion(path: str | os.PathLike[str], frames: int = FRAMES) -> Motion:
 
 
 def _curves(path: str) -> Iterator[Curve]:
-    """All frames but the first ones of later stages, which are the last of those before on another mesh."""
+    """All frames but the first ones of later stages, which repeat the last ones before on another mesh."""
     for number, stage in enumerate(stages(path)):
         mesh = Mesh(*zip(*((each.size, each.closed) for each in stage.components), strict=True))
         yield from (Curve(frame, mesh) for frame in islice(stage.frames, number > 0, None))
 
 
 def _evenly_apart(path: str, count: int) -> set[int]:
-    """Numbers of frames between which vertices move about as far."""
+    """Numbers of frames between which vertices move about equally far."""
     moved, last = [0.0], None
     for curve in _curves(path):
         if last is not None:
@@ -80,7 +80,7 @@ def _evenly_apart(path: str, count: int) -> set[int]:
 
 
 def _on_one_mesh(curves: Sequence[Curve]) -> list[Curve]:
-    """Points evenly along the curves, and those of a closed component begun where they are next to those before."""
+    """Points evenly along the curves; on a closed component they begin where they are nearest to the previous ones."""
     share = curves[-1].component_lengths / curves[-1].length
     counts = np.maximum(np.round(_STATIONS * share), 12).astype(int).tolist()
     made: list[Curve] = []
@@ -153,7 +153,7 @@ def page(shown: Motion, radius: float | None = None, title: str = "") -> str:
 
 
 def _surface(k: int, corners: IntArray) -> dict[str, Any]:
-    """What does not change of the surface of a component."""
+    """The properties of a component's surface that do not change."""
     light = {"ambient": 0.55, "diffuse": 0.8, "specular": 0.3, "roughness": 0.4}
     look = {"color": COLOURS[k % len(COLOURS)], "lighting": light, "lightposition": {"x": 1e4, "y": 2e4, "z": 3e4}}
     faces = dict(zip("ijk", corners.astype(np.int32), strict=True))
@@ -161,7 +161,7 @@ def _surface(k: int, corners: IntArray) -> dict[str, Any]:
 
 
 def _layout(shown: Motion, radius: float, title: str) -> dict[str, Any]:
-    """No axes, and room for every frame; beside it the energies, if there are some."""
+    """No axes, and room for every frame; beside it the energies, if there are any."""
     points = np.concatenate([np.pad(each.vertices, ((0, 0), (0, 3 - each.dimension))) for each in shown.curves])
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     half = 0.5 * float(np.ptp(points, axis=0).max()) + 2.0 * radius

@@ -1,4 +1,4 @@
-"""Run several methods from the same start and keep what each did: the data behind Figure 3 of [RS21]."""
+"""Run several methods from the same start and record what each did: the data behind Figure 3 of [RS21]."""
 
 import time
 from collections.abc import Collection, Generator, Mapping, Sequence
@@ -21,15 +21,15 @@ from .trajectory import Iterate
 
 @dataclass(frozen=True)
 class History:
-    """One method's history; what there is of every iterate begins with the start."""
+    """One method's history; what is recorded for every iterate begins with the start."""
 
     method: str
     status: str  #: the value of a `Status`
-    seconds: tuple[float, ...]  #: of processor time since the method began, set-up left out
+    seconds: tuple[float, ...]  #: processor time since the method began, without set-up
     energy: tuple[float, ...]  #: the objective, without the penalty that some methods add to it
-    gradient_norm: tuple[float, ...]  #: of the gradient of what is minimised
-    fallback: tuple[int, ...]  #: iterates to which another method led, because this one was stuck
-    metric: str  #: name of the one that gradients were taken in
+    gradient_norm: tuple[float, ...]  #: norm of the gradient of the function that is minimised
+    fallback: tuple[int, ...]  #: iterates reached by another method, because this one was stuck
+    metric: str  #: name of the metric in which gradients were taken
     stages: Mapping[int, Curve] = field(default_factory=dict, compare=False)  #: curves of some iterates by their index
 
     def __repr__(self) -> str:
@@ -51,9 +51,9 @@ def compare(
 ) -> Generator[History, None, None]:
     """Run each method from the same refined curve for a limited number of seconds of processor time.
 
-    All methods are checked before the first one runs. No strands are moved, and the mesh ``auto`` is a fixed one, so
-    that steps are compared on one mesh. Of the iterates of indices ``stages`` curves are kept, of the last one in place
-    of those that were not reached. Raises as `relax` does.
+    All methods are checked before the first one runs.  There are no strand moves, and the mesh ``auto`` means a fixed
+    one, so that steps are compared on one mesh.  Curves are kept of the iterates with indices ``stages``, and of the
+    last iterate in place of any that were not reached.  Raises as `relax` does.
     """
     check_number("time_limit", time_limit, 0.0, float("inf"))
     if not len(methods):
@@ -93,7 +93,7 @@ def _run(start: Task, options: RelaxOptions, problem: Problem, time_limit: float
 
 
 def _without_penalty(iterate: Iterate, problem: Problem) -> float:
-    """The objective that all methods have in common; it is computed while no stopwatch runs."""
+    """The objective common to all methods, computed while the clock is stopped."""
     if problem.geometry.prescribes:
         return iterate.energy
     curve = iterate.curve
@@ -101,6 +101,6 @@ def _without_penalty(iterate: Iterate, problem: Problem) -> float:
 
 
 def least_energy(runs: Sequence[History]) -> float:
-    """The least energy of methods that keep lengths, or of all if there are none: others solve another problem."""
+    """The least energy of the methods that keep lengths (others solve another problem), or of all if none does."""
     keeping = [run for run in runs if METHODS[run.method].geometry.prescribes]
     return min(min(run.energy) for run in keeping or runs)

@@ -1,4 +1,4 @@
-"""A hand that takes hold of a curve while it relaxes, and drags it."""
+"""A hand that grabs a curve while it relaxes, and drags it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -21,22 +21,22 @@ from .outcome import Outcome
 from .run import Change, Event, Intervention
 from .trajectory import Iterate
 
-STRENGTH = 5.0  # of the spring, in energies of the curve, by their scale, over the program's unit of length squared
-FARTHEST = 100.0  # target, from what is held, in the program's units: beyond, only its direction counts
+STRENGTH = 5.0  # of the spring, in units of the curve's energy scale over the program's unit of length squared
+FARTHEST = 100.0  # target from the held point, in the program's units; beyond this only its direction counts
 
 
 class Hand:
-    """What drags a curve while `relax` goes on: between two iterates it is told what to do.
+    """A hand that drags a curve while `relax` runs; it takes instructions between two iterates.
 
-    The curve follows as far as other strands and obstacles leave room, by motions that are proved like all others, and
-    relaxes around the hand; once released it relaxes on.  While it is held iterations do not count, energies are those
-    without the hand, and the run does not end: where it comes to rest it yields its iterate again, which ``rests``
-    tells, and ends only if nothing is said then.
+    The curve follows as far as other strands and obstacles leave room, by motions proved like all others, and relaxes
+    around the hand; once released it goes on relaxing.  While it is held, iterations do not count, energies exclude the
+    hand, and the run does not end: where the curve comes to rest, the run sets ``rests`` and yields its iterate again,
+    and it ends only if no instruction follows.
 
     Parameters
     ----------
     stays
-        Whether it waits in this way at every end, whether the curve is held or not.
+        Whether the run waits in this way wherever it would end, even if the curve is not held.
 
     Examples
     --------
@@ -61,18 +61,18 @@ class Hand:
 
     @checked
     def grab(self, component: int, share: float) -> None:
-        """Take hold of a component, counted from 0, at a share of its length from its first vertex on.
+        """Grab a component, counted from 0, at a share of its length from its first vertex on.
 
-        A MobiusFlowError if the share is not in [0, 1]; the run raises one if it has no such component.
+        Raises MobiusFlowError if the share is not in [0, 1]; the run raises it if there is no such component.
         """
         if not 0.0 <= share <= 1.0:
             raise MobiusFlowError(f"share is {share}; give a share of the component's length, from 0 to 1")
         self._say(lambda hold: hold.grab(component, share))
 
     def move(self, target: npt.ArrayLike) -> None:
-        """Pull what is held towards a point, shape (m,), in the curve's units; the last one said counts.
+        """Pull the held part towards a point, shape (m,), in the curve's units; the latest target counts.
 
-        A MobiusFlowError if it is no such point; the run raises one if it has another dimension.
+        Raises MobiusFlowError if it is no such point; the run raises it if the curve has another dimension.
         """
         try:
             point = np.array(target, dtype=np.float64)
@@ -84,13 +84,13 @@ class Hand:
 
     @checked
     def release(self, pin: bool = False) -> None:
-        """Let go; with a pin the vertex in the middle of what was held stays where it is from then on."""
+        """Let go; with a pin, the vertex in the middle of the held part stays where it is from then on."""
         self._say(lambda hold: hold.release(pin))
 
     def undo(self) -> None:
-        """Go back to the iterate before the last grab, as if what came after it had never been.
+        """Go back to the iterate before the last grab, as if nothing after it had happened.
 
-        The next iterate has the number after that one; no `Trajectory` that has the others takes it.
+        The next iterate takes the number after that one; a `Trajectory` that has the undone ones refuses it.
         """
         self._say(lambda hold: hold.undo())
 
@@ -101,7 +101,7 @@ class Hand:
 
 @dataclass(eq=False)
 class Hold(Intervention):
-    """Does what the hand says; to be asked first of all interventions, and again at last, for its ``ending``."""
+    """Carries out the hand's instructions; asked before all interventions, and after them for its ``ending``."""
 
     hand: Hand
     _before: list[tuple[Point, Iterate]] = field(default_factory=list, init=False)  # each grab that may be undone
@@ -113,15 +113,15 @@ class Hold(Intervention):
         if self._pull is not None:
             self.run.renew()
         if self.run.problem.mesh is not mesh:
-            return Change()  # the event was about another
+            return Change()  # the event was about another mesh
         if isinstance(event, NoStep | Outcome):
             if said:
-                return Change()  # it was found before
+                return Change()  # the event came before the instructions
             return self.ending(event) if self._pull is not None else event
         return event
 
     def ending(self, event: Event) -> Event | Change:
-        """Where the run would end it rests once, if there is a hand."""
+        """Let the run rest once where it would end, if the curve is held or the hand stays."""
         waits = self._pull is not None or self.hand.stays
         if not (isinstance(event, NoStep | Outcome) and waits):
             return event
@@ -165,7 +165,7 @@ class Hold(Intervention):
             self._pin(pull.vertex)
 
     def _pin(self, vertex: int) -> None:
-        """Pin a vertex where it is; lengths that are not reached yet stay as they are, for they might be too short."""
+        """Pin a vertex in place; targets not reached yet, which might be too short, give way to present lengths."""
         run, constraints = self.run, self.run.problem.constraints
         pins = Pins.of(run.iterate.curve, np.union1d(constraints.pins.vertices, [vertex]))
         parts = constraints.block(Barycenters).parts

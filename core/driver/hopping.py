@@ -27,15 +27,15 @@ IS_UNKNOT = Message("the curve is an unknot, and a circle has less energy")
 MAY_BE_UNKNOT = Message(
     "the curve may be an unknot, for its Alexander polynomial is trivial, and a circle has less energy"
 )
-ROUND = 0.9  # of the area of the circle of the same length: coarse and uneven ones have that
+ROUND = 0.9  # of the area of the circle of the same length; even coarse and uneven circles have that much
 MOST_VERTICES = 10_000  # for which the knot type is computed: a few seconds
 
 
 def hopping(run: Run, hold: Hold | None = None, symmetrised: Symmetrised | None = None) -> Relaxation:
     """Yield the iterates of a relaxation, of strand moves and of hops; return how it ended.
 
-    A hop is one iterate: its path is the motion, and the relaxation to where there is less energy than at the minimum
-    before.  So a run stopped between two iterates has the lowest curve so far.
+    A hop is one iterate: its path is the motion and the relaxation that follows, down to less energy than the previous
+    minimum has.  A run stopped between two iterates therefore has the lowest curve so far.
     """
     hops, strands = Hops(run), Untangling(run)
     yield run.iterate
@@ -60,7 +60,7 @@ class Hops:
     """The hops of one run."""
 
     run: Run
-    motions: Sequence[Motion] = MOTIONS  # that they begin with, by turns
+    motions: Sequence[Motion] = MOTIONS  # with which hops begin, in turn
     # relative decrease of the objective that counts: vertices sliding along a curve change it by about as much
     gain: float = number(1e-3, most=1)
 
@@ -69,7 +69,7 @@ class Hops:
         self._tried = self._taken = 0
 
     def led_lower(self, outcome: Outcome) -> bool:
-        """Try until a hop leads lower, which the run then takes; False if none does, or there is nothing lower."""
+        """Try until a hop leads lower, and let the run take it; False if none does, or if nothing is lower."""
         run = self.run
         motions = [motion for motion in self.motions if motion.fits(run.point)]
         if run.frozen or not (outcome.may_be_left and motions):
@@ -95,7 +95,7 @@ class Hops:
         return False
 
     def summarised(self, outcome: Outcome) -> Outcome:
-        """The outcome with what hops have achieved, or what they might."""
+        """The outcome with clauses on what hops achieved, or might achieve."""
         if self._tried:
             outcome = outcome.adding(
                 "hops that lowered the energy: {taken} of {tried}", taken=self._taken, tried=self._tried
@@ -137,10 +137,10 @@ def trial(run: Run, motion: Motion, rng: np.random.Generator, below: float) -> T
 
 
 def is_circle(curve: Curve) -> bool:
-    """Whether a curve is one component and a round circle, but for what its vertices make of it.
+    """Whether a curve has one component and is a round circle, up to discretisation.
 
-    By the isoperimetric inequality L² ≥ 4π |A|, A = ½ ∮ γ ∧ dγ the bivector of the areas of its shadows, in all
-    dimensions; only once round the circle are the two equal.
+    It uses the isoperimetric inequality L² ≥ 4π |A| in any dimension, where A = ½ ∮ γ ∧ dγ is the bivector of the areas
+    of the curve's projections; only a circle traversed once attains equality.
     """
     if len(curve.mesh.component_sizes) > 1:
         return False
@@ -150,7 +150,7 @@ def is_circle(curve: Curve) -> bool:
 
 
 def unknot_message(curve: Curve) -> Message | None:
-    """Say that a curve is or may be an unknot, though it is no circle; None if it is one, or is knotted or a link."""
+    """Say that a curve is or may be an unknot though not a circle; None if it is a circle, knotted or a link."""
     alone = len(curve.mesh.component_sizes) == 1
     if not alone or curve.dimension != 3 or len(curve) > MOST_VERTICES or is_circle(curve):
         return None

@@ -21,7 +21,7 @@ Relaxation = Generator[Iterate, None, Outcome]
 
 
 class WithOutcome:
-    """The iterates of a relaxation for a ``for`` loop, which by itself loses the ``outcome``: None until its end."""
+    """The iterates of a relaxation, with the ``outcome`` that a ``for`` loop would lose: None until the end."""
 
     @checked
     def __init__(self, relaxation: Relaxation) -> None:
@@ -33,7 +33,7 @@ class WithOutcome:
 
 
 def within(limit: TimeLimit, relaxation: Relaxation) -> Relaxation:
-    """The same until the time is up, also in the middle of a step; time between iterates does not count."""
+    """The same until the time is up, even in the middle of a step; time between iterates does not count."""
     while True:
         try:
             with limit:
@@ -59,7 +59,7 @@ def iterates(run: Run, interventions: Sequence[Callable[[Run], Intervention]] | 
 def descent(
     run: Run, interventions: Sequence[Callable[[Run], Intervention]] | None = None, hold: Hold | None = None
 ) -> Relaxation:
-    """Yield what comes after the point that a run has reached; return how it ended, without the run's summary."""
+    """Yield the iterates after the point that a run has reached; return how it ended, without the run's summary."""
     kinds = INTERVENTIONS if interventions is None else interventions
     made = [make(run) for make in kinds]
     try:
@@ -69,7 +69,7 @@ def descent(
 
 
 def summarised(outcome: Outcome, run: Run) -> Outcome:
-    """The outcome with what there is to say of the whole run."""
+    """The outcome with clauses about the whole run."""
     steps = run.iterate.index - (run.strand_moves.iterates if run.strand_moves else 0)
     return with_errors(with_growth(run.rises.summarised(outcome, steps), run), run)
 
@@ -95,7 +95,7 @@ def _descent(run: Run, interventions: Sequence[Callable[[Event], Event | Change]
 
 
 def _answer(event: Event, interventions: Sequence[Callable[[Event], Event | Change]]) -> Event | Change:
-    """What the interventions make of an event, one after the other, until one of them changes something."""
+    """Pass an event through the interventions in turn, until one of them answers with a change."""
     for intervention in interventions:
         answer = intervention(event)
         if isinstance(answer, Change):

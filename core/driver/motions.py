@@ -15,7 +15,7 @@ from ..energies.components import energy_scale
 from ..errors import OptionError
 from ..types import FloatArray
 
-RIGID = 1e-12  # part of a field that is tangent, up to which it is rounding: pins may leave nothing to move
+RIGID = 1e-12  # tangent part of a field that counts as rounding: pins may leave nothing to move
 
 Field = Callable[[FloatArray], FloatArray]
 """Velocities at vertices; shapes (n, m) -> (n, m)."""
@@ -27,10 +27,10 @@ class Motion(ABC):
     """Move along random fields up to a random energy, within constraints; lengths are RMS in radii of gyration."""
 
     fields: int = number()
-    distance: float = number()  # that the curve moves along each of them
-    stride: float = number()  # of a step, at most; where steps are not accepted they are halved
+    distance: float = number()  # that the curve moves along each field
+    stride: float = number()  # of a step at most, halved where a step is not accepted
     shortest: float = number()  # step at which a field is given up
-    # least and greatest multiple of the energy, by its scale, up to which the curve may be led
+    # least and greatest ceiling for the energy of the curve, as multiples of the energy scale
     ceilings: tuple[float, float] = (2.0, 16.0)
 
     def __post_init__(self) -> None:
@@ -80,12 +80,12 @@ class Push(Motion):
     stride: float = number(0.05)  # where strands touch, only short steps are free
     shortest: float = number(1e-3)
     modes: int = number(6)  # number of modes in a combination
-    # with the Hessian, by which they are looked for: near enough then to be soft, they need be no nearer. From a
-    # single start, of all rotations and other flat directions only one can be among them
+    # with the Hessian, to find the modes: soft enough by then, they need not converge any further. From a single
+    # start, only one of all rotations and other flat directions can be among them
     products: int = number(30)
 
     def fits(self, point: Point) -> bool:
-        """Whether, besides, the energy has a second derivative."""
+        """Whether, in addition, the energy has a second derivative."""
         return super().fits(point) and point.problem.objective.has_hessian
 
     def field(self, point: Point, rng: np.random.Generator) -> Field:
@@ -129,7 +129,7 @@ def radius(vertices: FloatArray) -> float:
 
 
 def root_mean_square(u: FloatArray) -> float:
-    """Of the lengths of vectors; shape (n, m)."""
+    """The root mean square of the lengths of vectors, shape (n, m)."""
     return float(np.sqrt(np.square(u).sum(axis=1).mean()))
 
 

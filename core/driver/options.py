@@ -19,8 +19,8 @@ EDGE_LENGTHS = ("auto", "equal", "keep")
 MESHES = ("auto", "fixed", "finer", "adaptive")
 UNTANGLE = ("auto", "always", "never")
 SOLVERS = ("auto", "dense", "hierarchical")
-MAX_GROWTH = 1000.0  # what is packed takes more vertices than there is time for long before
-MIN_GROWTH = 1 / MAX_GROWTH  # and what shrinks far more than that is so small that powers of its size are 0
+MAX_GROWTH = 1000.0  # well below it, packed curves already need more vertices than there is time for
+MIN_GROWTH = 1 / MAX_GROWTH  # and curves that shrink far more are so small that powers of their size are 0
 
 
 def _are_lengths(value: object) -> bool:
@@ -47,7 +47,7 @@ def _is_weighted(value: object) -> bool:
     known = isinstance(term, str) or _is_a(Term, term)
     try:
         return known and isinstance(weight, Real) and not isinstance(weight, bool) and bool(np.isfinite(float(weight)))
-    except OverflowError:  # of whole numbers
+    except OverflowError:  # whole numbers too large for a float
         return False
 
 
@@ -68,7 +68,7 @@ class RelaxOptions:
     Raises
     ------
     OptionError
-        If a value is of a wrong type, outside its range or unknown, or two options do not go together.
+        If a value has the wrong type, is out of range or unknown, or two options contradict each other.
     """
 
     method: str = option("lbfgs", "Method", "how the energy is minimised", choices=METHODS, metavar="M", row=True)
@@ -272,17 +272,17 @@ class RelaxOptions:
 
     @property
     def may_untangle(self) -> bool:
-        """Whether the mesh may change as it does where strands are moved."""
+        """Whether the mesh may change in the way that strand moves require."""
         return self.mesh != "fixed" and self.edge_lengths in ("auto", "equal") and self.symmetry is None
 
     @property
     def ends_finer(self) -> bool:
-        """Whether there are more vertices in the end where strands are near."""
+        """Whether the final mesh has more vertices where strands are near."""
         free = self.vertices is None and self.edge_lengths == "auto"
         return self.mesh in ("finer", "adaptive") or (self.mesh == "auto" and free)
 
     def at_rest(self, curve: Curve) -> "RelaxOptions":
-        """The same for a curve that is all but relaxed: on its own mesh, and without what leaves a minimum."""
+        """The same options for a nearly relaxed curve: on its own mesh, and with none that make it leave a minimum."""
         return replace(
             self,
             mesh="fixed",

@@ -11,7 +11,7 @@ from ..hierarchy import SampledErrors
 from ..messages import Message, joined
 from .trajectory import Iterate
 
-RISE = 1e-9  # relative to the energy's scale, the least increase reported; less is rounding
+RISE = 1e-9  # least increase reported, relative to the energy's scale; less is rounding
 RAISED = "changes of mesh or shape raised the energy: {rises}"
 NAMED = 3  # changes of mesh whose energies are listed individually
 
@@ -32,11 +32,11 @@ class Outcome:
     """How a relaxation ended.
 
     - ``status``: why it ended.
-    - ``clauses``: the same in words, and what else there is to say.
-    - ``negative_eigenvalues``: of the Lagrangian's Hessian at a converged curve, if known: 0 at a minimum.
-    - ``symmetric_negative_eigenvalues``: those among displacements that keep the symmetry, if one is kept.
-    - ``sampled_errors``: those of the hierarchical solver when last looked at: in the end, unless that came suddenly.
-    - ``place``: where on the last curve the reason is, if it is somewhere.
+    - ``clauses``: the reason in words, and any further remarks.
+    - ``negative_eigenvalues``: number for the Lagrangian's Hessian at a converged curve, if known: 0 at a minimum.
+    - ``symmetric_negative_eigenvalues``: the number among displacements that keep the symmetry, if one is kept.
+    - ``sampled_errors``: errors of the hierarchical solver when last checked: at the end, unless that came suddenly.
+    - ``place``: where on the last curve the reason lies, if it has a place.
     - ``unbounded``: whether strands pull tight without limit, so that there is no least energy to look for.
     """
 
@@ -71,7 +71,7 @@ class Outcome:
         return replace(self, clauses=(*self.clauses, Message(template, **facts)))
 
     def noting(self, error: BaseException) -> "Outcome":
-        """The same, with the notes of what ended it."""
+        """The same, with the notes on the exception that ended it."""
         return replace(self, clauses=(*self.clauses, *getattr(error, "__notes__", ())))
 
     def stalling(self, reason: str, **facts: object) -> "Outcome":
@@ -89,7 +89,7 @@ def converged(norm: float, bound: float) -> Outcome:
 
 
 def stalled(reason: str, place: Place | None = None) -> Outcome:
-    """There is no way on, for a reason that is a clause, at some place if it is somewhere."""
+    """The outcome where no way on is left, for a reason given as a clause, and its place if it has one."""
     return Outcome(Status.STALLED, (Message("stalled: {reason}", reason=reason),), place=place)
 
 
@@ -103,7 +103,7 @@ OUT_OF_MEMORY = stalled(Message("memory ran out")).adding(_KEPT)
 
 
 class Rises:
-    """All of one relaxation."""
+    """The increases of the energy in one relaxation."""
 
     def __init__(self) -> None:
         self._steps: list[float] = []
@@ -114,7 +114,7 @@ class Rises:
             self._steps.append(_rise(before, after))
 
     def change(self, before: Iterate, after: Iterate) -> None:
-        """Note a change of mesh or shape; what follows at once is part of it, and longer curves have other energies."""
+        """Note a change of mesh or shape, as part of one just before it; not where lengths grew, as energies differ."""
         if before.grown != after.grown:
             return
         if not (self._changes and self._changes[-1][-1].index == before.index):
@@ -149,7 +149,7 @@ def _total(change: list[Iterate]) -> float:
 
 
 def _energies(change: list[Iterate]) -> Message:
-    """The energies before and after, and the extreme one between, with digits enough to tell them apart."""
+    """The energies before and after, and the extreme one in between, with enough digits to tell them apart."""
     energies = [iterate.energy for iterate in change]
     first, last, highest = energies[0], energies[-1], max(energies)
     between = highest if highest > first else min(energies)

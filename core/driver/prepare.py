@@ -24,8 +24,8 @@ EVEN_RATIO = 10.0  # of the longest edge to the shortest, and to the gap between
 def start_problem(given: Task | Curve, options: RelaxOptions) -> Problem:
     """The problem of relaxing a refined task: target lengths, and its barycenter or pins, are prescribed.
 
-    A CurveError if the curve has more vertices than the method has room and time for; an OptionError if options do not
-    go together.
+    Raises CurveError if the curve has more vertices than the method has room and time for, and OptionError if options
+    contradict each other.
     """
     task, method = Task.of(given), METHODS[options.method]
     pins = task.held
@@ -59,7 +59,7 @@ def _check_balance(task: Task, problem: Problem) -> None:
 
 
 def target_lengths(start: Curve, pins: IntArray, obstacles: Sequence[Obstacle], options: RelaxOptions) -> FloatArray:
-    """In the user's units; shape (edges,)."""
+    """Target edge lengths in the user's units; shape (edges,)."""
     wanted = options.edge_lengths
     if not isinstance(wanted, str):
         edges = start.mesh.edges
@@ -102,7 +102,7 @@ def _check_growth(start: Curve, problem: Problem, options: RelaxOptions, method:
 
 
 def _check_spans(start: Curve, lengths: FloatArray, pins: IntArray, option: str = "edge_lengths") -> None:
-    """Refuse target lengths, made by an option, with which an arc does not reach from pin to pin, or only just."""
+    """Refuse target lengths from an option with which an arc does not reach from pin to pin, or only barely does."""
     for span in spans(start, pins):
         i, j = (end + 1 for end in span.ends)
         wanted = float(lengths[span.edges].sum())

@@ -28,13 +28,13 @@ from .solver import Solver
 from .symmetric import Symmetrised
 from .trajectory import Iterate
 
-WIDTHS = 100.0  # the curve's width, in lengths of a component, from which that is the reason for a singular matrix
+WIDTHS = 100.0  # width of the curve, in lengths of a component, from which it explains a singular matrix
 
 
 @checked_fields
 @dataclass(frozen=True)
 class Phase:
-    """What a relaxation took on one mesh, the change to the next one included; wall-clock seconds."""
+    """The cost of a relaxation on one mesh, including the change to the next one; wall-clock seconds."""
 
     vertices: int
     iterations: int
@@ -52,8 +52,8 @@ class Result:
     - ``fallback_steps``: iterates reached by the fallback method.
     - ``seconds``: wall-clock time.
     - ``method``: name of the requested method.
-    - ``task``: what was to be relaxed.
-    - ``phases``: the meshes that it was relaxed on, the first one first.
+    - ``task``: the task that was to be relaxed.
+    - ``phases``: the relaxation on each mesh, in order.
     """
 
     outcome: Outcome
@@ -92,18 +92,18 @@ class Result:
 
     @property
     def iterations(self) -> int:
-        """The iterates after the start, but for those of strand moves."""
+        """The number of iterates after the start, without those of strand moves."""
         moves = self.last.strand_moves
         return len(self.energies) - 1 - (moves.iterates if moves else 0)
 
     @property
     def final_energy(self) -> float:
-        """The Möbius energy of the last curve, without what the objective adds: what ``mobius-flow energy`` prints."""
+        """The Möbius energy of the last curve, without the objective's other terms: as in ``mobius-flow energy``."""
         return self._final_energy[0]
 
     @property
     def final_energy_error(self) -> float:
-        """A bound of its relative error, from a sample: 0 up to 30,000 vertices, for which it is exact."""
+        """A bound on its relative error, from a sample: 0 up to 30,000 vertices, where the energy is exact."""
         return self._final_energy[1]
 
     @cached_property
@@ -111,7 +111,7 @@ class Result:
         return moebius_energy(centred(self.curve))
 
     def show(self) -> Any:
-        """The result as a figure that turns, the objective beside it; notebooks draw it.
+        """The result as a figure that can be turned, with the objective beside it; notebooks display it.
 
         Raises MobiusFlowError if Plotly is not installed, CurveError if the curve is not in the plane or in space.
         """
@@ -156,9 +156,9 @@ def relax(curve: Curve | Task, options: RelaxOptions | None = None, hand: Hand |
     In a ``for`` loop the `Outcome` is lost: take it from ``outcome = yield from relax(…)``, from `WithOutcome`, or from
     `minimize`.  BLAS runs with one thread while this computes, and as the caller set it between iterates.
 
-    The curve is an embedded polygon, in any units and place, or a `Task`: one with obstacles and pins.  A hand drags it
-    meanwhile.  Raises CurveError if it touches itself or an obstacle, or is degenerate; the message says where.  Raises
-    OptionError if options contradict the task or each other.
+    The curve is an embedded polygon, in any units and place, or a `Task`: one with obstacles and pins.  A ``hand`` may
+    drag it meanwhile.  Raises CurveError if it touches itself or an obstacle, or is degenerate; the message says where.
+    Raises OptionError if options contradict the task or each other.
     """
     began = time.perf_counter()
     options = RelaxOptions() if options is None else options
@@ -203,8 +203,8 @@ def minimize(
 ) -> Result:
     """Relax a curve to the end and return the result.
 
-    A keyboard interrupt, or a lack of memory, keeps the curve reached so far.  ``callback`` gets every iterate, unless
-    an interrupt cuts it short.  Raises as `relax` does.
+    After a keyboard interrupt, or if memory runs out, the result is the curve reached so far.  ``callback`` gets every
+    iterate, unless an interrupt cuts it short.  Raises as `relax` does.
     """
     return finish(relax(curve, options), Task.of(curve), options or RelaxOptions(), callback)
 
@@ -218,7 +218,7 @@ def finish(
     fallback: list[int] = []
     last: Iterate | None = None
     given = 0  # vertices at the start
-    meshes: list[tuple[int, int, float]] = []  # vertices, and when they were new: iterate, seconds
+    meshes: list[tuple[int, int, float]] = []  # vertices, and when the mesh was new: iterate, seconds
     run, cut_short = WithOutcome(relaxation), False
     try:
         for last in run:

@@ -1,4 +1,4 @@
-"""One relaxation under way: where it stands, what happens to it, and what may be done about that between steps."""
+"""One relaxation in progress: its state, its events, and the interventions that may answer them between steps."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -19,7 +19,7 @@ from .options import RelaxOptions
 from .outcome import Outcome, Rises, Status, converged, degenerate
 from .trajectory import Iterate, StrandMoves
 
-HELD_METRIC_STEPS = 10  # while a hand pulls, where answers at once matter more than few steps
+HELD_METRIC_STEPS = 10  # while a hand pulls, when prompt answers matter more than few steps
 LENGTHS_REACHED = 1e-6  # max |log ℓ/ℓ⁰| that a converged curve may have
 
 
@@ -36,16 +36,16 @@ class Change:
 
     steps: tuple[Step, ...] = ()  # motions that come first
     point: Point | None = None  # the curve reached, in another problem: with other constraints, or on another mesh
-    method: Method | None = None  # the one that takes over
+    method: Method | None = None  # the method that takes over
     resolution: Resolution | None = None  # new bounds of edge lengths
 
 
 class Run:
-    """A relaxation under way from a refined curve: the point reached, and what its method remembers.
+    """A relaxation in progress from a refined curve: the point reached, and what its method remembers.
 
     ``iterate`` is the point as users see it, ``method`` takes the next step, ``resolution`` bounds edge lengths where
-    the mesh may change, ``sampled_errors`` are those of the hierarchical solver when last checked, ``rises`` those of
-    the energy.  The limit of iterations is that of the options unless another is given.
+    the mesh may change, ``sampled_errors`` are the hierarchical solver's errors when last checked, and ``rises`` the
+    increases of the energy.  The options give the limit of iterations unless another one is passed.
     """
 
     def __init__(
@@ -79,7 +79,7 @@ class Run:
 
     @property
     def iterations(self) -> int:
-        """Those so far, including those of rejected trials."""
+        """Iterations so far, including those of rejected trials."""
         return self.iterate.index + self.charged
 
     def step(self) -> Step | NoStep:
@@ -113,20 +113,20 @@ class Run:
             self._memory = State()
 
     def go_back(self, point: Point, iterate: Iterate) -> None:
-        """Go on from an earlier point, and the iterate there, as if what came after had not happened."""
+        """Go on from an earlier point, and the iterate there, as if nothing after it had happened."""
         self.iterate, self._certified = iterate, iterate.certified
         self.start_from(point)
 
     def renew(self) -> None:
-        """Count iterations anew."""
+        """Restart the count of iterations."""
         self.charged = -self.iterate.index
 
     def start_from(self, point: Point) -> None:
-        """Another view of the same curve, of which the method remembers nothing."""
+        """Go on from another view of the same curve, of which the method remembers nothing."""
         self.point, self._memory = point.anchored, State(None, self._memory.last_step)
 
     def _pulled(self, point: Point) -> Point:
-        """A point on another mesh, pulled at the same place to the same target as this one is, if it is pulled."""
+        """A point on another mesh, pulled like this one, if it is: at the same place, to the same target."""
         pull, old, new = self.problem.objective.pull, self.problem.units, point.problem.units
         if pull is None:
             return point
@@ -136,14 +136,14 @@ class Run:
         return point.changing(objective=point.problem.objective.pulled(replace(pull, target=target)))
 
     def hop(self, end: Point, path: tuple[FloatArray, ...], certified: bool) -> Iterate:
-        """Go in one iterate to a point on the same mesh, by a path that was found elsewhere."""
+        """Go in one iterate to a point on the same mesh, along a path found elsewhere."""
         self.point, self.method, self._memory = end, METHODS[self.options.method], State()
         self._certified &= certified
         self.iterate = self._described(self.iterate.index + 1, path=path)
         return self.iterate
 
     def moved(self, stages: Sequence[Stage], end: Point, strand_moves: StrandMoves) -> Iterator[Iterate]:
-        """Go by proved motions of another kind to their end, a point of the problem there; nothing of it is charged."""
+        """Go along the proved stages of strand moves to their end, a point of the problem there; nothing is charged."""
         meshes = [self.iterate.curve.mesh, *(stage.start.mesh for stage in stages)]
         frames: list[tuple[Curve, tuple[FloatArray, ...]]] = []
         for before, stage in zip(meshes, stages, strict=False):
@@ -160,7 +160,7 @@ class Run:
             yield self.iterate
 
     def restarted(self, point: Point) -> Iterate:
-        """Go on after these from a point of the problem on another mesh, as at the start; the curve is the same."""
+        """Go on after strand moves from a point of the problem on another mesh, as at the start; the curve stays."""
         self.point, self.method, self._memory = point.anchored, METHODS[self.options.method], State()
         self.charged -= 1
         if self.strand_moves:
@@ -224,7 +224,7 @@ class Run:
         self.iterate = self._described(self.iterate.index + 1, step.size, path)
 
     def _remeshes(self, change: Change) -> bool:
-        """Whether it is to another mesh, perhaps with as many vertices."""
+        """Whether a change is to another mesh, perhaps with as many vertices."""
         return change.point is not None and change.point.problem.mesh is not self.problem.mesh
 
     def _described(self, index: int, step_size: float = 0.0, path: tuple[FloatArray, ...] = ()) -> Iterate:
@@ -253,11 +253,11 @@ def gradient_bound(options: RelaxOptions, mesh: Mesh, energy: float) -> float:
 
 @dataclass(eq=False)
 class Intervention:
-    """What may change a run between steps: made for one run, it is called after every event.
+    """A possible change of a run between steps: made for one run, it is called after every event.
 
-    A subclass overrides the methods for the events that concern it, or all at once by ``__call__``.  Each answers with
-    the event as later interventions are to see it, with a change, after which these are not asked, or with None, which
-    leaves the event as it is.  What can be set are fields.
+    A subclass overrides the methods for the events that concern it, or ``__call__`` for all at once.  Each returns the
+    event as later interventions are to see it, or a change, after which these are not asked, or None, which leaves the
+    event as it is.  Settings are fields.
     """
 
     run: Run

@@ -1,4 +1,4 @@
-"""Dense or hierarchical: how sums over all pairs of edges are made, and what is solved with them."""
+"""Dense or hierarchical: how sums over all pairs of edges are computed, in energies and in metrics."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -17,19 +17,19 @@ from ..quadrature import Rule
 from ..saddle.iterative import Tolerances
 from .options import RelaxOptions
 
-# vertices up to which dense iterations are faster on any curve, and from which on hierarchical ones are
+# vertices up to which dense iterations are faster on any curve, and from which hierarchical ones are
 DENSE_UP_TO, HIERARCHICAL_FROM = 1000, 5000
-# Between these it is what is counted: all n² pairs of edges, or the blocks of the inner product.  Of these there are as
-# many as conjugate gradients have work with, for they are many where strands are near and iterations are too.
-PAIRS_PER_BLOCK = 1700  # that take as long as one of them, by `benchmarks/speed.py` on knots and tangles
+# In between, counts decide: all n² pairs of edges, or the blocks of the inner product.  The number of blocks stands for
+# the work of conjugate gradients, as both blocks and iterations are many where strands are near.
+PAIRS_PER_BLOCK = 1700  # that take as long as one block, by `benchmarks/speed.py` on knots and tangles
 
 
 @dataclass(frozen=True)
 class Solver:
-    """The energy and the metrics of a relaxation; an OptionError says which of its options do not go together."""
+    """The energy and the metrics of a relaxation; an OptionError says which of its options contradict each other."""
 
     options: RelaxOptions
-    hierarchical: bool = False  # whether distant pairs of edges count cluster by cluster
+    hierarchical: bool = False  # whether distant pairs of edges are summed cluster by cluster
 
     def on(self, curve: Curve) -> "Solver":
         """The solver for a curve: the requested one, or the faster one; a CurveError if it has too many vertices."""
@@ -38,13 +38,13 @@ class Solver:
         return Solver(self.options, self._may_be_hierarchical and (wanted or _pays(curve)))
 
     def objective(self, obstacles: Iterable[Obstacle] = ()) -> Objective:
-        """What is minimised among obstacles, which are in the units of curves."""
+        """The objective to minimise among obstacles, which are in the units of curves."""
         energy = HierarchicalMoebiusEnergy.instead_of(self._energy) if self.hierarchical else self._energy
         return Objective.of(energy, obstacles, (_weighted(*term) for term in self.options.terms))
 
     @property
     def metric(self) -> Metric:
-        """The requested metric, by default that of the method."""
+        """The requested metric, by default the method's."""
         method, metric, points = self._method, self._metric, self.options.quadrature_points
         kind, dash, own = method.name.rpartition(f"-{method.metric.name}")
         if isinstance(self.options.metric, str) and dash and not own and metric is not method.metric:
@@ -57,14 +57,14 @@ class Solver:
         return self.of_metric(metric)
 
     def of_metric(self, metric: Metric) -> Metric:
-        """A metric in the form that is solved with, and by the quadrature rule if it has any."""
+        """A metric in the form used for solving, with the quadrature rule if it takes one."""
         points = self.options.quadrature_points
         # the energy's own rule, as Section 6.1.2 of [RS21] has it, unless another one is requested
         metric = metric.with_rule(self._energy.rule if points is None else Rule.gauss(points))
         return compressed(metric, Tolerances.of_norms(self.options.accuracy)) if self.hierarchical else metric
 
     def check_size(self, curve: Curve) -> None:
-        """Refuse more vertices than the method's inner products have room for, before anything is made of them."""
+        """Refuse more vertices than the method's inner products have room for, before anything is computed."""
         wanted, name = self.options.vertices, self._method.name
         most = self._max_vertices(max(len(curve), wanted or 0))
         if wanted is not None and wanted > most:
@@ -120,7 +120,7 @@ class Solver:
 
 @lru_cache(maxsize=1)
 def _pays(curve: Curve) -> bool:
-    """Whether hierarchical iterations are likely to be faster, from what they count: the same on all machines."""
+    """Whether hierarchical iterations are likely to be faster, judged by counts that are the same on all machines."""
     n = len(curve)
     if not DENSE_UP_TO < n <= HIERARCHICAL_FROM:
         return n > HIERARCHICAL_FROM

@@ -1,4 +1,4 @@
-"""Different curves of one knot type, to look for its minima from."""
+"""Different curves of one knot type, from which to look for its minima."""
 
 import numpy as np
 
@@ -15,15 +15,15 @@ from .options import RelaxOptions
 from .prepare import start_problem
 from .run import Run
 
-GAP = 0.5  # of the mean edge length that scrambled strands keep: nearer ones would need thousands of vertices
+GAP = 0.5  # between scrambled strands, in mean edge lengths: nearer ones would need thousands of vertices
 
 
 def start(name: str, number: int, seed: int) -> tuple[str, Curve]:
-    """The start of a number, from 1, for a knot's name, and of which kind it is.
+    """The kind of the start with a number, from 1, for a knot's name, and its curve.
 
-    Knots and links of the table begin as what :func:`knot` makes, a closed braid ("named"), "smooth", and on the cubic
-    "lattice"; from then on they are "drawn" anew from a random projection and "hopped" out of the smooth shape in turn.
-    All others are "scrambled" from the second one on.  The same ``seed`` gives the same curve.  Raises
+    Knots and links of the table start as the closed braid that :func:`knot` makes ("named"), then "smooth", and on the
+    cubic "lattice"; after that they are by turns "drawn" anew from a random projection and "hopped" out of the smooth
+    shape.  All others are "scrambled" from the second start on.  The same ``seed`` gives the same curve.  Raises
     UnknownKnotError, and CurveError for arcs that are to be scrambled.
     """
     given = knot(name)

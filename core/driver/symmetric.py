@@ -13,7 +13,7 @@ from .outcome import Outcome
 from .prepare import target_lengths
 from .run import Change, Run
 
-ASKED = 0.1  # radii of gyration that a start may be off a symmetry that is asked for by name
+ASKED = 0.1  # radii of gyration by which a start may miss a symmetry that is asked for by name
 BLOCKED = (
     "the straight way to the nearest curve with symmetry {group} is not free of contact, as where strands meet on an "
     "axis that no symmetric curve passes through; relax the curve a little before, or ask for another symmetry"
@@ -41,9 +41,9 @@ class Symmetrised:
 
     @classmethod
     def of(cls, curve: Curve, wanted: str) -> "Symmetrised":
-        """That under the group of a curve, "auto", or a part of it, by name.
+        """The symmetrised curve under the whole group of a curve, "auto", or under the subgroup of a name.
 
-        Raises CurveError if the curve does not have it, or is not free to move there.
+        Raises CurveError if the curve does not have that symmetry, or is not free to move to the symmetric curve.
         """
         if wanted == "auto":
             group = symmetries(curve, TOLERANCE)
@@ -63,7 +63,7 @@ class Symmetrised:
         return cls(start, end, mean, symmetry, group)
 
     def change(self, run: Run) -> Change | None:
-        """The way to the symmetric curve, and its problem; None if there is no symmetry, or no iterations for that."""
+        """The way to the symmetric curve, and its problem; None if there is no symmetry, or too few iterations."""
         if not len(self.symmetry):
             return None
         end = run.problem.at_curve(self.end)
@@ -74,7 +74,7 @@ class Symmetrised:
         return change if run.allows(change) else None
 
     def summarised(self, outcome: Outcome) -> Outcome:
-        """The outcome with the group."""
+        """The outcome with a clause about the group."""
         if len(self.symmetry):
             return outcome.adding(KEPT, group=self.group.name, distance=self.group.distance)
         return outcome.adding(NONE, group=self.group.name)

@@ -1,4 +1,4 @@
-"""How long a relaxation will still take, by how fast its gradient has been getting smaller."""
+"""How long a relaxation will still take, judged by how fast its gradient has been shrinking."""
 
 import math
 import time
@@ -12,18 +12,18 @@ from .run import gradient_bound
 from .trajectory import Iterate
 
 _FEWEST = 12, 8  # iterates on a mesh, and in the later half of the time there
-_ALIKE = 2.0  # factor up to which the two forecasts agree
-_SHORTEST, _LONGEST = 3.0, 36_000.0  # seconds worth being told
+_ALIKE = 2.0  # factor up to which the two forecasts count as agreeing
+_SHORTEST, _LONGEST = 3.0, 36_000.0  # seconds worth reporting
 
 
 class TimeLeft:
-    """A forecast from the iterates on the present mesh, told only where there is reason to believe it.
+    """A forecast from the iterates on the present mesh, given only where there is reason to believe it.
 
     With d = log(gradient / bound) at time t on this mesh, d falls linearly in t where a single slow motion is left,
-    and, as a rule, in log t before that.  Both lines are fitted to the later half of the time; the first is too early
-    as a rule, the second too late; where they tell about the same, the second is told.  At the 1,200 iterates of seven
-    runs it told something at a fifth, and was right within a factor of two at 7 of 10 of these, 6 of 10 without the
-    composite knot.
+    and, as a rule, linearly in log t before that.  Both lines are fitted to the later half of the time; the first
+    usually ends too early, the second too late; where they roughly agree, the second is the forecast.  At the 1,200
+    iterates of seven runs there was a forecast at a fifth of them, right within a factor of two in 7 of 10 cases, or 6
+    of 10 without the composite knot.
     """
 
     def __init__(self, options: RelaxOptions, clock: Callable[[], float] = time.monotonic) -> None:
@@ -31,7 +31,7 @@ class TimeLeft:
         self.restart()
 
     def restart(self) -> None:
-        """Forget what was: the run was paused, or drags had it in hand."""
+        """Forget all iterates: the run was paused, or the curve was dragged."""
         self._vertices, self._index = 0, 0
         self._times: list[float] = []
         self.distances: list[float] = []  # d of the iterates on this mesh
@@ -48,7 +48,7 @@ class TimeLeft:
 
     @property
     def seconds(self) -> float | None:
-        """Seconds left; None where that cannot be told."""
+        """Seconds left; None where there is no reliable forecast."""
         passed = np.array(self._times) - (self._times or [0.0])[0]
         later = passed >= 0.5 * passed[-1] if len(passed) else passed > 0.0
         t, d = passed[later & (passed > 0.0)], np.array(self.distances)[later & (passed > 0.0)]

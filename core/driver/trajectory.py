@@ -19,7 +19,7 @@ from ..types import BoolArray, FloatArray, IntArray
 
 
 class StrandMoves(NamedTuple):
-    """Crossings seen before strand moves and after them, what they took so far, and whether they are through."""
+    """Crossings seen before and after strand moves, what these have taken so far, and whether they are complete."""
 
     before: int
     left: int
@@ -40,21 +40,21 @@ class Iterate:
 
     - ``index``: 0 for the (refined) start, then 1, 2, ...
     - ``curve``: the polygon; the iterates of a run have the same vertices where the mesh is ``fixed``.
-    - ``energy``: the objective, which is the energy that is minimised, and the barrier.  It, ``gradient_norm`` and
-      ``edge_length_error`` are those at the end of a strand move for all iterates of the move.
-    - ``gradient_norm``: of the projected gradient (dimensionless), in the metric that the method takes it in: that of
-      this curve, or of one up to two steps before.
+    - ``energy``: the objective, which is the energy that is minimised, plus the barrier.  All iterates of a strand move
+      have the ``energy``, ``gradient_norm`` and ``edge_length_error`` of its end.
+    - ``gradient_norm``: norm of the projected gradient (dimensionless), in the metric in which the method takes it:
+      that of this curve, or of one up to two steps before.
     - ``step_size``: the step size τ that led here, 0 for the start and where the mesh changes.
     - ``path``: the motion from the previous iterate: vertices, each (n, m), at the ends of its straight legs, of which
       the last is this curve.  Empty for the start, and where the mesh changes: there this is the previous curve with
       other vertices on its edges.
     - ``certified``: whether every leg from the start of the run to here was proved free of contact.
     - ``edge_length_error``: max |log ℓ/ℓ⁰| over the edges.
-    - ``method``: name of the one that took the step, which is the fallback method where the requested one was stuck.
+    - ``method``: name of the method that took the step: the fallback method where the requested one was stuck.
     - ``grown``: factor by which target lengths have grown since the start.
-    - ``pins``: pinned vertices of this curve, counted from 0, and those that cannot move between them.
-    - ``strand_moves``: what these have come to so far; None before the first one.
-    - ``symmetry``: name of the group of symmetries that are kept, if any are.
+    - ``pins``: pinned vertices of this curve, counted from 0, and those between them that cannot move.
+    - ``strand_moves``: the strand moves so far; None before the first one.
+    - ``symmetry``: name of the symmetry group that is kept, if any.
     """
 
     index: int
@@ -80,11 +80,11 @@ class Trajectory:
     """Frames between which all vertices move on straight lines, collected from iterates.
 
     Arrays ``stage_000``, ``stage_001``, … of shape (k, n, m), each with ``component_sizes_000``, … and, unless all
-    components are closed, ``component_closed_000``, … of truth values; a new stage begins where the mesh changes.
-    What was avoided is in ``obstacle_000_vertices``, shape (k, 3), and ``obstacle_000_faces``, shape (f, 3) or (f, 2),
-    ….  ``pins``, shape (k, m), are the places of the vertices that were held, if there were any.  Coordinates are the
-    user's, in double: what was proved is about exactly these numbers.  Where the run came from is kept as JSON in
-    ``provenance``, plain values as an array of one string, which `verify` does not look at and None leaves out.
+    components are closed, ``component_closed_000``, … of booleans; a new stage begins where the mesh changes.
+    Obstacles are in ``obstacle_000_vertices``, shape (k, 3), and ``obstacle_000_faces``, shape (f, 3) or (f, 2), ….
+    ``pins``, shape (k, m), are the places of the vertices that were held, if there were any.  Coordinates are the
+    user's, in double precision: the proofs are about exactly these numbers.  ``provenance`` records in plain values
+    where the run came from, as JSON in an array of one string; `verify` ignores it, and None leaves it out.
     """
 
     @checked
@@ -103,8 +103,8 @@ class Trajectory:
     def add(self, iterate: Iterate) -> None:
         """Append the motion that led to an iterate (for the first one: the start).
 
-        Raises MobiusFlowError if it cannot follow the last one, by its number or its mesh: nobody has proved the motion
-        between them.  That the iterates are those of one run is up to the caller, and found out by `verify`.
+        Raises MobiusFlowError if its number or mesh does not follow the last iterate: nobody has proved the motion
+        between them.  It is up to the caller that all iterates are from one run; `verify` finds out.
         """
         fits = not iterate.path or (self._last is not None and iterate.curve.mesh == self._last.mesh)
         if iterate.index != self._last_index + 1 or not fits:
@@ -133,13 +133,13 @@ class Trajectory:
         for k, (mesh, frames) in enumerate(self._stages):
             named[f"stage_{k:03d}"] = np.stack(frames)
             named[f"component_sizes_{k:03d}"] = np.array(mesh.component_sizes, dtype=np.intp)
-            if not mesh.all_closed:  # so that files of closed curves are as they have always been
+            if not mesh.all_closed:  # so that files of closed curves stay as they have always been
                 named[f"component_closed_{k:03d}"] = np.array(mesh.closed)
         return named
 
     @checked
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the trajectory as .npz, whole or not at all; an OutputError says why it cannot be."""
+        """Write the trajectory as .npz, whole or not at all; an OutputError says why that fails."""
         try:
             with atomic_write(path) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
                 # as numpy.savez_compressed does, which leaves the archive open, and loud, when the disk is full

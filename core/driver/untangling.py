@@ -1,4 +1,4 @@
-"""Strand moves before the flow, and where it is stuck: what is tangled in a diagram needs no flow to come apart."""
+"""Strand moves before the flow, and where it is stuck: what a diagram shows as tangled comes apart without any flow."""
 
 import time
 from collections.abc import Generator, Hashable, Iterable, Iterator
@@ -23,14 +23,12 @@ from .prepare import target_lengths
 from .run import Run
 from .trajectory import Iterate, StrandMoves
 
-MANY = 20  # crossings that go, from which on it is worth while before the flow, unless others stay that are as many
-ROOM = 50  # iterations left where the flow is stuck, with fewer of which it might end higher
+MANY = 20  # removable crossings from which moves before the flow are worthwhile, unless more crossings stay
+ROOM = 50  # iterations to be left where the flow is stuck: with fewer it might end higher
 LONGEST, SHORTEST = 0.2, 1e-3  # logarithmic change of lengths in one motion; less is left to the flow
-SETTLING = 6  # iterations to the next one
-MOST = (
-    2.0  # times as long as it was may an arc between pins be after a move: what is wound round others may not come back
-)
-FAR = 10.0  # lengths of the curve from its middle, where ends are joined in different
+SETTLING = 6  # iterations from one motion to the next
+MOST = 2.0  # largest factor by which a move may lengthen an arc between pins: one wound round others may not come back
+FAR = 10.0  # lengths of the curve from its middle to the points where ends are joined, in different
 WAYS = np.array([[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]])
 NO_ITERATIONS = Message("none, as there are to be no iterations")
 PACKED = Message("none, as what grows between pins or among obstacles is left to the flow")
@@ -48,9 +46,9 @@ class Untangling:
         self._in_vain: Message | None = None
 
     def before_flow(self) -> Iterator[Iterate]:
-        """Yield the motions that come first, if they are asked for, or a diagram shows that many crossings go.
+        """Yield the motions before the flow, if they are requested, or a diagram shows that many crossings go.
 
-        Between pins the flow comes first: it keeps lengths.
+        With pins the flow comes first: it keeps lengths.
         """
         run, wanted = self.run, self.run.options.untangle
         if run.max_iterations == 0:
@@ -61,16 +59,16 @@ class Untangling:
             yield from self._untangled()
 
     def where_stuck(self, outcome: Outcome) -> Iterator[Iterate]:
-        """Yield motions that lead out of where the flow came to rest, if any are worth while.
+        """Yield motions that lead out of where the flow came to rest, if any are worthwhile.
 
-        Between pins they have to save more: lengths, which they change, come back there only step by step.
+        With pins they have to save more crossings: the lengths that they change come back only step by step.
         """
         least = MANY if self.run.iterate.pins else 0
         if outcome.may_be_left and self.run.iterations_left >= ROOM and self._eligible and self._saves(least):
             yield from self._untangled()
 
     def summarised(self, outcome: Outcome) -> Outcome:
-        """The outcome with what strand moves have achieved."""
+        """The outcome with clauses about strand moves."""
         for reason in self._reasons:
             outcome = outcome.adding("strand moves: {reason}", reason=reason)
         return outcome
@@ -88,12 +86,12 @@ class Untangling:
         return bool(holds(mesh, np.array(self.run.iterate.pins, dtype=np.intp))[mesh.ends].all())
 
     def _saves(self, least: int) -> bool:
-        """Whether at least so many crossings go, and no more of them stay."""
+        """Whether at least ``least`` crossings go, and no more stay than go."""
         gone, left = worth(self.run.iterate.curve, least)
         return gone >= max(least, left, 1)
 
     def _untangled(self) -> Iterator[Iterate]:
-        """Yield the motions, and at last the curve on a mesh for the flow, and with its lengths."""
+        """Yield the motions, then the curve on a mesh for the flow, and motions that restore its lengths."""
         run, first, lengths = self.run, self.run.iterate, _Lengths(self.run)
         self._in_vain = None
         try:
@@ -113,9 +111,9 @@ class Untangling:
         yield from self._restored()
 
     def _moved(self, lengths: "_Lengths") -> Generator[Iterate, None, Message]:
-        """Yield the motions of all moves up to where fewest crossings are left; return how they end.
+        """Yield the motions of all moves, down to the fewest crossings; return how they end.
 
-        Nothing is done before it is known to be worth while: with "auto" until no more crossings stay than have gone.
+        Nothing is yielded before it is known to be worthwhile: with "auto", until no more crossings are left than gone.
         """
         run, start = self.run, self.run.iterate
         pins = np.array(start.pins, dtype=np.intp)
@@ -151,7 +149,7 @@ class Untangling:
             stages, began = [], time.perf_counter()
 
     def _refined(self, lengths: "_Lengths", least: int) -> Point:
-        """The curve reached on a mesh for the flow, or on its own where that cannot be computed with."""
+        """The curve reached, on a mesh for the flow, or on its own mesh if the other cannot be computed with."""
         run = self.run
         coarse, wanted = run.iterate.curve, run.options.vertices
         try:
@@ -164,9 +162,9 @@ class Untangling:
             return run.point
 
     def _restored(self) -> Iterator[Iterate]:
-        """Yield motions that bring lengths to their targets, and steps of the flow in between, as far as they are free.
+        """Yield motions that bring lengths to their targets, as far as these are free, with steps of the flow between.
 
-        The flow alone would lengthen what is all but straight only slowly, since that costs energy; motions alone would
+        The flow alone would lengthen a nearly straight arc only slowly, since that costs energy; motions alone would
         crumple it.
         """
         run, longest = self.run, LONGEST
@@ -189,9 +187,9 @@ class Untangling:
 
 
 def _closures(curve: Curve, ways: Iterable[FloatArray]) -> list[QuickInvariants]:
-    """What tells types apart, of a curve with the ends of its arcs joined at points far away, one after the other.
+    """Invariants of a curve with the ends of its arcs joined at a point far away, for several such points.
 
-    Ends are only points, around which a knot slips off: one that is there whichever way they go on is the arc's own.
+    Ends are only points, over which a knot slips off: a knot that is there whichever way they go on is the arc's own.
     """
     pairs = list(zip(curve.components, curve.mesh.closed, strict=True))
     joined = ([part if closed else np.vstack([part, way]) for part, closed in pairs] for way in ways)
@@ -199,7 +197,7 @@ def _closures(curve: Curve, ways: Iterable[FloatArray]) -> list[QuickInvariants]
 
 
 class _Lengths:
-    """Those of all arcs between pins and of components without, which strand moves change, and which are restored."""
+    """Lengths of all arcs between pins and of components without pins, to be restored after strand moves."""
 
     def __init__(self, run: Run) -> None:
         self._problem = run.problem
@@ -226,7 +224,7 @@ class _Lengths:
         return any(length > MOST * self._of.get(place, np.inf) for place, length in now)
 
     def _arcs(self, curve: Curve) -> Iterator[tuple[Hashable, IntArray]]:
-        """Each with what it has on all meshes: the pin where it begins, or the number of its component."""
+        """Each arc, after a key that it has on all meshes: the pin where it begins, or the number of its component."""
         mesh, pins = curve.mesh, self._problem.constraints.pins.on(curve).vertices
         held = holds(mesh, pins)
         for arc in arcs(mesh, pins):

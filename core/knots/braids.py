@@ -41,7 +41,7 @@ def checked_word(word: Sequence[int], strands: int | None = None) -> tuple[Word,
 
 
 def cycles(word: Sequence[int], strands: int) -> list[list[int]]:
-    """For each component of the closure the places, from 0, where its turns begin; each from its smallest on."""
+    """For each component of the closure the places, from 0, where its turns begin; each starts with its smallest."""
     at = list(range(strands))
     for letter in word:
         i = abs(letter) - 1
@@ -58,7 +58,7 @@ def cycles(word: Sequence[int], strands: int) -> list[list[int]]:
 
 
 def columns(word: Sequence[int]) -> tuple[list[int], int]:
-    """The first column where each letter's strands are free, as letters that share none commute; how many there are."""
+    """The first column where each letter's strands are free, as letters that share none commute; how many columns."""
     free: dict[int, int] = {}
     places = []
     for letter in word:
@@ -74,7 +74,7 @@ def mirror(word: Sequence[int]) -> Word:
 
 
 def connected_sum(first: Sequence[int], second: Sequence[int]) -> Word:
-    """Word whose closure is the connected sum, the second braid hung on the first one's last strand."""
+    """Word whose closure is the connected sum, the second braid attached to the first one's last strand."""
     shift = max(map(abs, first), default=0)
     return (*first, *(letter + shift if letter > 0 else letter - shift for letter in second))
 
@@ -132,7 +132,7 @@ def lattice_closure(word: Sequence[int], *, strands: int | None = None) -> Curve
     Raises
     ------
     CurveError
-        If the word is none.
+        If it is no braid word.
 
     Examples
     --------

@@ -30,13 +30,13 @@ def bracket_key(diagram: Diagram) -> Key | None:
 
 
 def types_with(bracket: Key, crossings: int) -> list[str]:
-    """Names of the types with a bracket, of no more crossings; those of few crossings first."""
+    """Names of the types with a bracket and at most ``crossings`` crossings, those with few first."""
     return [name for name in _by_bracket().get(bracket, ()) if crossing_number(name) <= crossings]
 
 
 @cache
 def crossing_number(name: str) -> int:
-    """Crossing number of a name, for sums the sum of those of the factors."""
+    """Crossing number of a name; for connected sums, the sum over the factors."""
     return sum(int(number) for number in _NUMBER.findall(name))
 
 
@@ -48,7 +48,7 @@ def invariant_of(name: str, invariant: Callable[[Diagram], object]) -> object:
 
 @cache
 def _by_bracket() -> Mapping[Key, list[str]]:
-    """Names of the types with each bracket, those of few crossings first."""
+    """Names of the types with each bracket, those with few crossings first."""
     found: defaultdict[Key, list[str]] = defaultdict(list)
     primes: list[tuple[str, Laurent]] = []
     for name, word in KNOTS.items():
@@ -64,7 +64,7 @@ def _by_bracket() -> Mapping[Key, list[str]]:
 
 
 def _sums(primes: list[tuple[str, Laurent]]) -> Iterator[tuple[str, Laurent]]:
-    """Brackets of all composite types: those of the factors multiplied."""
+    """Brackets of all composite types: products of the factors' brackets."""
     primes = [each for each in primes if 0 < crossing_number(each[0]) <= KNOTS_TO - 2]
     shorter: list[tuple[str, Laurent, int]] = [(*each, k) for k, each in enumerate(primes)]
     while shorter:

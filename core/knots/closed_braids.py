@@ -97,8 +97,8 @@ class Ring:
 def _polygon(rings: Sequence[Ring], gap: float, detail: int, vertices: int | None) -> Curve:
     """Inscribe a polygon with nearly equal edges in rings that do not meet.
 
-    ``gap`` is the least distance of two strands within a half plane that ends at the axis; without a number of vertices
-    these are so many that edges are shorter than that, and ``detail`` or more.
+    ``gap`` is the least distance between two strands within a half plane that ends at the axis; by default there are so
+    many vertices that edges are shorter than that, and at least ``detail``.
     """
     check_count(max(detail, vertices or 0))
     around = [ring.points(np.linspace(0.0, ring.period, 8 * detail + 1)) for ring in rings]
@@ -121,7 +121,7 @@ def _equal_edges(ring: Ring, count: int) -> FloatArray:
 
 
 def _deviation(ring: Ring, theta: FloatArray) -> float:
-    """Largest distance of polygon and curve within one half plane; infinite if an edge goes backwards or too far.
+    """Largest distance between polygon and curve within a half plane; infinite if an edge goes backwards or too far.
 
     Where this stays below half the gap, moving every point straight from the curve to the polygon within its
     half plane lets no two strands meet: polygon and curve are the same closed braid.
@@ -181,7 +181,7 @@ def _tube(major: float, minor: float, phi: FloatArray) -> FloatArray:
 
 
 def _torus_gap(p: int, major: float, minor: float) -> float:
-    """Least distance of two of the p strands within a half plane, over all half planes."""
+    """Least distance between two of the p strands within a half plane, over all half planes."""
     if p == 1:
         return minor  # one strand never meets itself there; this only sets the number of vertices
     phases = np.linspace(0.0, 2 * math.pi / p, 64)[:, None] + 2 * math.pi / p * np.arange(p)

@@ -58,7 +58,7 @@ class Ball:
         return np.asarray(np.linalg.norm(points - self.center, axis=1) < self.radius)
 
     def is_clear_of(self, obstacle: Obstacle) -> bool:
-        """Whether an obstacle certainly is outside: the boxes around its triangles or segments are."""
+        """Whether an obstacle is certainly outside, as the boxes around its triangles or segments are."""
         low, high = obstacle.corners.min(axis=1), obstacle.corners.max(axis=1)
         outside = np.maximum(np.maximum(low - self.center, self.center - high), 0.0)
         return bool(np.linalg.norm(outside, axis=1).min() > self.radius)
@@ -93,7 +93,7 @@ def is_searchable(curve: Curve, search: BallSearch = DEFAULT_SEARCH) -> bool:
 
 
 def _linked_groups(curve: Curve) -> list[list[IntArray]]:
-    """For each component, into which groups the others fall that lie on one side of any sphere that meets only it.
+    """For each component, the groups of the others that lie on the same side of any sphere that meets only it.
 
     A sphere between two curves shows that they are not linked, so components with a linking number lie together.
     """
@@ -110,7 +110,7 @@ def _linked_groups(curve: Curve) -> list[list[IntArray]]:
 
 def _arcs(curve: Curve, search: BallSearch, sample: IntArray) -> Iterator[BoolArray]:
     """For each component which sampled vertices are inside, shape (m, n): one of its arcs, the longest ones first, and
-    any of the other components as a whole that can lie there together."""
+    any whole components among the others that can lie there together."""
     slices, component = curve.mesh.slices, curve.mesh.component[sample]
     places, wanted = search.places(len(slices)), np.array(search.lengths(len(slices)))
     for part, groups in zip(slices, _linked_groups(curve), strict=True):

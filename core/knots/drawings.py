@@ -23,7 +23,7 @@ from ..types import BoolArray, FloatArray, IntArray
 
 MAX_POINTS = 20_000  # of a drawing: seconds to compare all its edges
 _CLEAR = 1e-3  # of the drawing's size: nearer crossings, or strands so near that do not cross, are unclear
-_FLATTEST = 20.0  # lengths of that distance that strands which cross may stay so near, away from the crossing
+_FLATTEST = 20.0  # times that distance: how far away from a crossing its strands may stay so near
 _JITTER = 1e-9  # of the size, by which points are moved so that no strand runs exactly through a vertex of another
 _LIFT = 0.3  # height of strands above and below the plane, of the distance to the next crossing
 _HIGHEST = 0.08  # of the drawing's size
@@ -36,7 +36,7 @@ class Drawing:
     """Closed curves in the plane that cross themselves and each other clearly, two strands at a time, c times."""
 
     curve: Curve
-    crossings: FloatArray  #: their places, in the order in which they are come to; shape (c, 2)
+    crossings: FloatArray  #: their places, in the order in which they are reached; shape (c, 2)
     passes: FloatArray  #: first and second edge there, each with the fraction of it as one number; shape (c, 2)
     first_over: BoolArray  #: whether the first is the upper one: from `of`, over and under alternate; shape (c,)
 
@@ -64,7 +64,7 @@ class Drawing:
     @classmethod
     @checked
     def seen(cls, curve: Curve) -> "Drawing":
-        """Find the crossings of closed polygons in space as seen from +z, where strands are over that are higher."""
+        """Find the crossings of closed polygons in space as seen from +z, where higher strands pass over."""
         drawing = cls.of(Curve(curve.vertices[:, :2], curve.mesh))
         edge = drawing.passes.astype(np.intp)
         heights = curve.vertices[edge, 2] + (drawing.passes - edge) * curve.edge_vectors[edge, 2]
@@ -118,7 +118,7 @@ def _lifted(points: FloatArray, at: FloatArray, lift: FloatArray, nearest: float
 
 
 def _with(places: FloatArray, more: FloatArray, nearest: float, length: float) -> FloatArray:
-    """Add places on a closed curve, but for those that are near others; sorted."""
+    """Add places on a closed curve, except those that are near others; sorted."""
     if not len(places):
         return more
     gaps = np.abs(more[:, None] - places[None, :])
@@ -130,7 +130,7 @@ def _size(curve: Curve) -> float:
 
 
 def _check_clear(curve: Curve, crossings: FloatArray, edge: IntArray) -> None:
-    """Refuse crossings that are hardly apart, and strands that are hardly apart without crossing there."""
+    """Refuse crossings that are too near each other, and strands that are too near without crossing there."""
     clear = _CLEAR * _size(curve)
     tree = cKDTree(crossings) if len(crossings) else None
     if tree is not None and (pairs := tree.query_pairs(clear, output_type="ndarray")).size:
@@ -155,7 +155,7 @@ def _unclear(point: FloatArray, vertex: int) -> CurveError:
 
 
 def _upper(curve: Curve, passes: FloatArray) -> BoolArray:
-    """Whether first passes are upper ones where strands go over and under by turns; shape (c,).
+    """Whether first passes are upper ones where strands go over and under alternately; shape (c,).
 
     The plane is coloured like a chessboard; a strand goes over where it has come with a white field on its left. At a
     crossing this holds for one strand of the two, and along the curve for every other pass, in links too.

@@ -1,6 +1,6 @@
-"""What the complement of a knot tells, by other programs where they are installed (the extra "knots").
+"""What the complement of a knot proves, by other programs where they are installed (the extra "knots").
 
-The fundamental group, by SnapPy, is infinite cyclic for the unknot alone (Papakyriakopoulos 1957); the genus and
+The fundamental group, by SnapPy, is infinite cyclic only for the unknot (Papakyriakopoulos 1957); the genus and
 fiberedness are by knot Floer homology (Szabó's program; Ozsváth and Szabó 2004, Ni 2007).
 """
 
@@ -25,7 +25,7 @@ class Group(NamedTuple):
 
 
 class Floer(NamedTuple):
-    """What knot Floer homology says."""
+    """The results of knot Floer homology."""
 
     genus: int
     fibered: bool
@@ -49,9 +49,9 @@ def _group(code: tuple[PlanarCrossing, ...]) -> Group | None:
     try:
         from snappy import Link
         from snappy.SnapPy import set_rand_seed
-    except ImportError:  # also where python-snappy has that name
+    except ImportError:  # also where it is python-snappy that has the name
         return None
-    set_rand_seed(0)  # which presentation is found hangs on it
+    set_rand_seed(0)  # which presentation is found depends on it
     exterior = Link(list(map(list, code))).exterior(with_hyperbolic_structure=False)
     if exterior.num_tetrahedra() > _TETRAHEDRA:
         return None
@@ -70,7 +70,7 @@ def _floer(code: tuple[PlanarCrossing, ...]) -> Floer | None:
 
 
 def names_by_exterior(knot: Diagram) -> tuple[tuple[str, ...], str]:
-    """The names of all knots that can have this complement, where theorems say so, and how; empty otherwise.
+    """The names of all knots that can have this complement, where theorems say so, and the evidence; empty otherwise.
 
     Only the unknot has an infinite cyclic group, and genus 0; only the trefoils and the figure-eight are fibered of
     genus 1.

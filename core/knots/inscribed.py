@@ -24,7 +24,7 @@ def inscribed(curve: Curve, vertices: int | None, least: int = 120) -> Curve:
     """Inscribe a polygon with equal steps along the components of a smooth link, which is proved to be isotopic.
 
     The given polygons have enough vertices to represent the smooth curves.  By default edges are shorter than
-    strands are apart, and vertices ``least`` or more.  Raises CurveError if the curve meets itself, or as good as does,
+    strands are apart, and there are at least ``least``.  Raises CurveError if the curve meets itself, or nearly does,
     or the vertices are too few or too many.
     """
     gap = strand_gap(curve)
@@ -47,12 +47,12 @@ def check_count(vertices: int) -> None:
 
 
 def too_few(vertices: int) -> CurveError:
-    """What is raised where a polygon is not proved to be isotopic to its smooth curve."""
+    """The error for a polygon that is not proved to be isotopic to its smooth curve."""
     return CurveError(f"{vertices} vertices are too few to follow the strands of this knot; give more")
 
 
 def shares(vertices: int, lengths: FloatArray) -> list[int]:
-    """Share vertices among components in proportion to length, by rounding the running sums; a CurveError as above."""
+    """Share vertices among components in proportion to length, rounding running sums; CurveError if too few or many."""
     check_count(vertices)
     marks = np.rint(vertices * np.cumsum(lengths) / lengths.sum()).astype(np.intp)
     counts = np.diff(marks, prepend=0)
@@ -62,12 +62,12 @@ def shares(vertices: int, lengths: FloatArray) -> list[int]:
 
 
 def strand_gap(curve: Curve) -> float:
-    """Least distance of vertices on different strands, which two sides of a bend are too."""
+    """Least distance between vertices on different strands, which include the two sides of a bend."""
     return nearest_strands(curve, _DISTINCT)
 
 
 def is_isotopic(first: Curve, first_at: Sequence[FloatArray], second: Curve, second_at: Sequence[FloatArray]) -> bool:
-    """Whether the motion of polygons into others, along straight lines at equal parameters, is proved free of contact.
+    """Whether the motion of polygons to others, along straight lines at equal parameters, is proved free of contact.
 
     ``first_at`` and ``second_at`` have the parameters of the vertices of each component, increasing from 0 to below 1.
     """
@@ -98,9 +98,9 @@ def _along(points: FloatArray, at: FloatArray, t: FloatArray) -> FloatArray:
 
 @checked
 def rounded(curve: Curve, least: int = 320) -> Curve:
-    """Round the corners of a polygon by averages of neighbours, as far as its motion there is proved free of contact.
+    """Round the corners of a polygon by averaging neighbours, as far as its motion there is proved free of contact.
 
-    Every edge is split into equally many, for ``least`` vertices or more in all; ends of arcs stay.
+    All edges are split into the same number of pieces, for at least ``least`` vertices in all; ends of arcs stay.
     """
     pieces = math.ceil(least / len(curve))
     split = subdivide(curve, np.full(curve.mesh.edges, pieces))
@@ -111,7 +111,7 @@ def rounded(curve: Curve, least: int = 320) -> Curve:
 
 
 def averaged(curve: Curve, passes: int) -> FloatArray:
-    """The vertices, shape (n, m), after averages of each with its neighbours, again and again; ends of arcs stay."""
+    """The vertices, shape (n, m), after repeatedly averaging each with its neighbours; ends of arcs stay."""
     vertices, mesh = curve.vertices, curve.mesh
     for _ in range(passes):
         means = 0.5 * vertices + 0.25 * (vertices[mesh.anticycle] + vertices[mesh.cycle])

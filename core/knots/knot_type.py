@@ -1,4 +1,4 @@
-"""The type of a polygon in space: a name of the table, several that are possible, or none; and the evidence."""
+"""The type of a polygon in space: a name from the table, several possible ones, or none; and the evidence."""
 
 import re
 from collections.abc import Callable
@@ -28,7 +28,7 @@ class Effort:
     Parameters
     ----------
     vertices
-        Of the largest curve whose crossings are looked for, which takes seconds.
+        Vertices of the largest curve whose crossings are looked for, which takes seconds.
     views
         Directions to look from: a curve of many crossings simplifies better in some.
     doubled
@@ -50,10 +50,10 @@ DEFAULT_EFFORT = Effort()
 class KnotType:
     """What is known of a type."""
 
-    #: those of the table that fit, if any, with m for mirror images, # for sums and ⊔ between parts that come apart
+    #: names in the table that fit, if any, with m for mirror images, # for sums and ⊔ between parts that come apart
     names: tuple[str, ...]
     proved: bool  #: whether the type certainly is one of the names, as no knot of so few crossings is left out
-    diagram: Diagram | None  #: that of the fewest crossings that were found
+    diagram: Diagram | None  #: the diagram with the fewest crossings that was found
     evidence: tuple[str, ...]  #: what distinguishes the names from others
     refusal: str = ""  #: why no diagram was looked for
 
@@ -92,7 +92,7 @@ class KnotType:
 
     @property
     def sentence(self) -> str:
-        """The short form, and how that is known."""
+        """The short form, and the evidence for it."""
         if self.diagram is None:
             return self.refusal
         size = f"a diagram of {counted(self.diagram.crossings, 'crossing')}"

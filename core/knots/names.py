@@ -114,7 +114,7 @@ def _prime_word(part: str, name: str) -> Word:
 
 
 def _unmirrored(part: str) -> tuple[str, bool]:
-    """A name without the letters m before it, with which no name begins, and whether there is an odd number of them."""
+    """A name without its leading letters m, with which no bare name begins, and whether their number is odd."""
     bare = part.lstrip("m ") if part.startswith("m") else part
     return bare, part[: len(part) - len(bare)].count("m") % 2 == 1
 

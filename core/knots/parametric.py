@@ -12,7 +12,7 @@ from ..errors import CurveError
 from ..types import FloatArray
 from .inscribed import inscribed, strand_gap
 
-MAX_FREQUENCY = 40  # beyond that strands are too near to each other for any use
+MAX_FREQUENCY = 40  # beyond it, strands are too near to each other to be of any use
 _SAMPLES = 160  # for each period of the fastest cosine: enough to represent the smooth curve
 _REACH = 2.1  # of the overhand knot's parameter: beyond it the curve is all but straight
 _FLATNESS = 0.1  # of its third coordinate, which grows with the fifth power
@@ -51,10 +51,10 @@ def lissajous_knot(
 
 @checked
 def overhand(vertices: int | None = None) -> Curve:
-    """Make the overhand knot, a trefoil that is cut open, with straight ends, of 120 vertices or so many.
+    """Make the overhand knot, a trefoil cut open, with straight ends and the given number of vertices, by default 120.
 
-    Shastri's polynomials (t³ − 3t, t⁴ − 4t², t⁵ − 10t), of which the last one is scaled down.  Raises CurveError for
-    fewer than 40 vertices, with which it might not be knotted so.
+    It follows Shastri's polynomials (t³ − 3t, t⁴ − 4t², t⁵ − 10t), the last one scaled down.  Raises CurveError for
+    fewer than 40 vertices, with which it might be knotted differently.
     """
     count = 120 if vertices is None else vertices
     if count < _LEAST:

@@ -58,7 +58,7 @@ def drawn(diagram: Diagram) -> Curve:
 
 
 def _of_link(other: object) -> Curve | None:
-    """The drawing of an object that has a planar diagram code, or is made of one that has; None for others."""
+    """The drawing of an object that has a planar diagram code, or is made from one that has; None for others."""
     makes_link = getattr(other, "link", None)  # as SnapPy's manifolds do
     try:
         link = makes_link() if callable(makes_link) and not hasattr(other, "PD_code") else other

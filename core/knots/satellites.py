@@ -108,7 +108,7 @@ class Tube:
         return cls(length, reach, np.stack([center, across, np.cross(tangent, across)], axis=1))
 
     def radius(self, room: float) -> float:
-        """That fraction of the reach; a CurveError unless it is between 0 and 1."""
+        """The fraction ``room`` of the reach; a CurveError unless it is between 0 and 1."""
         if not 0.0 < room < 1.0:
             raise CurveError(f"room is {room}; it must be above 0 and below 1")
         return room * self.reach

@@ -32,7 +32,7 @@ def scramble(
 ) -> Curve:
     """Make a messy polygon of the same knot type with the same numbers of vertices.
 
-    Of closed polygons in space that don't touch, vertices move one at a time, straight and far, wherever the swept
+    The vertices of closed polygons in space that don't touch move one at a time, straight and far, wherever the swept
     triangles are free of other edges; the curve stays within the ball that held it.  The same ``seed`` gives the same
     curve.  By default 20 ``moves`` are tried for every vertex, of at most half the ball's radius (``reach``), and keep
     edges a twentieth of their mean length from others (``gap``, at least a millionth of the radius) and
@@ -70,7 +70,7 @@ def scramble(
 
 
 class Polygons(NamedTuple):
-    """Polygons under way: positions that change, the neighbours of each vertex, and what moves must keep."""
+    """Polygons in motion: positions that change, the neighbours of each vertex, and the bounds that moves must keep."""
 
     points: FloatArray
     before: IntArray
@@ -79,7 +79,7 @@ class Polygons(NamedTuple):
     least_angle: float
 
     def can_move(self, vertex: int, position: FloatArray) -> bool:
-        """Whether the straight move of a vertex keeps its edges away from all others, and from the next ones open."""
+        """Whether the straight move of a vertex keeps its edges away from all others, and the next angles open."""
         old, a, b = self.points[vertex], self.before[vertex], self.after[vertex]
         tails, heads = self.points, self.points[self.after]
         for pivot, beyond in ((a, self.before[a]), (b, self.after[b])):
@@ -107,7 +107,7 @@ def triangle_distances(triangle: FloatArray, tails: FloatArray, heads: FloatArra
 
 
 def angle_to_sector(direction: FloatArray, first: FloatArray, second: FloatArray) -> float:
-    """Least angle between a direction (3,) and those from ``first`` to ``second``, the short way; radians."""
+    """Least angle between a direction (3,) and any between ``first`` and ``second``, the short way; radians."""
     least = min(_angle(direction, first), _angle(direction, second))
     normal = np.cross(first, second)
     size = np.sqrt(normal @ normal)

@@ -27,7 +27,7 @@ _PER_MODE, _FEWEST = 5, 64  # vertices of a component, by default
 def smooth_knot(name: str, vertices: int | None = None) -> Curve:
     """Make a knot or link of the table in the shape of least Möbius energy, but with strands far enough apart to see.
 
-    The smooth minimum has some strands at a tenth of their distance here or less, for at most 2 % of the energy.
+    In the smooth minimum some strands are at a tenth of their distance here or less, to save at most 2 % of energy.
     Handedness is the table's: 3_1 is the right-handed trefoil; an m before the name gives the mirror image in the plane
     of the picture.  Names are spelt as for :func:`~mobius_flow.core.knots.knot`; ``vertices`` is the total number.
 

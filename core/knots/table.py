@@ -1,4 +1,4 @@
-"""The named table, read from ``table.ini``, and larger tables, where spherogram is installed, which has them."""
+"""The named table, read from ``table.ini``, and larger tables, which spherogram has where it is installed."""
 
 import re
 from collections.abc import Mapping
@@ -15,7 +15,7 @@ _OTHERWISE = 'give its code, such as "DT: [4 6 2]", "PD[X[1,5,2,4], ...]" or "Ga
 
 
 _FILE = ConfigParser(delimiters="=", interpolation=None)
-_FILE.optionxform = str  # type: ignore[assignment,method-assign]  # names are as they are written there
+_FILE.optionxform = str  # type: ignore[assignment,method-assign]  # names stay as they are written there
 _FILE.read_string(FILE.read_text(encoding="utf-8"))
 
 
@@ -45,7 +45,7 @@ ALIASES: Mapping[str, str] = dict(_FILE["other names"])
 
 
 def larger_name(name: str) -> str | None:
-    """The name, such as K11n34, of one in small letters (``11n_34``), as Hoste and Thistlethwaite number; else None."""
+    """The Hoste-Thistlethwaite name, such as K11n34, of one in small letters (``11n_34``); None for other names."""
     match = _LARGER.fullmatch(name)
     if match is None:
         return None
@@ -54,7 +54,7 @@ def larger_name(name: str) -> str | None:
 
 
 def larger_word(name: str) -> Word:
-    """A braid word by spherogram, of its choice of mirror images; MobiusFlowError if there is none, or no table."""
+    """A braid word from spherogram, of the mirror image it chooses; MobiusFlowError if there is none, or no table."""
     try:
         from spherogram import Link
     except ImportError as error:

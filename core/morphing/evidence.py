@@ -1,4 +1,4 @@
-"""What invariants tell of curves without any motion: that none leads from one to another, or that they are the same."""
+"""What invariants prove without any motion: that none leads from one curve to another, or that their types agree."""
 
 from collections.abc import Callable, Sequence
 from itertools import pairwise
@@ -38,10 +38,10 @@ _OF_LINKS: tuple[tuple[Message, Callable[[Diagram], object]], ...] = (
 
 
 def compare(curves: Sequence[Curve], names: Sequence[str]) -> Message | None:
-    """Say of which type all curves are, if that is proved of each; None if it is not, or they have none.
+    """Say which type all curves have, if that is proved for each; None if it is not, or they have no type.
 
-    In the plane there are no types, nor of open components.  Raises DifferentError, by their names, where one is told
-    apart from the next.
+    Curves in the plane have no type, nor do open components.  Raises DifferentError, with their names, where one curve
+    is shown to differ from the next.
     """
     if not all(each.mesh.all_closed and each.dimension == 3 for each in curves):
         return None
@@ -55,7 +55,7 @@ def compare(curves: Sequence[Curve], names: Sequence[str]) -> Message | None:
 
 
 def _refuse_different(a: KnotType, b: KnotType, names: Sequence[str]) -> None:
-    """Raise a DifferentError that says of which types two curves are, and which invariant tells them apart, if any."""
+    """Raise a DifferentError with the types of two curves, if they differ, and the invariant that shows it, if any."""
     told = a.diagram and b.diagram and _told_apart(a.diagram, b.diagram)
     if not told and not (a.proved and b.proved and not set(a.names) & set(b.names)):
         return
@@ -72,7 +72,7 @@ def _refuse_different(a: KnotType, b: KnotType, names: Sequence[str]) -> None:
 
 
 def _told_apart(a: Diagram, b: Diagram) -> Message | None:
-    """The first invariant that differs; those are None that are not computed."""
+    """The first invariant that differs; those that are not computed are None."""
     for said, invariant in _OF_KNOTS if len(a.passes) == 1 else _OF_LINKS:
         found = invariant(a), invariant(b)
         if None not in found and found[0] != found[1]:

@@ -1,7 +1,7 @@
-"""Where two relaxed curves meet: Möbius images of both, laid upon each other, and a straight way from one to the other.
+"""Where two relaxed curves meet: Möbius images of both, aligned, and a straight way from one to the other.
 
-All curves that they come to by Möbius maps have the same energy.  The images that bend least are few, so that curves at
-the same minimum have one in common, up to a similarity.
+All Möbius images of a curve have the same energy.  The images that bend least are few, so that curves at the same
+minimum have one in common, up to a similarity.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -23,12 +23,12 @@ from ..types import FloatArray
 
 IMAGES = 3  # of each curve, those that bend least, besides itself
 TRIES = 8  # to join them, the best alignment first
-MOEBIUS, TURN, ACROSS = 0.02, 0.2, 0.125  # legs at most: radians in the sphere and in space, share of the straight way
+MOEBIUS, TURN, ACROSS = 0.02, 0.2, 0.125  # longest legs: radians in the sphere and in space, share of the straight way
 LEG = 3e-4  # radii of gyration by which shapes may be further apart to save a leg of a Möbius map
-NEAR = 1e-3  # half the angle of rotation, in radians, of a Möbius map that is hardly any
+NEAR = 1e-3  # half the angle of rotation, in radians, of a Möbius map that counts as none
 UPWARDS = np.array([0.0, 0.0, 1.0])
 STILL = Freedom(np.zeros(3), fixed=np.zeros(3))
-SHORTEST = 1e-4  # share of a motion in one leg, with which it is given up
+SHORTEST = 1e-4  # share of a motion in one leg, below which it is given up
 
 
 def images(end: Iterate, obstacles: Sequence[Obstacle]) -> list[list[Iterate]]:
@@ -38,7 +38,7 @@ def images(end: Iterate, obstacles: Sequence[Obstacle]) -> list[list[Iterate]]:
         found = MoebiusImages(curve, curve.edge_lengths)
         maps = [q for q in least_bending(found, curve.dimension) if np.linalg.norm(q[1:]) > NEAR]
         for q in sorted(maps, key=lambda q: bending(found.at(q)))[:IMAGES]:
-            # each map by both its signs: the pole comes from the one side or from the other
+            # each map with both its signs: the pole may come from either side
             legs = _rotated(curve, found, q) or _rotated(curve, found, -q)
             ways += [[end, *gone(end, legs)]] if legs else []
     return ways
@@ -53,9 +53,9 @@ def _rotated(curve: Curve, found: MoebiusImages, q: FloatArray) -> list[FloatArr
 def meeting(
     ours: Sequence[list[Iterate]], theirs: Sequence[list[Iterate]], obstacles: Sequence[Obstacle]
 ) -> tuple[Alignment, list[Iterate] | None]:
-    """How one curve lies upon another, by their ways to their images, and the iterates to the other one, named alike.
+    """How one curve aligns with another, by the ways to their images, and the iterates to the other, renamed to match.
 
-    Without a way that is free of contact they are None, and the alignment is the best one.
+    Without a way that is free of contact the iterates are None, and the alignment is the best one.
     """
     pairs = [
         (alignment, way, other)
@@ -109,7 +109,7 @@ def _joint(x: Iterate, y: Iterate, alignment: Alignment, obstacles: Sequence[Obs
 def followed(
     start: Curve, at: Callable[[float], FloatArray], stride: float, obstacles: Sequence[Obstacle] = ()
 ) -> list[FloatArray] | None:
-    """Ends of proved legs from a curve along a motion, which gives vertices at a share of it; None if one is not free.
+    """Ends of proved legs from a curve along a motion, which maps a share of it to vertices; None if one is not free.
 
     ``stride`` is the largest share of a leg; where legs are not free, they are halved.
     """
@@ -129,25 +129,25 @@ def followed(
 
 
 def gone(before: Iterate, legs: Sequence[FloatArray]) -> Iterator[Iterate]:
-    """The iterates after another one at the ends of legs on its mesh."""
+    """The iterates that follow another one along legs on its mesh."""
     for leg in legs:
         yield replace(before, curve=before.curve.with_vertices(leg), path=(leg,), step_size=0.0)
 
 
 def on_mesh(before: Iterate, curve: Curve, pins: tuple[int, ...]) -> Iterate:
-    """The iterate after another one that is the same polygon on another mesh."""
+    """The iterate that follows another one with the same polygon on another mesh."""
     return replace(before, curve=curve, path=(), step_size=0.0, pins=pins)
 
 
 def back(way: Sequence[Iterate]) -> Iterator[Iterate]:
-    """The iterates after the last one on the same way back to the first: vertices that came go."""
+    """The iterates that follow the last one, back along the same way to the first: vertices that came go."""
     for here, there in pairwise(reversed(way)):
         path = (*here.path[-2::-1], there.curve.vertices) if here.path else ()
         yield replace(there, path=path, step_size=here.step_size)
 
 
 def renamed(iterate: Iterate, alignment: Alignment) -> Iterate:
-    """The same with components in another order; those that are run through backwards keep their first vertex."""
+    """The same iterate with components in another order; those run through backwards keep their first vertex."""
     if alignment.as_given:
         return iterate
     mesh, parts = iterate.curve.mesh, []

@@ -1,4 +1,4 @@
-"""From one curve to another: both are relaxed, where they come to the same shape they meet, and one way is run back."""
+"""From one curve to another: both are relaxed, they meet at a common shape, and one way is run backwards."""
 
 import time
 from collections import deque
@@ -39,11 +39,11 @@ def morph(
 ) -> Result:
     """Find a motion from one curve to another that is proved free of contact, all along.
 
-    Both are relaxed with the options, so that they come to a common shape but for Möbius maps and similarities, which
-    are motions too; where one ``b`` is at rest, the other's way is joined to its own, run backwards.  The first iterate
-    is ``a`` and the last one ``b``, bit for bit, with its vertices in their order, unless shapes fit only with
-    components in another order or run through in opposite directions, which the outcome says then.  Open components
-    are held at their ends, which are in the same places in both.  Obstacles are those of ``a``; both avoid them.
+    Both are relaxed with the options, to a common shape up to Möbius maps and similarities, which are motions too;
+    there the way of ``a`` is joined to that of ``b``, run backwards.  The first iterate is ``a`` and the last one
+    ``b``, bit for bit, with its vertices in their order, unless the shapes match only with components in another order
+    or run through in opposite directions, which the outcome then says.  Open components are held at their ends, which
+    are in the same places in both.  Both avoid the obstacles of ``a``.
 
     ``callback`` gets every iterate; a `Trajectory` of them all is what `verify` checks.  Raises NoMotionError if
     invariants say that there is no way, or none was found; CurveError or OptionError if the curves cannot be relaxed,
@@ -56,7 +56,7 @@ def morph(
 def morphing(tasks: Sequence[Task], options: RelaxOptions, names: Sequence[str]) -> Relaxation:
     """Yield the iterates from the first curve over all others to the last one; return how it ended.
 
-    Obstacles are those of the first task; names of the curves are for sentences.  Raises as `morph` does.
+    Obstacles are those of the first task; messages use the names of the curves.  Raises as `morph` does.
     """
     work = moving(tasks, options, names)
     compare([each.curve for each in tasks], names)
@@ -64,7 +64,7 @@ def morphing(tasks: Sequence[Task], options: RelaxOptions, names: Sequence[str])
 
 
 def moving(tasks: Sequence[Task], options: RelaxOptions, names: Sequence[str]) -> Relaxation:
-    """The same, but that no invariants are looked at."""
+    """The same, without looking at invariants."""
     began = time.perf_counter()
     for pair, called in zip(pairwise(tasks), pairwise(names), strict=True):
         check_alike([each.curve for each in pair], called)
@@ -93,9 +93,9 @@ def _chain(ways: "Sequence[_Way]", options: RelaxOptions, hops: int) -> Relaxati
 
 
 def _joined(here: "_Way", there: "_Way", options: RelaxOptions, hops: int) -> _Joining:
-    """How two shapes lie upon each other, and the iterates from one to the other; yields how the first one goes on.
+    """How two shapes align, and the iterates from one to the other; yields those with which the first one goes on.
 
-    Coarse meshes may be what keeps them apart: they go on on equally fine ones, the higher first, and then hop.
+    Coarse meshes may keep them apart: both continue on equally fine ones, the one of higher energy first, and then hop.
     """
     ways, obstacles = (here, there), here.task.obstacles
     shapes = [images(each.end, obstacles) for each in ways]
@@ -150,7 +150,7 @@ class _Way:
         return self.iterates[-1]
 
     def relaxed(self, options: RelaxOptions | None = None) -> Iterator[Iterate]:
-        """Go on to where it comes to rest, once more if there are options, and yield what comes there."""
+        """Go on to where it comes to rest, once more if there are options, and yield the iterates."""
         if options is not None:
             self._run = relax(replace(self.task, curve=self.end.curve, pins=self.end.pins), options)
         for iterate in self._run:

@@ -1,4 +1,4 @@
-"""What is seen of a curve in some frame: its diagram, where its passes are on the curve, and their most level heights.
+"""A curve as seen in some frame: its diagram, the places of the passes on the curve, and their most level heights.
 
 Any vertical motion that keeps the order at crossings is free of contact.  Heights z minimise Σ (Δz)²/ℓ over all edges
 of lengths ℓ in the plane, while strands are at least a gap g apart where they cross, C z ≥ g.  With the matrix L of the
@@ -22,12 +22,12 @@ from ..types import BoolArray, FloatArray
 from .triangles import UnclearError
 
 MOST_CROSSINGS = 5_000
-_CLEAR = 1e-9  # of an edge, or of the curve's size: what is nearer to the limit than that might be a rounding error
+_CLEAR = 1e-9  # of an edge, or of the curve's size: anything nearer to the limit might be a rounding error
 _GAP = 0.03  # of the curve's size
 _SHORT = 1e-3  # of the size, added to lengths
 _LEVEL = 0.05  # of the stiffness of an edge as long as the curve is large: draws all heights to their mean
 _DUAL = {"maxiter": 150, "maxcor": 20, "ftol": 1e-7, "gtol": 0.0}
-_ENOUGH = 0.2  # of the gap, or of what it was: what rounding must leave
+_ENOUGH = 0.2  # of the gap, or of the gap before: what rounding must leave
 
 
 class CrowdedError(UnclearError):
@@ -45,11 +45,11 @@ class Drawing:
     mesh, points
         The curve in the frame, shape (n, 3).
     crossings
-        Of its edges, which are numbered by their tails here.
+        The crossings of its edges, which are numbered by their tails here.
     heights
-        Of both edges at each crossing; shape (2, k).
+        The heights of both edges at each crossing; shape (2, k).
     diagram
-        With places where the curve is held among its passes.
+        The diagram, with places where the curve is held among its passes.
     at
         Where each pass is: the tail of its edge plus a fraction.
     """
@@ -63,7 +63,7 @@ class Drawing:
 
     @classmethod
     def of(cls, mesh: Mesh, points: FloatArray, held: BoolArray) -> "Drawing":
-        """The drawing of a curve some vertices of which are held; an UnclearError where rounding hides what it is."""
+        """The drawing of a curve with some vertices held; an UnclearError where rounding leaves it unclear."""
         crossings = plane_crossings(mesh, points, _CLEAR)
         if len(crossings.turn) >= MOST_CROSSINGS:
             raise CrowdedError
@@ -103,7 +103,7 @@ class Drawing:
         return [first, *wrap, last], [begin, *map(float, inner), end]
 
     def chains(self) -> Iterator[tuple[int, list[int]]]:
-        """The edges of the diagram, and the nodes on each; circles without passes are edges of one number more."""
+        """The edges of the diagram, and the nodes on each; circles without passes take the next number."""
         for edge in range(len(self.at)):
             yield edge, self.stops(edge)[0]
         for part, passes in zip(self.mesh.slices, self.diagram.passes, strict=True):
@@ -117,7 +117,7 @@ class Drawing:
 
 
 def combed(drawing: Drawing, held: BoolArray) -> FloatArray | None:
-    """The heights of all vertices, shape (n,), those that are held as they are; None if rounding leaves too little."""
+    """The heights of all vertices, shape (n,), with held ones unchanged; None if rounding leaves too small gaps."""
     mesh, points = drawing.mesh, drawing.points
     size = float(np.ptp(points[:, :2], axis=0).max())
     mean = float(points[held, 2].mean()) if held.any() else float(points[:, 2].mean())

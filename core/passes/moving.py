@@ -1,4 +1,4 @@
-"""A curve that is moved on proved legs only, seen in a frame of its own."""
+"""A curve that moves along proved legs only, seen in a frame of its own."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -22,14 +22,14 @@ class Seen(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Stage:
-    """Motions on one mesh; the curve of the stage before is the same but for vertices on straight edges.
+    """Motions on one mesh; they start where the previous stage ends, except for vertices on straight edges.
 
     Attributes
     ----------
     start
-        Where they begin, in the user's units.
+        The curve where they begin, in the user's units.
     path
-        The vertices at the end of each leg, shapes (n, 3); empty where only the mesh is another one.
+        The vertices at the end of each leg, shapes (n, 3); empty where only the mesh changes.
     seen
         What is seen at the end of the last stage of a move, or before the first one; None in between.
     """
@@ -45,7 +45,7 @@ class Stage:
 
 
 class MovingCurve:
-    """The vertices in the user's doubles, bit for bit what was proved, and in a frame for planning.
+    """A curve's vertices in the user's doubles, bit for bit those that were proved, and in a frame for planning.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ class MovingCurve:
 
     @property
     def gap(self) -> float:
-        """The smallest distance of edges that are no neighbours."""
+        """The smallest distance between edges that are not neighbours."""
         return minimal_gap(self.curve)[0]
 
     def move(self, vertices: IntArray, targets: FloatArray) -> bool:
@@ -101,7 +101,7 @@ class MovingCurve:
         return self._go(vertices, targets @ self.frame.T)
 
     def follow(self, vertices: IntArray, targets: Callable[[int], FloatArray], count: int) -> bool:
-        """Move some vertices through targets 1, 2, … to the last one, with as few motions as are free, if that is."""
+        """Move some vertices through targets 1, 2, … to the last, in as few motions as possible, if these are free."""
         here, stride = 0, count
         while here < count:
             there = min(here + stride, count)
@@ -114,7 +114,7 @@ class MovingCurve:
         return True
 
     def straighten(self, vertices: IntArray, parts: FloatArray) -> bool:
-        """Move some vertices to parts of the way between their neighbours, which stay, if that is proved free."""
+        """Move some vertices to given parts of the way between their neighbours, which stay, if that is proved free."""
         start, end = self.curve.vertices[self.mesh.anticycle[vertices]], self.curve.vertices[self.mesh.cycle[vertices]]
         return self._go(vertices, start + parts[:, None] * (end - start))
 
@@ -155,7 +155,7 @@ class MovingCurve:
         return self._on(finer, held[order], survives=finer)
 
     def drop(self, gone: IntArray) -> bool:
-        """Take vertices away that lie on the segments between their neighbours, but for rounding, if that allows it."""
+        """Remove vertices that lie, up to rounding, on the segments between their neighbours, if rounding allows it."""
         left = np.bincount(np.delete(self.mesh.component, gone), minlength=len(self.mesh.component_sizes))
         coarser = Curve(np.delete(self.curve.vertices, gone, axis=0), Mesh(tuple(left.tolist()), self.mesh.closed))
         return self._on(coarser, np.delete(self.held, gone), survives=self.curve)
@@ -168,7 +168,7 @@ class MovingCurve:
         return True
 
     def taken(self, crossings: int) -> list[Stage]:
-        """The stages made so far, each once, or at least where the curve is; so many crossings are seen there."""
+        """The stages not yet taken, or at least one where the curve is; ``crossings`` are seen at its end."""
         *stages, last = self.stages or [Stage(self.curve)]
         self.stages = []
         return [*stages, replace(last, seen=Seen(crossings, self.moves))]

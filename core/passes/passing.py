@@ -1,7 +1,7 @@
-"""A strand move in space: lifted above all else, or lowered below it, the strand is led another way, by wide gates.
+"""A strand move in space: lifted above all else, or lowered below it, the strand is rerouted through wide gates.
 
 The rest of the drawing is cut into triangles.  A way goes from one to the next through their edges, the gates.  Pieces
-of the curve, the walls, are only crossed as planned: a shortest path in one layer of triangles more than crossings.
+of the curve, the walls, are only crossed as planned: it is a shortest path through layers, one more than crossings.
 """
 
 from collections.abc import Mapping
@@ -18,7 +18,7 @@ from .drawing import Drawing
 from .moving import MovingCurve
 from .triangles import Triangles
 
-_RAMPS = 0.2, 0.4, 0.6, 0.8  # of a piece: where a strand ends, is back below, leaves from below, and begins
+_RAMPS = 0.2, 0.4, 0.6, 0.8  # of a piece: where a strand ends, has landed, takes off, and begins
 _ASIDE = 0.2  # of a gate's width, and
 _NEAR = 0.3  # of the way there: how far from a wall the vertices on both sides of it are
 _CLEAR = 0.15  # of a gate's width that ways keep clear of its ends
@@ -47,7 +47,7 @@ class Ends:
 
     @classmethod
     def of(cls, drawing: Drawing, move: Move) -> "Ends":
-        """On the longest pieces before and after the strand's passes."""
+        """The ends on the longest pieces before and after the strand's passes."""
         last, (end, landing, _, _) = _longest(drawing, move.strand.inner[-1])
         first, (_, _, foot, start) = _longest(drawing, move.strand.first)
         return cls(foot, start, end, landing, first, last)
@@ -75,7 +75,7 @@ def routed(drawing: Drawing, move: Move, ends: Ends) -> FloatArray | None:
 
 
 def _walls(drawing: Drawing, move: Move, ends: Ends, names: tuple[int, int]) -> dict[Wall, int]:
-    """The pieces of all that stays, from node to node, and the edges of the diagram that they are of."""
+    """The pieces of all that stays, from node to node, and the edges of the diagram that they belong to."""
     strand, last = move.strand, move.strand.inner[-1]
     walls: dict[Wall, int] = {}
     start, end = names
@@ -178,7 +178,7 @@ class _Plane:
 
 
 def passed(body: MovingCurve, drawing: Drawing, move: Move) -> bool:
-    """Make a move if that is proved free; whether it was.  If not, the curve may be half the way."""
+    """Make a move if that is proved free; return whether it was.  If not, the curve may be left halfway."""
     ends = Ends.of(drawing, move)
     way = routed(drawing, move, ends)
     strand = None if way is None else _prepared(body, drawing, ends, len(way))
@@ -193,7 +193,7 @@ def passed(body: MovingCurve, drawing: Drawing, move: Move) -> bool:
 
 
 def _tops(body: MovingCurve, over: bool) -> list[float]:
-    """What a strand has to be above, upside down for strands that pass under: the curve, and then obstacles too."""
+    """Heights that a strand has to clear, upside down for strands that pass under: the curve's, then obstacles' too."""
     up = 1.0 if over else -1.0
     tops = [float((up * body.seen[:, 2]).max())]
     walls = [float((up * (wall.vertices @ body.frame[:, 2])).max()) for wall in body.obstacles]
@@ -201,7 +201,7 @@ def _tops(body: MovingCurve, over: bool) -> list[float]:
 
 
 def _prepared(body: MovingCurve, drawing: Drawing, ends: Ends, count: int) -> IntArray | None:
-    """Insert the strand's ends, and so many vertices that it has as many as its new way; the vertices, in order."""
+    """Insert the strand's ends, and enough vertices for its new way; return all of its vertices, in order."""
     mesh = drawing.mesh
     part = mesh.slices[mesh.component[int(ends.start)]]
     size = part.stop - part.start
@@ -222,7 +222,7 @@ def _prepared(body: MovingCurve, drawing: Drawing, ends: Ends, count: int) -> In
 
 
 def _between(stops: FloatArray, lengths: FloatArray, count: int) -> FloatArray:
-    """So many more stops, where the longest pieces are."""
+    """``count`` more stops, where the longest pieces are."""
     parts = np.ones(len(lengths))
     for _ in range(count):
         parts[np.argmax(lengths / parts)] += 1
@@ -231,7 +231,7 @@ def _between(stops: FloatArray, lengths: FloatArray, count: int) -> FloatArray:
 
 
 def _lifted(body: MovingCurve, strand: IntArray, top: float, over: bool) -> bool:
-    """Raise a strand above all else, or lower it below, the farther the later."""
+    """Raise a strand above all else, or lower it below, farther and farther along it."""
     up = 1.0 if over else -1.0
     targets = body.seen[strand]
     targets[:, 2] = up * (top + body.size * (_ABOVE + _RISE * np.linspace(0.0, 1.0, len(strand))))
@@ -239,7 +239,7 @@ def _lifted(body: MovingCurve, strand: IntArray, top: float, over: bool) -> bool
 
 
 def _led(body: MovingCurve, strand: IntArray, way: FloatArray) -> bool:
-    """Lead a strand in the plane to another way, with as few motions as are free."""
+    """Lead a strand in the plane to another way, in as few free motions as possible."""
     old = body.seen[strand]
     lengths = np.linalg.norm(np.diff(way, axis=0), axis=1)
     extra = _between(np.arange(len(way), dtype=float), lengths, len(old) - len(way))
@@ -249,7 +249,7 @@ def _led(body: MovingCurve, strand: IntArray, way: FloatArray) -> bool:
 
 
 def _reeled(old: FloatArray, new: FloatArray, turn: int) -> FloatArray:
-    """The strand after some of the vertices between its ends are reeled in, and then, after all of them, out."""
+    """The strand after ``turn`` vertices between its ends are reeled in and, once all of them are, out again."""
     inner = len(old) - 2
     laid = abs(inner - turn)  # so many vertices after the first are not on the segment to the end
     way = np.array(old)

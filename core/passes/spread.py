@@ -1,8 +1,8 @@
-"""A drawing is spread: strands that have come near each other move apart, and nothing crosses that did not.
+"""A drawing is spread: strands that have come near each other move apart, and no new crossings appear.
 
 Vertices and crossings are corners of triangles.  Wherever each corner inside is an average of its neighbours with
 positive weights, no triangle is turned over (Tutte 1963; Floater, *Math. Comp.* 72, 2003).  The drawing as it is has
-mean value coordinates for weights; those of springs that are stiffened until all are nearly as long spread it, and
+mean value coordinates as weights; the weights of springs, stiffened until all are about equally long, spread it, and
 averages of both weights lead there (Floater and Gotsman, *J. Comput. Appl. Math.* 101, 1999).
 """
 
@@ -20,13 +20,13 @@ from .triangles import Triangles
 _STIFFENINGS = 20
 _PARTS = 64  # of the way, the shortest that are tried
 _ASIDE = 0.05  # of the shortest edge at a crossing
-_FLAT = 1e-9  # 1 + cos α is taken to be that at least
+_FLAT = 1e-9  # least value that 1 + cos α is taken to have
 _RING = 32  # points around the drawing, which stay where they are,
 _AROUND = 1.2  # so many times as far from its middle as its farthest point
 
 
 def spread(body: MovingCurve, drawing: Drawing) -> bool:
-    """Even out the drawing of a curve; whether that was proved free.  Crossings become vertices of both strands."""
+    """Even out a curve's drawing; return whether that was proved free.  Crossings become vertices of both strands."""
     layout = _Layout(drawing)
     node = _nodes(body, drawing)
     if node is None:
@@ -39,9 +39,9 @@ def spread(body: MovingCurve, drawing: Drawing) -> bool:
 
 
 def _parted(body: MovingCurve, node: IntArray, layout: FloatArray) -> FloatArray:
-    """The vertices on their nodes, but of both at a crossing one a bit aside, so that edges cross inside, and once.
+    """The vertices on their nodes, but one of both at a crossing slightly aside, so that edges cross inside, and once.
 
-    It goes along the bisector of its way in and the nearer branch of the other strand.
+    It moves along the bisector of its way in and the nearer branch of the other strand.
     """
     places, before, after = layout[node], body.mesh.anticycle, body.mesh.cycle
     order = np.argsort(node, kind="stable")
@@ -61,7 +61,7 @@ def _parted(body: MovingCurve, node: IntArray, layout: FloatArray) -> FloatArray
 
 
 def _nodes(body: MovingCurve, drawing: Drawing) -> IntArray | None:
-    """Insert vertices at all crossings; the node of the drawing that each vertex is."""
+    """Insert vertices at all crossings; return the node of the drawing that each vertex is."""
     n = drawing.mesh.size
     passes = zip(drawing.at, drawing.diagram.sequence, strict=True)
     places = sorted((at, n + crossing) for at, (crossing, _) in passes if crossing >= 0)
@@ -72,7 +72,7 @@ def _nodes(body: MovingCurve, drawing: Drawing) -> IntArray | None:
 
 
 class _Layout:
-    """The drawing as it is, spread, and all between: places of the nodes in the plane."""
+    """The drawing as it is, spread, and everything in between: places of the nodes in the plane."""
 
     def __init__(self, drawing: Drawing) -> None:
         nodes = drawing.nodes
@@ -95,13 +95,13 @@ class _Layout:
         return self._placed((1.0 - part) * self.now + part * self.spread)[: self.count]
 
     def _placed(self, weights: sp.csr_array) -> FloatArray:
-        """All points, those inside averages of their neighbours; ``weights`` have rows that sum to 1."""
+        """All points, with those inside as averages of their neighbours; the rows of ``weights`` sum to 1."""
         inside = weights[: self.count]
         matrix = (sp.eye_array(self.count) - inside[:, : self.count]).tocsc()
         return np.concatenate([splu(matrix).solve(inside[:, self.count :] @ self.ring), self.ring])
 
     def _springs(self, corners: IntArray) -> sp.csr_array:
-        """Weights by which edges are about as long as each other."""
+        """Weights with which all edges are about equally long."""
         size = self.count + _RING
         sides = np.unique(
             np.sort(np.concatenate([corners, np.roll(corners, -1, axis=1)]).reshape(2, -1).T, axis=1), axis=0

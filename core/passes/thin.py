@@ -1,4 +1,4 @@
-"""Vertices that the curve can do without are taken away."""
+"""Removal of vertices that the curve can do without."""
 
 import numpy as np
 
@@ -10,15 +10,15 @@ from ..types import BoolArray, FloatArray, IntArray
 from .moving import MovingCurve
 
 _LEAST = {True: 8, False: 4}  # vertices of a component, by whether it is closed
-_MARGIN = 0.03  # of a triangle's size, by which nothing may come near to it
+_MARGIN = 0.03  # of a triangle's size: nothing may come nearer to it
 _GAP = 4e-3  # of the curve's size: gaps may become that small,
-_KEPT = 0.99  # or else not smaller than that part of what they are
+_KEPT = 0.99  # or else keep at least that part of their size
 _ROUNDS = 30
 _ENDS = 0.02  # a vertex is not moved nearer to its neighbours than that part of their distance
 
 
 def thin(body: MovingCurve) -> None:
-    """Drop vertices whose triangle with their neighbours nothing pierces, and which leave no more crossings."""
+    """Drop vertices whose triangle with their neighbours nothing pierces, if no crossings are added."""
     gap = min(_KEPT * body.gap, _GAP * body.size)
     for _ in range(_ROUNDS):
         chosen = _Corners.of(body, gap).independent(body.mesh)
@@ -43,7 +43,7 @@ class _Corners:
 
     @classmethod
     def of(cls, body: MovingCurve, gap: float) -> "_Corners":
-        """Those that can go one by one, smallest triangles first."""
+        """The corners that can each go alone, smallest triangles first."""
         mesh, points = body.mesh, body.seen
         least = np.array([_LEAST[closed] for closed in mesh.closed])
         spare = (np.array(mesh.component_sizes) > least)[mesh.component]
@@ -65,7 +65,7 @@ class _Corners:
         return cls(mesh, points, every.vertices[fit[np.argsort(every.area[fit], kind="stable")]], gap)
 
     def independent(self, mesh: Mesh) -> IntArray:
-        """Vertices that can go together: not near each other, and no triangle pierced by what replaces another one."""
+        """Vertices that can go together: no two are near, and no triangle is pierced by another's new edge."""
         first, second = meeting_boxes(self.low, self.high, self.low, self.high)
         pierced = _pierced(self, first, self.a[second], (self.c - self.a)[second])
         beside: list[list[int]] = [[] for _ in self.vertices]
@@ -88,7 +88,7 @@ class _Corners:
 
 
 def _pierced(corners: _Corners, k: IntArray, start: FloatArray, edge: FloatArray) -> BoolArray:
-    """Whether edges come through triangles k, both made longer by the margin; shape (pairs,)."""
+    """Whether edges pierce triangles k, both enlarged by the margin; shape (pairs,)."""
     u, v, apart = (corners.b - corners.a)[k], (corners.c - corners.a)[k], start - corners.a[k]
     normal = np.cross(u, v)
     with np.errstate(all="ignore"):
@@ -115,7 +115,7 @@ def _crosses(a: FloatArray, c: FloatArray, start: FloatArray, end: FloatArray) -
 
 
 def _dropped(body: MovingCurve, chosen: IntArray, gap: float, crossings: int) -> IntArray:
-    """Move vertices onto the segments between their neighbours and drop them, all at once or in halves; which went."""
+    """Move vertices onto segments between their neighbours and drop them, together or in halves; return which went."""
     mesh, points = body.mesh, body.curve.vertices
     to = np.linalg.norm(points[chosen] - points[mesh.anticycle[chosen]], axis=1)
     on = np.linalg.norm(points[chosen] - points[mesh.cycle[chosen]], axis=1)

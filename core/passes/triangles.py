@@ -1,6 +1,6 @@
-"""Triangles of points in the plane in which some segments are edges; sides are decided exactly.
+"""Triangulations of points in the plane with some segments as edges; sides of lines are decided exactly.
 
-Points are put in one after the other, and edges flipped until circumcircles are empty; then the edges that cross a wall
+Points are inserted one by one, and edges flipped until circumcircles are empty; then the edges that cross a wall
 are flipped until it is an edge itself (S. W. Sloan, *Computers & Structures* 47, 1993).
 """
 
@@ -14,17 +14,17 @@ from ..messages import Message
 from ..types import FloatArray, IntArray
 
 _MARGIN = 0.15  # of the largest extent, around all points
-_ROUNDING = 4e-16  # relative to the sum of both products: what is above it has the right sign
+_ROUNDING = 4e-16  # relative to the sum of both products: anything above it has the right sign
 
 
 class UnclearError(ArithmeticError):
-    """What lies where cannot be told, or is too much to look at; ``reason`` says so in words."""
+    """The positions of strands are unclear, or there are too many to look at; ``reason`` says so in words."""
 
     reason = Message("strands touch, or nearly do: no view of the curve shows which one is in front")
 
 
 class Triangles:
-    """A triangulation of points, shape (n, 2), and, after them, of the corners of a rectangle around all.
+    """A triangulation of points, shape (n, 2), followed by the corners of a rectangle around all of them.
 
     Raises UnclearError if points are equal, or one is on a wall.
     """
@@ -55,7 +55,7 @@ class Triangles:
         return np.array([(a, b, c) for (a, b), c in self._opposite.items() if a < b and a < c])
 
     def _side(self, a: int, b: int, p: int) -> float:
-        """Positive if p is on the left of the line from a to b, 0 if it is on it: for certain."""
+        """Positive if p is on the left of the line from a to b, 0 if it is on the line: exactly decided."""
         x, y = self._x, self._y
         left, right = (x[b] - x[a]) * (y[p] - y[a]), (y[b] - y[a]) * (x[p] - x[a])
         if abs(left - right) > _ROUNDING * (abs(left) + abs(right)):
@@ -65,7 +65,7 @@ class Triangles:
         return float((exact > 0) - (exact < 0))
 
     def _in_circle(self, a: int, b: int, c: int, p: int) -> bool:
-        """Whether p is inside the circle through a, b, c, but for rounding: nothing but shapes depends on it."""
+        """Whether p is inside the circle through a, b, c, up to rounding: only shapes depend on it."""
         rows = [(self._x[k] - self._x[p], self._y[k] - self._y[p]) for k in (a, b, c)]
         (ax, ay), (bx, by), (cx, cy) = rows
         aa, bb, cc = (u * u + v * v for u, v in rows)

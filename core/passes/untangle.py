@@ -1,4 +1,4 @@
-"""From a tangled curve to one with few crossings, by strand moves that are seen on its diagram and made in space."""
+"""From a tangled curve to one with few crossings, by strand moves that are found on its diagram and made in space."""
 
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import suppress
@@ -25,7 +25,7 @@ from .views import MOST_VERTICES, drawn, face, shows_least, turn
 _ATTEMPTS = 6  # from different views, as long as moves lead to fewer crossings
 _FAILURES = 8  # moves in a row that are not free, after which a view is given up
 _NEAR = 4e-3  # of the curve's size: strands nearer than that are spread
-_NEARER = 1e-4  # of its size: what is spread must not have strands nearer than that, unless they were nearer before
+_NEARER = 1e-4  # of its size: spreading must not leave strands nearer than that, unless they were nearer before
 _PART = 0.9  # of a motion's free part, if it is not free as a whole
 
 UNTOUCHED = Message("only curves in space with at most {most:,} vertices are untangled", most=MOST_VERTICES)
@@ -35,7 +35,7 @@ STUCK = "{count} crossings are left, as no move of a strand is known that saves 
 
 
 class Untangled(NamedTuple):
-    """How it ended: with so many crossings, whether no diagram has fewer, both in words, and after so many moves."""
+    """How it ended: the number of crossings, whether no diagram has fewer, both in words, and the number of moves."""
 
     crossings: int | None
     least: bool
@@ -89,7 +89,7 @@ def untangled(
 
 
 def _moved(body: MovingCurve, rng: np.random.Generator) -> Generator[Stage, None, bool]:
-    """Make moves in one view until none is left to make; whether that is because they are not free."""
+    """Make moves in one view until none is left to make; return whether that is because they are not free."""
     failures = 0
     _settle(body, rng)
     while failures <= _FAILURES:
@@ -108,7 +108,7 @@ def _moved(body: MovingCurve, rng: np.random.Generator) -> Generator[Stage, None
 
 
 def _made(body: MovingCurve, motions: Callable[[], bool]) -> bool:
-    """Make motions, or none of them where one is not free, or rounding hides which way is."""
+    """Make motions, or none if one is not free or rounding leaves the way unclear; return whether they are made."""
     mark = body.mark()
     with suppress(UnclearError):
         if motions():
@@ -118,7 +118,7 @@ def _made(body: MovingCurve, motions: Callable[[], bool]) -> bool:
 
 
 def _settle(body: MovingCurve, rng: np.random.Generator) -> None:
-    """Level the curve, leave out what it can do without, and spread it where strands are near each other."""
+    """Level the curve, drop vertices that it can do without, and spread it where strands are near each other."""
     _level(body, rng)
     gap, mark = body.gap, body.mark()
     if gap < _NEAR * body.size and not body.held.any() and _made(body, lambda: spread(body, drawn(body, rng))):
@@ -128,14 +128,14 @@ def _settle(body: MovingCurve, rng: np.random.Generator) -> None:
 
 
 def _level(body: MovingCurve, rng: np.random.Generator) -> None:
-    """Level the curve, and leave out what it can do without."""
+    """Level the curve, and drop vertices that it can do without."""
     _lower(body, rng)
     thin(body)
     _lower(body, rng)
 
 
 def _lower(body: MovingCurve, rng: np.random.Generator) -> None:
-    """Make heights as level as crossings allow, or as free motion does; not where nothing crosses."""
+    """Make heights as level as crossings and free motion allow; not where nothing crosses."""
     drawing = drawn(body, rng)
     heights = combed(drawing, body.held) if drawing.diagram.crossings else None
     if heights is None:
@@ -148,5 +148,5 @@ def _lower(body: MovingCurve, rng: np.random.Generator) -> None:
 
 
 def _taken(body: MovingCurve, rng: np.random.Generator) -> Iterator[Stage]:
-    """The stages made so far, each once, and what is seen then."""
+    """Yield the stages not yet taken, with what is seen at the end."""
     yield from body.taken(drawn(body, rng).diagram.crossings)

@@ -1,6 +1,6 @@
-"""From where a curve is looked at: from where moves of its diagram lead to the fewest crossings.
+"""The directions from which to look at a curve: those where moves of its diagram lead to the fewest crossings.
 
-A knot that is stuck in one view comes apart in another: of level heights, two dozen views from the side were enough.
+A knot that is stuck in one view comes apart in another: with level heights, two dozen views from the side were enough.
 """
 
 from collections.abc import Iterable, Iterator
@@ -21,7 +21,7 @@ from .triangles import UnclearError
 
 MOST_VERTICES = 20_000
 _VIEWS = 24
-_FEW = 4  # of them are looked at before it is known whether any move is worth while
+_FEW = 4  # of them are looked at before it is known whether any move is worthwhile
 _SIDES = 3.0  # times as high as it is a curve is taken to be, whose views are then random
 _TILT = 1e-3  # radians, about, by which the frame is turned where rounding hides what is seen
 _TURNS = 8
@@ -29,7 +29,7 @@ _WORK = 60_000  # crossings of diagrams that are visited to see where the moves 
 
 
 def drawn(body: MovingCurve, rng: np.random.Generator) -> Drawing:
-    """What is seen, if need be from a direction very near the frame's, to which it is turned."""
+    """The drawing of the curve, in the frame or, if need be, in one turned from it by very little."""
     tilts = (rotation(np.eye(3) + _TILT * rng.normal(size=(3, 3))) for _ in range(_TURNS))
     body.frame, drawing = next(_seen(body, chain([body.frame], (body.frame @ tilt for tilt in tilts))))
     return drawing
@@ -47,7 +47,7 @@ def face(body: MovingCurve, rng: np.random.Generator, count: int = _VIEWS) -> Dr
 def turn(body: MovingCurve, rng: np.random.Generator, *, away: bool = False, count: int = _VIEWS) -> int:
     """Turn the frame to where moves lead to fewer crossings than are seen now, if there is such a view.
 
-    Returns how many they lead to.  If it is to turn ``away``, the moves that begin in the frame as it is do not count.
+    Returns how many they lead to.  If it is to turn ``away``, moves that begin in the present frame do not count.
     """
     best, here = drawn(body, rng).diagram.crossings, body.frame
     sides = [here @ rotation(each) for each in rng.normal(size=(count, 3, 3)) * [1.0, 1.0, _SIDES]]
@@ -63,14 +63,14 @@ def turn(body: MovingCurve, rng: np.random.Generator, *, away: bool = False, cou
 
 
 def shows_least(diagram: Diagram) -> bool:
-    """Whether no diagram has fewer crossings than a simplified one: that is so for sums of alternating ones."""
+    """Whether no diagram has fewer crossings than a simplified one: true for sums of alternating ones."""
     return all(is_least(factor) for piece in diagram.without_pins.pieces() for factor in factors(piece))
 
 
 def worth(curve: Curve, least: int = 0, seed: int = 20231) -> tuple[int, int]:
-    """How many crossings go by moves of diagrams from what is seen, and how many of them stay.
+    """How many of the crossings seen go by moves of diagrams, and how many of them stay.
 
-    Of diagrams with fewer than ``least`` none goes.
+    With fewer than ``least`` crossings to begin with, none counts as going.
     """
     if curve.dimension != 3 or len(curve) > MOST_VERTICES:
         return 0, 0
@@ -91,7 +91,7 @@ def worth(curve: Curve, least: int = 0, seed: int = 20231) -> tuple[int, int]:
 
 
 def _seen(body: MovingCurve, frames: Iterable[FloatArray]) -> Iterator[tuple[FloatArray, Drawing]]:
-    """What is seen in some frames, but for those where that is unclear; an UnclearError if it is in all."""
+    """Yield the drawings in some frames, except where they are unclear; raise UnclearError if all of them are."""
     clear, reason = False, UnclearError()
     for frame in frames:
         check_time()

@@ -1,7 +1,7 @@
 """Points of smooth closed curves to twice the digits of doubles, by ball arithmetic.
 
-A component is γ(t) = Re Σₖ cₖ e^{2πikt}, 0 ≤ t < 1, with coefficients c, shape (modes + 1, 3), taken for exactly what
-they are: an entire function of t.
+A component is γ(t) = Re Σₖ cₖ e^{2πikt}, 0 ≤ t < 1, with coefficients c, shape (modes + 1, 3), taken as exact: an
+entire function of t.
 """
 
 from functools import partial
@@ -24,8 +24,8 @@ precise = partial(ctx.workprec, 128)  # bits, more than cancellation here takes 
 def points(coefficients: ComplexArray, nodes: int, order: int = 0, shift: int = 0) -> tuple[FloatArray, FloatArray]:
     """A component's derivative at (j + shift/2)/nodes, and what these doubles leave; shapes (3, nodes).
 
-    Both together err by 2⁻¹⁰⁰ of the sum of all |(2πk)ʳ cₖ|, r the order, at most.  It is a discrete Fourier transform,
-    where frequencies are folded.
+    The error of both together is at most 2⁻¹⁰⁰ of the sum of all |(2πk)ʳ cₖ|, r the order.  It is a discrete Fourier
+    transform, where frequencies are folded.
     """
     with precise():
         spectra = [[acb(0)] * nodes for _ in range(3)]

@@ -26,7 +26,7 @@ class Basis:
 
     @classmethod
     def of(cls, modes: Sequence[int], per_mode: int) -> "Basis":
-        """That for curves with some modes, with so many points for each of them."""
+        """The basis for curves with some modes, with ``per_mode`` points for each mode."""
         values, slopes, scales = [], [], []
         for most in modes:
             k = np.concatenate([np.arange(most + 1), np.arange(1, most + 1)])
@@ -40,12 +40,12 @@ class Basis:
         return cls(tuple(modes), np.concatenate(scales), block_diag(*values), block_diag(*slopes), component, weights)
 
     def unknowns(self, curve: FourierCurve) -> FloatArray:
-        """Those of a curve with these modes; shape (N, 3)."""
+        """The unknowns of a curve with these modes; shape (N, 3)."""
         parts = [part for c in curve.coefficients for part in (c.real, c.imag[1:])]
         return np.asarray(np.concatenate(parts) / self.scale[:, None])
 
     def unknowns_of(self, samples: FloatArray) -> FloatArray:
-        """Those of samples, shape (n, 3), or of the nearest ones that they have; shape (N, 3)."""
+        """The unknowns, shape (N, 3), of samples, shape (n, 3), or of the nearest samples that have any."""
         weighted = self.values.T * self.weights
         return np.asarray(weighted @ samples / np.einsum("in,ni->i", weighted, self.values)[:, None])
 

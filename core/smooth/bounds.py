@@ -1,11 +1,11 @@
-"""Proved bounds of the Möbius energies of smooth knots and links (docs/bounds.md has the proofs).
+"""Proved bounds on the Möbius energies of smooth knots and links (docs/bounds.md has the proofs).
 
 The energy of components γᵢ of period 1 is 4 for each, and ∬ f ds dt for each ordered pair of them, with
 
     f(s, t) = |γᵢ'(s)| |γⱼ'(t)| / |γᵢ(s) − γⱼ(t)|²,   less π² / sin² π(s − t) where i = j,
 
 which is smooth, periodic, and for real t analytic in s where |Im s| ≤ a.  Its mean over nodes (k/n, (l + ½)/n), none of
-which is on the diagonal, converges like e^{−2πan}.  That of π²/sin² is π² n, so nothing but 1/r² is summed up.
+which is on the diagonal, converges like e^{−2πan}.  That of π²/sin² is π² n, so only 1/r² is summed.
 """
 
 import math
@@ -21,15 +21,15 @@ from ..types import ComplexArray
 from .balls import arb, points, precise
 from .covering import Arcs, cover
 
-_LOWER, _LOWEST = 0.85, 1.5e-4  # than the strip before; of all strips
+_LOWER, _LOWEST = 0.85, 1.5e-4  # height relative to the strip before; least height of all strips
 _FINEST = 1e-10
-_TERMS = 64  # that are added up before they are added exactly
+_TERMS = 64  # that are added in doubles before the sums are added exactly
 _BLOCK = 1 << 18  # pairs of nodes at once
 
 
 @checked
 def energy_bounds(coefficients: Sequence[ComplexArray], tolerance: float = 1e-8) -> tuple[float, float]:
-    """Bounds of the Möbius energy of a smooth knot or link that are proved, and no further apart than ``tolerance``.
+    """Proved bounds on the Möbius energy of a smooth knot or link, no further apart than ``tolerance``.
 
     ``coefficients`` has an array for each component, shape (modes + 1, 3), as in `FourierCurve`.  Rounding comes on top
     of the tolerance, 1e-8 at most.  Raises CurveError where no bound is found because the curve meets itself or has a
@@ -62,11 +62,11 @@ class _Strip:
     bound: arb
 
     def error(self, nodes: int) -> arb:
-        """Twice the error of the trapezoidal rule in s: once for s, and once for t in the pair the other way round."""
+        """Twice the error of the trapezoidal rule in s: once for s, and once for t in the pair in reverse."""
         return 4 * self.bound / (2 * arb.pi() * self.height * nodes).expm1()
 
     def nodes(self, error: float) -> int:
-        """How many are enough."""
+        """How many nodes are enough for an error."""
         return max(1, math.ceil(math.log1p(float(4 * self.bound) / error) / (2 * math.pi * self.height)))
 
 

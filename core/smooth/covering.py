@@ -1,9 +1,9 @@
-"""Cells of the torus of pairs (s, t), halved until each is proved to hold no two points of a smooth link that meet.
+"""Cells of the torus of pairs (s, t), halved until each is proved to hold no pair of points of a smooth link that meet.
 
 Vectors in ℂ³ have ‖x + iy‖ = |x| + |y|, and numbers likewise, so that ‖zᵏ v‖ ≤ ‖z‖ᵏ |v| for real v.  Where
 ‖z − c‖ ≤ r around a real centre c, Taylor's formula gives ‖γ(z) − γ(c)‖ ≤ Σⱼ |γ⁽ʲ⁾(c)| rʲ/j! and a remainder.  Cells
 are closed where such balls around γ(s) and γ(t) are apart, or such a ball around γ', of which (γ(s) − γ(t))/(s − t) is
-a mean, does not reach 0.  All in doubles, with what they may err by; docs/bounds.md has the proofs.
+a mean, does not reach 0.  All in doubles, with bounds on their errors; docs/bounds.md has the proofs.
 """
 
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ _ORDERS = 14  # of derivatives in Taylor's formula
 _SHARE = 0.9  # of a distance that balls may take
 _NEAR = 6  # intervals from one to another, an even number, that the mean of γ' is taken over
 _FLATTEST = 16  # half a strip's height to intervals that are halved no further: it, not they, must be less
-_MOST = 200_000  # open cells, far above what curves take
+_MOST = 200_000  # open cells, far more than curves take
 _LARGEST = 1e100  # coefficients, whose products with powers of frequencies have squares
 _BLOCKS = 8  # of intervals, which bound the memory
 _LEVELS = np.concatenate([[0], np.repeat(np.arange(_DEPTH + 1), 2 ** np.arange(_DEPTH + 1))])
@@ -30,7 +30,7 @@ _HALVES = 0.5 ** (np.arange(_DEPTH + 1) + 1)  # of the lengths of intervals, by 
 
 @dataclass(frozen=True, eq=False)
 class Edges:
-    """How far a polygon with ``count`` vertices on a component is off: its vertices, and their slope between them."""
+    """How far a polygon with ``count`` vertices on a component is off: at its vertices, and in slope between them."""
 
     count: int
     off: float
@@ -42,15 +42,15 @@ class Arcs:
     """A component over the dyadic intervals: i has ((i − 2ˡ)/2ˡ, (i − 2ˡ + 1)/2ˡ), where 2ˡ ≤ i < 2ˡ⁺¹."""
 
     centers: FloatArray  # points at the middle of intervals; shape (2^(_DEPTH + 1), 3)
-    sizes: FloatArray  # upper bounds there of the derivatives' norms, by order
-    slack: FloatArray  # what these err by at most, by order
-    norms: FloatArray  # |cₖ|, of those which are not 0
+    sizes: FloatArray  # upper bounds on the norms of derivatives there, by order
+    slack: FloatArray  # bounds on their rounding errors, by order
+    norms: FloatArray  # |cₖ|, of the coefficients that are not 0
     frequencies: FloatArray  # 2πk of them
     edges: Edges | None = None  # of the polygon that the curve is moved to, if any
 
     @classmethod
     def of(cls, coefficients: ComplexArray) -> "Arcs":
-        """Those of a component; CurveError for what has no shape (modes + 1, 3)."""
+        """The arcs of a component; CurveError unless coefficients have shape (modes + 1, 3) and are not too large."""
         c = np.asarray(coefficients, dtype=np.complex128)
         if c.ndim != 2 or c.shape[1:] != (3,) or not c.size or not (np.abs(c) < _LARGEST).all():
             raise CurveError(f"coefficients of a component must be below {_LARGEST:g}, of shape (modes + 1, 3)")
@@ -69,7 +69,7 @@ class Arcs:
 
     @property
     def height(self) -> float:
-        """No strip is higher where γ'² is proved to have no zero."""
+        """A bound on the height of strips where γ'² is proved to have no zero."""
         return float(np.min(self.sizes[1:, 1] / self.sizes[1:, 2]))
 
     def spread(self, order: int, reach: FloatArray) -> FloatArray:
@@ -101,10 +101,10 @@ def _circle() -> ComplexArray:
 
 
 def cover(first: Arcs, second: Arcs, height: float = 0.0) -> float | None:
-    """Prove that points γ₁(s) and γ₂(t) do not meet, |Im s| ≤ height and t real, or None.
+    """Prove that points γ₁(s) and γ₂(t) do not meet, where |Im s| ≤ height and t is real; None if that fails.
 
     Then (γ₁(s) − γ₂(t))² has no zero but at s = t, and (γ₁(s) − γ₂(t))²/(s − t)² none there, if both are the same
-    component.  Returns an upper bound of ‖γ₁'(s)‖ |γ₂'(t)| / |(γ₁(s) − γ₂(t))²| but for the cells around s = t, where
+    component.  Returns an upper bound on ‖γ₁'(s)‖ |γ₂'(t)| / |(γ₁(s) − γ₂(t))²| except in cells around s = t, where
     it is at most 400/|s − t|².
     """
     radii = first.spread(0, _HALVES + height), second.spread(0, _HALVES)

@@ -21,7 +21,7 @@ from .basis import Basis
 
 @dataclass(frozen=True, eq=False)
 class Pairs:
-    """What f is made of, at all pairs (x, y) of sampled points; shapes (n, n), but for vectors."""
+    """The ingredients of f at all pairs (x, y) of sampled points; shapes (n, n), except for vectors."""
 
     basis: Basis
     velocities: FloatArray  # shape (n, 3)
@@ -36,7 +36,7 @@ class Pairs:
 
     @classmethod
     def of(cls, basis: Basis, z: FloatArray) -> "Pairs":
-        """Those of the curve with unknowns z."""
+        """The pairs of the curve with unknowns z."""
         x, v = basis.values @ z, basis.slopes @ z
         same = np.equal.outer(basis.component, basis.component).astype(np.float64)
         weights = np.outer(basis.weights, basis.weights)
@@ -56,12 +56,12 @@ class Pairs:
 
     @property
     def shares(self) -> FloatArray:
-        """What each pair has of Σ f, which no Möbius map changes; shape (n, n)."""
+        """The share of each pair in Σ f, which no Möbius map changes; shape (n, n)."""
         return np.asarray(self.weights * self.u * (self.g - 2.0 * self.p * self.q * self.u))
 
     @property
     def gradient(self) -> FloatArray:
-        """By the unknowns; shape (N, 3).  Each point is x of as many pairs as it is y of, with the same f."""
+        """The derivative by the unknowns; shape (N, 3).  Each point is x in as many pairs as y, with the same f."""
         v, r, u = self.velocities, self.r, self.u
         twice = 2.0 * self.weights
         along = twice * self._along_r
@@ -76,7 +76,7 @@ class Pairs:
 
     @property
     def hessian(self) -> FloatArray:
-        """By the unknowns, coordinate by coordinate within each; shape (3N, 3N)."""
+        """Second derivatives by the unknowns, coordinate by coordinate within each; shape (3N, 3N)."""
         B, D, count = self.basis.values, self.basis.slopes, len(self.basis.scale)
         hessian = np.empty((count, 3, count, 3))
         mixed = [[B.T @ block @ D for block in row] for row in self._by_x_and_v()]
@@ -87,7 +87,7 @@ class Pairs:
 
     @property
     def _along_r(self) -> FloatArray:
-        """What r itself is multiplied by in ∂f/∂r."""
+        """The factor of r itself in ∂f/∂r."""
         return np.asarray(8.0 * self.p * self.q * self.u**3 - 2.0 * self.g * self.u**2)
 
     def _blocks(self) -> Iterator[tuple[int, int, FloatArray, FloatArray]]:
@@ -108,7 +108,7 @@ class Pairs:
             yield k, m, by_x, by_v
 
     def _by_x_and_v(self) -> Iterator[list[FloatArray]]:
-        """Those by coordinate k of a point and m of a velocity, row by row; f is the same at (y, x) as at (x, y)."""
+        """Mixed derivatives by coordinate k of a point and m of a velocity, row by row; f(y, x) is f(x, y)."""
         twice, u, s, ratio = 2.0 * self.weights, self.u, self.same, self.speeds / self.speeds[:, None]
         cubic, quadratic, q = 8.0 * twice * u**3 * self.q, -2.0 * twice * u**2, self.q
         for k in range(3):

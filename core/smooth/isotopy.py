@@ -15,7 +15,7 @@ from ..types import ComplexArray, FloatArray
 from .balls import points
 from .covering import Arcs, Edges, cover
 
-_FIRST, _MORE, _TRIES = 0.6, 1.2, 30  # times the vertices that curvature alone asks for; times those before
+_FIRST, _MORE, _TRIES = 0.6, 1.2, 30  # times the vertices that curvature alone asks for; times those of the try before
 _REFUSAL = "the curve meets itself or has a cusp, or nearly so: its type cannot be proved"
 
 
@@ -67,7 +67,7 @@ def _follows(arcs: Sequence[Arcs], coefficients: Sequence[ComplexArray], polygon
 
 
 def _edges(coefficients: ComplexArray, vertices: FloatArray) -> Edges:
-    """How far vertices are off the curve's points at equal steps, and so the edges."""
+    """How far vertices, and hence edges, are off the curve's points at equal steps."""
     high, low = points(coefficients, len(vertices))
     off = (vertices.T - high) - low
     sup, turn = (float(np.linalg.norm(a, axis=0).max()) for a in (off, off - np.roll(off, 1, axis=1)))

@@ -1,4 +1,4 @@
-"""What is proved of the least Möbius energies of knots and links from below (docs/bounds.md)."""
+"""Proved lower bounds on the least Möbius energies of knots and links (docs/bounds.md)."""
 
 import math
 
@@ -12,7 +12,7 @@ _ROUNDED_DOWN = 1.0 - 1e-15
 
 @checked
 def lower_bound(name: str) -> float:
-    """A lower bound of the energies of all curves of a type of the table, rounded down.
+    """A lower bound on the energies of all curves of a type in the table, rounded down.
 
     For knots with c crossings 4 + 2πc (M. Freedman, Z.-X. He and Z. Wang, *Möbius energy of knots and unknots*, Annals
     of Mathematics 139, 1994); for links 4 for each component, and 4π² for each two that are linked (I. Agol,

@@ -1,4 +1,4 @@
-"""Which smooth curves at rest are the same one, up to Möbius maps and isometries, and how it is shown."""
+"""Which smooth curves at rest are the same up to Möbius maps and isometries, and the image in which one is shown."""
 
 import math
 from collections.abc import Sequence
@@ -16,20 +16,20 @@ from .basis import Basis
 from .energy import Pairs
 from .rest import Rest, energy_of
 
-SAME_ENERGY = 5e-6  # of the energy, by which those of one curve differ beside their errors, where it is soft
-SAME_SHAPE = 1e-2  # of eigenvalues up to 1: those of one curve differ by up to 3e-3, of two types by 3e-2
+SAME_ENERGY = 5e-6  # of the energy: how far energies of one curve differ beyond their errors, where it is soft
+SAME_SHAPE = 1e-2  # of eigenvalues up to 1: for one curve they differ by up to 3e-3, for two types by 3e-2
 EIGENVALUES = 24
 _ROUNDING = 1e-13  # of the energy
-_GROWN = (1.0, 1.25, 1.5, 2.0, 2.5)  # times the modes, that a Möbius image needs
+_GROWN = (1.0, 1.25, 1.5, 2.0, 2.5)  # times the modes that a Möbius image may need
 _POINTS = 8  # of the trapezoidal rule for each mode there was
 
 
 @checked
 def balanced(rest: Rest) -> Rest:
-    """The Möbius image that bends least, about the origin, with radius 1, and the energy but for its error.
+    """The Möbius image that bends least, about the origin, with radius 1, and the same energy up to its error.
 
-    It has hardly more modes, as the speeds that curves at rest have are those of their Möbius images, too; where the
-    most are not enough, its error says so.
+    It needs hardly more modes, as the speeds of curves at rest are right for their Möbius images, too; where the
+    largest number is not enough, the error grows by what is lost.
     """
     polygon = rest.curve.polygon(rest.curve.sizes)
     images = MoebiusImages(polygon, polygon.edge_lengths)
@@ -46,9 +46,9 @@ def balanced(rest: Rest) -> Rest:
 
 @checked
 def distinct(ends: Sequence[Rest]) -> list[list[int]]:
-    """Sort curves of one type into those that are the same: numbers of each group, that of least energy first.
+    """Sort curves of one type into groups that are the same: their numbers, the group of least energy first.
 
-    The first of the same has the smallest error.
+    The first curve of a group has the smallest error.
     """
     spectra = [_spectrum(end.curve) for end in ends]
     groups: list[list[int]] = []
@@ -66,7 +66,7 @@ def distinct(ends: Sequence[Rest]) -> list[list[int]]:
 
 
 def _spectrum(curve: FourierCurve) -> FloatArray:
-    """The largest eigenvalues of the random walk on a curve that goes from x to y as often as the pair has energy.
+    """The largest eigenvalues of the random walk on a curve that goes from x to y in proportion to the pair's energy.
 
     Neither Möbius maps nor parameters change them, and they are the same for mirror images.  Round circles have zeros.
     """

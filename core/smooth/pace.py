@@ -1,4 +1,4 @@
-"""How fast smooth curves run through their strands: energies do not depend on it, but the number of modes does."""
+"""How fast smooth curves run along their strands: energies do not depend on it, but the number of modes does."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from ..energies.moebius import moebius_by_length
 from ..types import FloatArray
 from .basis import Basis
 
-_SHARE = 4.0  # energy of a circle, which its pairs do not have: it is spread over each component by length
+_SHARE = 4.0  # energy of a circle, which no pairs account for: it is spread over each component by length
 
 
 def parameters(curve: Curve) -> list[FloatArray]:

@@ -1,6 +1,6 @@
 """Minimisers of the Möbius energy among smooth curves: where relaxed polygons lead as meshes become finer.
 
-Newton's method for the coefficients of Fourier series, whose number grows until the energy stays what it is.
+Newton's method for the coefficients of Fourier series, whose number grows until the energy no longer changes.
 """
 
 from collections.abc import Sequence
@@ -27,10 +27,10 @@ _PER_MODE = 4  # points of the trapezoidal rule
 _FOLLOWS = 0.03  # of the energy: how far that of a first fit may be from the polygon's
 _RESOLVED = 1e-4  # of the energy: the error up to which more modes go on where fewer ended
 _REACH = 0.3  # of their distance: how far a Newton step moves points towards each other, or away
-_ROUGHLY = 1e-8, 20  # of the energy, what a next step would gain, and steps, after which more modes do better
+_ROUGHLY = 1e-8, 20  # gain of the next step, relative to the energy, and steps, after which more modes do better
 _FINALLY = 1e-11, 20  # the same in the end
 _STIFFNESS = 2.0  # against sliding
-_NEAR = 1e-10  # of the energy, that a step may gain where Newton's own is taken
+_NEAR = 1e-10  # of the energy: gain of a step below which Newton's own is taken
 _ROUNDING = 1e-13  # of the Hessian's norm, to which its eigenvalues are known
 _CONCAVE = 1e-9  # of the Hessian's norm: modes left out make the sign of smaller eigenvalues uncertain
 
@@ -38,7 +38,7 @@ Placed = tuple[Curve, Sequence[FloatArray]]
 """A polygon and the parameters of its components' vertices."""
 
 Trail = list[FourierCurve]
-"""Curves between which Newton's steps are."""
+"""The curve that Newton's steps start from, and those they lead to."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,13 +47,13 @@ class Rest:
 
     curve: FourierCurve
     energy: float
-    error: float  # how far its energy may be off: what more modes and points changed, and a next step would gain
+    error: float  # how far its energy may be off: the change by more modes and points, and the gain of a next step
     index: int  # independent directions in which the energy falls, 0 at a minimum
 
 
 @checked
 def at_rest(polygon: Curve) -> Rest | None:
-    """The smooth curve that a relaxed polygon stands for; None if none is found, of which a polygon has its type.
+    """The smooth curve that a relaxed polygon stands for; None if none with an inscribed polygon of its type is found.
 
     Raises CurveError for arcs and for curves that are not in space.
     """
@@ -80,7 +80,7 @@ def at_rest(polygon: Curve) -> Rest | None:
 
 @checked
 def energy_of(curve: FourierCurve, per_mode: int = 2 * _PER_MODE) -> float:
-    """The Möbius energy, by a trapezoidal rule with so many points for each mode."""
+    """The Möbius energy, by a trapezoidal rule with ``per_mode`` points for each mode."""
     basis = Basis.of(curve.modes, per_mode)
     return Pairs.of(basis, basis.unknowns(curve)).energy
 
@@ -117,7 +117,7 @@ def _is_isotopic(way: Sequence[Placed]) -> bool:
 
 
 def _stationary(start: FourierCurve, energy: float, enough: tuple[float, int]) -> tuple[Rest | None, Trail]:
-    """Where Newton's method leads from a curve of about an energy, and its trail; None if it does not have that."""
+    """Where Newton's method leads from a curve, and its trail; None if its energy is not about the one given."""
     basis, finer = (Basis.of(start.modes, points) for points in (_PER_MODE, 2 * _PER_MODE))
     z = basis.unknowns(start)
     if abs(Pairs.of(basis, z).energy - energy) > _FOLLOWS * energy:
@@ -144,13 +144,13 @@ class Model:
 
     @classmethod
     def of(cls, basis: Basis, z: FloatArray) -> "Model":
-        """That at unknowns z."""
+        """The model at unknowns z."""
         pairs, stiff = Pairs.of(basis, z), _STIFFNESS * sliding(basis, z)
         slope, hessian = _free(pairs.gradient.ravel(), pairs.hessian + stiff, invariant(basis, z))
         norm = float(np.linalg.norm(hessian, np.inf))
         least = _ROUNDING * norm
         shift = least * np.eye(len(hessian))
-        try:  # most are convex, as this finds out faster than eigenvalues do
+        try:  # most models are convex, which this finds out faster than eigenvalues do
             cho_factor(hessian + shift)
             step = -cho_solve(cho_factor(hessian + 2.0 * shift), slope)
             index, gain = 0, -0.5 * float(slope @ step)
@@ -169,7 +169,7 @@ class Model:
 
 
 def _free(slope: FloatArray, hessian: FloatArray, fields: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Both without some directions, in which the Hessian is as stiff as it is on average instead."""
+    """Slope and Hessian without some directions, in which the Hessian gets its average stiffness instead."""
     fixed = orth(fields.T)
     across = hessian @ fixed
     shifts = 0.5 * fixed @ (fixed.T @ across + np.trace(hessian) / len(hessian) * np.eye(fixed.shape[1])) - across
@@ -177,7 +177,7 @@ def _free(slope: FloatArray, hessian: FloatArray, fields: FloatArray) -> tuple[F
 
 
 def _searched(basis: Basis, z: FloatArray, model: Model) -> FloatArray | None:
-    """Unknowns of lower energy along the step, which is short beside strands' distances; None if there are none."""
+    """Unknowns of lower energy along the step, which is short against strands' distances; None if there are none."""
     step = model.step
     share = min(1.0, _REACH / _strain(basis.values @ z, basis.values @ step))
     while share > 1e-6:

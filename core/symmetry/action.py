@@ -1,8 +1,8 @@
-"""Isometries that map a closed curve to about itself, and a finite group of them as it acts on a mesh's vertices.
+"""Isometries that map a closed curve nearly to itself, and a finite group of them as it acts on a mesh's vertices.
 
 The vertices of an orbit are one unknown. A symmetric polygon's energy, metric and lengths are symmetric, so that
-gradients are as well (Palais, The principle of symmetric criticality, 1979): what is left to do is to take rounding
-off, by means over the group.
+gradients are as well (Palais, The principle of symmetric criticality, 1979): it only remains to remove rounding, by
+means over the group.
 """
 
 from collections.abc import Sequence
@@ -60,11 +60,11 @@ class Symmetry:
         return np.asarray(metric + beyond)
 
     def fixes(self, v: FloatArray) -> bool:
-        """Whether a vector of length 1 or less is where all isometries take it, but for what minimisers leave open."""
+        """Whether all isometries leave a vector of length 1 or less in place, up to what minimisers leave open."""
         return not len(self) or bool(np.abs(self.matrices @ v - v).max() < FIXED)
 
     def error(self, curve: Curve) -> float:
-        """How far an image is from the vertex it should be, at most, in lengths of the shortest edge."""
+        """The largest distance of an image from the vertex it should be, in lengths of the shortest edge."""
         arms = curve.vertices - self.centre
         off = arms @ self.matrices.transpose(0, 2, 1) - arms[self.images]
         return float(np.abs(off).max() / curve.edge_lengths.min())
@@ -90,10 +90,10 @@ NO_SYMMETRY = Symmetry()
 
 @dataclass(frozen=True, eq=False)
 class Isometry:
-    """x ↦ centre + Q (x − centre), which takes what is at a share s of component c to ``signs[c]`` s + ``shifts[c]``.
+    """x ↦ centre + Q (x − centre), which takes the point at share s of component c to ``signs[c]`` s + ``shifts[c]``.
 
-    That is a share of the length of component ``order[c]``.  ``distance`` is how far the image is from the curve, root
-    mean square, in radii of gyration.
+    That is a share of the length of component ``order[c]``.  ``distance`` is the distance of the image from the curve,
+    root mean square, in radii of gyration.
     """
 
     matrix: FloatArray  # Q, orthogonal; shape (3, 3)
@@ -109,19 +109,19 @@ class Isometry:
 
     @classmethod
     def of(cls, alignment: Alignment, sign: int) -> "Isometry":
-        """That of an alignment of a curve with itself, or (−1) with its reflection in its centre."""
+        """The isometry of an alignment of a curve with itself, or (−1) with its reflection in its centre."""
         signs = np.where(alignment.backwards, -1, 1)
         return cls(sign * alignment.rotation, np.array(alignment.order), signs, signs * np.array(alignment.begins))
 
     def after(self, first: "Isometry") -> "Isometry":
-        """This one after another one."""
+        """The composition of this one after another one."""
         signs = self.signs[first.order]
         shifts = (signs * first.shifts + self.shifts[first.order]) % 1.0
         return Isometry(self.matrix @ first.matrix, self.order[first.order], signs * first.signs, shifts)
 
 
 class Fit:
-    """The isometry nearest to a given one that maps a curve to about itself, by the method of Gauss and Newton."""
+    """The isometry nearest to a given one that maps a curve nearly to itself, by the Gauss-Newton method."""
 
     def __init__(self, curve: Curve, centre: FloatArray) -> None:
         self._parts = [part - centre for part in curve.components]
@@ -131,7 +131,7 @@ class Fit:
 
     @property
     def coarseness(self) -> float:
-        """Half the distance of samples in radii of gyration, by which those of an alignment may miss each other."""
+        """Half the distance between samples, in radii of gyration: those of an alignment may miss each other by it."""
         apart = np.linalg.norm(self._x - np.roll(self._x, 1, axis=1), axis=2).max()
         return 0.5 * float(apart * np.sqrt(len(self._parts) * SAMPLES / self._squares))
 
@@ -150,9 +150,9 @@ class Fit:
         return Isometry(matrix, near.order, near.signs, shifts % 1.0, distance)
 
     def axis_of_rotation(self, tolerance: float) -> FloatArray | None:
-        """The axis about which small rotations move the curve along itself, for each radian by less than a tolerance.
+        """The axis about which small rotations move the curve along itself, up to less than a tolerance per radian.
 
-        That is in radii of gyration; None if there is no such axis.
+        The tolerance is in radii of gyration; None if there is no such axis.
         """
         tangents = np.roll(self._x, -_ARC, axis=1) - np.roll(self._x, _ARC, axis=1)
         tangents /= np.linalg.norm(tangents, axis=2)[:, :, None]

@@ -1,6 +1,6 @@
-"""Groups of isometries that map a curve to about itself, how they are found and named, and symmetric polygons nearby.
+"""Groups of isometries that map a curve nearly to itself, how they are found and named, and symmetric polygons nearby.
 
-Names are those that Schoenflies gave to finite groups: C3, D2, S4, Td, …
+Names are Schoenflies symbols of finite groups: C3, D2, S4, Td, …
 """
 
 import re
@@ -18,12 +18,12 @@ from ..types import FloatArray, IntArray
 from .action import Fit, Isometry, Symmetry
 
 TURNS = 4  # of a mean that converges quadratically
-ROUNDING = 1e-9  # of an edge, which is what images of symmetric vertices are off at most
+ROUNDING = 1e-9  # of an edge: the most that images of symmetric vertices are off
 IS_NAME = re.compile(r"C[1-9]\d*[vh]?|S[1-9]\d*|D[2-9][dh]?|D[1-9]\d+[dh]?|C[si]|T[dh]?|Oh?|Ih?")
 _POLYHEDRAL = {(12, 3): "T", (24, 4): "O", (60, 5): "I"}  # by the number of rotations and their largest order
 TOLERANCE = 0.02  # radii of gyration: relaxed and balanced polygons are some .002 off
-DISTINCT = 0.15  # norm of the difference of matrices that are not the same element
-MOST = 120  # elements: those of the icosahedron's group; more have only curves that are round
+DISTINCT = 0.15  # norm of the difference between matrices of distinct elements
+MOST = 120  # elements, as in the icosahedron's group; only round curves have more
 MOST_COMPONENTS = 10  # for which all orders are looked at in a second
 
 
@@ -32,7 +32,7 @@ class SymmetryGroup:
     """A finite group of isometries, the identity first, with its name after Schoenflies: C1, C3, D2, S4, Td, …"""
 
     name: str
-    centre: FloatArray  #: the curve's barycenter, which all of them leave in place; shape (3,)
+    centre: FloatArray  #: the curve's barycenter, which all elements leave in place; shape (3,)
     elements: tuple[Isometry, ...]
 
     @classmethod
@@ -44,12 +44,12 @@ class SymmetryGroup:
 
     @property
     def distance(self) -> float:
-        """The largest of its elements': how far an image is from the curve, root mean square, in radii of gyration."""
+        """The largest distance of an element's image from the curve, root mean square, in radii of gyration."""
         return max(each.distance for each in self.elements)
 
     @property
     def matrices(self) -> FloatArray:
-        """Orthogonal matrices that are those of the elements, but multiply as a group does; shape (k, 3, 3)."""
+        """Orthogonal matrices, those of the elements adjusted to multiply as a group does; shape (k, 3, 3)."""
         found = np.stack([each.matrix for each in self.elements])
         table = multiplication(found)
         for _ in range(TURNS):
@@ -58,12 +58,12 @@ class SymmetryGroup:
         return found
 
     def subgroup(self, name: str) -> "SymmetryGroup | None":
-        """The one of that name whose elements are nearest to symmetries of the curve; None if there is none."""
+        """The subgroup of that name whose elements are nearest to symmetries of the curve; None if there is none."""
         named = [SymmetryGroup.of([self.elements[k] for k in each], self.centre) for each in self._subgroups()]
         return min((each for each in named if each.name == name), key=lambda each: each.distance, default=None)
 
     def _subgroups(self) -> Iterator[list[int]]:
-        """The elements' numbers, ascending, of all subgroups."""
+        """Yield for each subgroup the numbers of its elements, ascending."""
         table = multiplication(np.stack([each.matrix for each in self.elements]))
         found = new = {frozenset([0])}
         while new:
@@ -72,7 +72,7 @@ class SymmetryGroup:
             new = {_generated({*each, g}, table) for each in new for g in range(len(table)) if g not in each} - found
 
     def symmetrised(self, curve: Curve, sizes: Sequence[int]) -> tuple[Curve, Symmetry, tuple[float, ...]]:
-        """The mean of a curve's images, on a mesh of at least so many vertices, spread evenly over each component.
+        """The mean of a curve's images, on a mesh of at least ``sizes`` vertices, spread evenly over each component.
 
         With it come the group's action, and the share of each component at which its first vertex was.  A curve whose
         vertices are symmetric keeps them.
@@ -93,9 +93,9 @@ class SymmetryGroup:
         return self._mean(Curve(points, mesh), symmetry), symmetry, tuple(begins.tolist())
 
     def _spread(self, sizes: Sequence[int]) -> tuple[IntArray, FloatArray, IntArray]:
-        """Numbers of vertices that the group permutes, where the first ones are, and how often components are turned.
+        """Numbers of vertices that the group permutes, places of the first ones, and numbers of turns along the curve.
 
-        Each is for each component, the places as shares of their lengths.
+        Each has a value for each component; places are shares of its length.
         """
         counts, begins, steps = np.array(sizes), np.zeros(len(sizes)), np.ones(len(sizes), dtype=np.intp)
         orders, signs, shifts = (
@@ -131,15 +131,15 @@ def _generated(elements: set[int], table: IntArray) -> frozenset[int]:
 
 
 def multiplication(matrices: FloatArray) -> IntArray:
-    """The elements g·h of a group by the numbers of g and h, of approximate matrices, shape (k, 3, 3); shape (k, k)."""
+    """The numbers of g·h by those of g and h, in a group of approximate matrices, shape (k, 3, 3); shape (k, k)."""
     products = np.einsum("gij,hjk->ghik", matrices, matrices)
     return np.asarray(np.einsum("ghij,kij->ghk", products, matrices).argmax(axis=2))  # ⟨A, B⟩ is 3 where they agree
 
 
 def schoenflies(matrices: FloatArray) -> str:
-    """The name of a group of orthogonal matrices, approximate ones, the identity first; shape (k, 3, 3).
+    """The name of a group of approximate orthogonal matrices, the identity first; shape (k, 3, 3).
 
-    Its rotations are one of C_n, D_n, T, O and I, and how many mirror planes there are tells the rest.
+    Its rotations form one of C_n, D_n, T, O and I, and the number of mirror planes decides the rest.
     """
     table = multiplication(matrices)
     proper = np.linalg.det(matrices) > 0.0
@@ -169,9 +169,9 @@ def order_of(table: IntArray, element: int) -> int:
 def symmetries(curve: Curve, tolerance: float = TOLERANCE) -> SymmetryGroup:
     """Find the isometries that map a closed curve in space to itself, but for a tolerance in radii of gyration.
 
-    Directions of components are of no matter, nor is their order.  Möbius images of a symmetric curve are symmetric
-    only where they are balanced (``--balance``).  Coaxial circles have the group C∞v or D∞h, of which there are no
-    elements here but the identity.
+    The directions of components do not matter, nor does their order.  Möbius images of a symmetric curve are symmetric
+    only where they are balanced (``--balance``).  Coaxial circles have the group C∞v or D∞h, of which only the identity
+    is among the elements here.
 
     Raises CurveError if a component is open, or the curve is in another dimension or has over 10 components.
     """
@@ -205,7 +205,7 @@ def symmetries(curve: Curve, tolerance: float = TOLERANCE) -> SymmetryGroup:
 def _closed(
     elements: Sequence[Isometry], fit: Callable[[Isometry], Isometry], tolerance: float
 ) -> list[Isometry] | None:
-    """All products of elements; None if some are no symmetries within the tolerance, or there are too many."""
+    """All products of elements; None if some are not symmetries within the tolerance, or there are too many."""
     found = list(elements)
     for k, one in enumerate(found):  # which grows
         for other in found[: k + 1]:

@@ -15,8 +15,8 @@ ACROSS = 0.1  # cosine of an angle that counts as a right one
 def standing(curve: Curve, group: SymmetryGroup) -> FloatArray:
     """The rotation, shape (3, 3), that turns a curve's axis of highest order into the third axis.
 
-    Without one of order three or more that is the direction in which the curve extends least. The second axis is one of
-    order two if there is one across, and else points to where the curve is farthest away.
+    Without one of order three or more it is the direction in which the curve extends least. The second axis is one of
+    order two if there is one across, and otherwise points to where the curve is farthest away.
     """
     points = curve.vertices - group.centre
     axes = list(_axes(group.matrices))
@@ -32,7 +32,7 @@ def standing(curve: Curve, group: SymmetryGroup) -> FloatArray:
 
 
 def _axes(matrices: FloatArray) -> Iterator[tuple[int, FloatArray]]:
-    """Orders and axes, unit vectors, of rotations and of rotary reflections, but for those in planes and points."""
+    """Orders and axes, unit vectors, of rotations and rotary reflections, except reflections in planes and points."""
     table = multiplication(matrices)
     for number, matrix in enumerate(matrices):
         order, sign = order_of(table, number), np.linalg.det(matrix)

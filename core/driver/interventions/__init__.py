@@ -1,4 +1,4 @@
-"""What may change a run between its steps; each `Intervention` is a class of one run, whose fields can be set."""
+"""Changes made to a run between its steps; each `Intervention` is a class, made per run, with settings as fields."""
 
 from collections.abc import Callable, Sequence
 
@@ -27,4 +27,4 @@ INTERVENTIONS: Sequence[Callable[[Run], Intervention]] = (
 """In the order in which they are asked."""
 
 ON_A_FIXED_MESH: Sequence[Callable[[Run], Intervention]] = (SplitLinks, Fallback, CheckAccuracy)
-"""Those of a trial, which neither changes the mesh nor looks for more at its end."""
+"""The interventions in a trial, which neither changes the mesh nor looks for more at its end."""

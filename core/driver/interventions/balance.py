@@ -1,15 +1,14 @@
-"""Among the Möbius images of a curve, which have the same energy, the one that bends least, and a proved way there.
+"""The Möbius image of a curve that bends least, while all have the same energy, and a proved way there.
 
-Möbius maps of R^m up to similarities are the points that they send to infinity, as rotations of the sphere above it.
-
-Stereographic projection to the sphere S^m, a rotation in the plane of the north pole and a direction v/|v|, and
-projection back.  With the cosine c and the sine |v| of half the angle this is
+Up to similarities, a Möbius map of R^m is given by the point that it sends to infinity, as a rotation of the sphere
+above it: stereographic projection to the sphere S^m, a rotation in the plane of the north pole and a direction v/|v|,
+and projection back.  With the cosine c and the sine |v| of half the angle this is
 
     y = ((c² + |v|²) x + (c (|x|² − 1) − 2 ⟨v, x⟩) v) / D,    D = c² + 2 c ⟨v, x⟩ + |v|² |x|²,
 
 a map for each q = (c, v) ≠ 0, the same for all multiples of q.  The pole −c v/|v|² is where D = 0; at (1, 0) it is the
-point at infinity, and the map the identity.  Every Möbius map that keeps the orientation is one of these and then a
-similarity.
+point at infinity, and the map the identity.  Every Möbius map that preserves orientation is one of these followed by
+a similarity.
 """
 
 from collections.abc import Callable, Iterator
@@ -32,11 +31,11 @@ from ..run import Change, Intervention
 BALANCED = "balanced: bending reduced from {before:.4g} to {after:.4g} (4π² for a round circle)"
 CUT_OFF = "the Möbius image of least bending has not converged yet"
 IS_BALANCED = "no Möbius image within reach bends less"
-NEAREST = 1e-24  # the least D: what lies on the pole goes far away, not to infinity
+NEAREST = 1e-24  # the least D: points on the pole go far away, not to infinity
 
 
 class MoebiusImages:
-    """The Möbius images of the smooth curve through a polygon's vertices, as polygons of as many.
+    """The Möbius images of the smooth curve through a polygon's vertices, as polygons with as many vertices.
 
     Vertices slide along the curve, so that the edges of every component keep the ratios of their target lengths, shape
     (n,), however strongly a map stretches them; length and barycenter stay.
@@ -86,11 +85,11 @@ def _barycenter(curve: Curve) -> FloatArray:
 class Balance(Intervention):
     """Go from a converged curve to its balanced image, once."""
 
-    gain: float = number(0.01, most=1)  # relative decrease of the bending that is worth the way
+    gain: float = number(0.01, most=1)  # relative decrease of the bending that makes the way worthwhile
     # longest, shortest: steps, in radians of half the sphere's angle of rotation
     longest: float = number(0.02)
     shortest: float = number(1e-5)
-    _before: float | None = field(default=None, init=False)  # bending that the balanced curve had
+    _before: float | None = field(default=None, init=False)  # bending of the curve before it was balanced
 
     def ended(self, outcome: Outcome) -> Outcome | Change | None:
         run = self.run
@@ -117,7 +116,7 @@ class Balance(Intervention):
     def way(self, point: Point) -> tuple[Step, ...]:
         """Proved steps to the reachable Möbius image of least bending, in its own problem; empty if none pays."""
         images = MoebiusImages(point.curve, point.problem.constraints.lengths)
-        # against the identity's image too: what smoothing alone takes off is no gain, the flow would put it back
+        # also less than the identity's image: a decrease by smoothing alone is no gain, as the flow would undo it
         still = images.at(np.eye(point.curve.dimension + 1)[0])
         enough = (1.0 - self.gain) * min(bending(point.curve), bending(still))
         symmetry = point.problem.constraints.symmetry
@@ -126,7 +125,7 @@ class Balance(Intervention):
             if bending(image) > enough or not symmetry.fixes(q[1:]):
                 continue
             problem = _problem_of(point.problem, image)
-            for end in (q, -q):  # the same map, the pole having come from the one side or from the other
+            for end in (q, -q):  # the same map, with the pole coming from either side
                 if way := self._way(point, images, end, problem):
                     return way
         return ()
@@ -151,13 +150,13 @@ class Balance(Intervention):
 
 
 def balanced(curve: Curve) -> Curve:
-    """The Möbius image that bends least, of the same energy; no way to it is proved, as pictures need none."""
+    """The Möbius image that bends least, with the same energy; no way to it is proved, as pictures need none."""
     images = MoebiusImages(curve, curve.edge_lengths)
     return min((images.at(q) for q in least_bending(images, curve.dimension)), key=bending, default=curve)
 
 
 def turn(q: FloatArray) -> tuple[float, Callable[[float], FloatArray]]:
-    """Half the sphere's angle of rotation in the map of q, and the maps that rotate it less, by half their angles."""
+    """Half the sphere's angle of rotation in the map of q, and a function from smaller half angles to their maps."""
     sine = float(np.linalg.norm(q[1:]))
     axis = q[1:] / sine
     return float(np.arctan2(sine, q[0])), lambda angle: np.concatenate([[np.cos(angle)], np.sin(angle) * axis])
@@ -184,7 +183,7 @@ def _starts(dimension: int) -> Iterator[FloatArray]:
 
 
 def _problem_of(problem: Problem, image: Curve) -> Problem:
-    """The same problem for an image: the target lengths of each component add up to what it has there."""
+    """The same problem for an image: the target lengths of each component add up to its length there."""
     lengths = problem.constraints.lengths.copy()
     for part in image.mesh.slices:
         lengths[part] *= image.edge_lengths[part].sum() / lengths[part].sum()
@@ -201,7 +200,7 @@ def moebius_image(points: FloatArray, q: FloatArray) -> FloatArray:
 
 
 def moebius_pullback(points: FloatArray, q: FloatArray, covector: FloatArray) -> FloatArray:
-    """From a function's derivative by the images of points, shape (n, m), to that by ``q``, shape (m + 1,)."""
+    """A function's derivative by ``q``, shape (m + 1,), from its derivative by the images of points, shape (n, m)."""
     c, v = float(q[0]), q[1:]
     along, square = points @ v, np.einsum("ij,ij->i", points, points)
     g = covector / _denominator(q, along, square)[:, None]

@@ -1,4 +1,4 @@
-"""A curve of many vertices is untangled with few of them, which is faster, and ends with all."""
+"""A curve of many vertices is untangled with few of them, which is faster, and gets them all back at the end."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -19,7 +19,7 @@ from ..prepare import equal_lengths
 from ..run import Change, Intervention
 from .remesh import proved_remesh
 
-PASS = WAY_BACK = 2  # iterations that they take: a motion and a change of mesh
+PASS = WAY_BACK = 2  # iterations of each: a motion and a change of mesh
 
 
 @checked_fields
@@ -27,15 +27,15 @@ PASS = WAY_BACK = 2  # iterations that they take: a motion and a change of mesh
 class CoarseStart(Intervention):
     """Leave vertices out, as far as the gaps between strands allow; in the end bring all back, on a smooth curve."""
 
-    min_vertices: int = number(1500)  # from which it is worth while
-    min_gain: float = number(2.0, above=1)  # factor by which there must be fewer at first
+    min_vertices: int = number(1500)  # from which it is worthwhile
+    min_gain: float = number(2.0, above=1)  # factor by which there must be fewer vertices at first
     min_iterations: int = number(30)  # the way there and back takes a dozen, and leaves some for untangling
-    min_share: float = number(0.05, most=1)  # of the way to the smooth curve, below which the curve stays as it is
+    min_share: float = number(0.05, most=1)  # of the way to the smooth curve; with less the curve stays as it is
     _coarse: Curve | None = field(default=None, init=False)
 
     def __post_init__(self) -> None:
         self._problem, constraints = self.run.problem, self.run.problem.constraints
-        # what kept lengths from being equal at the start is gone in the end
+        # whatever kept lengths from being equal at the start is gone in the end
         lengths = equal_lengths(self._problem.mesh, constraints.lengths, constraints.pins.vertices)
         self._lengths = self._problem.units.scale * lengths
         self._wanted = self._is_wanted()
@@ -69,7 +69,7 @@ class CoarseStart(Intervention):
         return bool(self.min_gain * np.sum(curve.edge_lengths / graded_spacing(curve, Resolution())) <= len(curve))
 
     def _coarser(self) -> Change | None:
-        """A pass that leaves out up to a third of the vertices; None if there are none to leave out, or no time."""
+        """A pass that leaves out up to a third of the vertices; None if none can go, or too few iterations are left."""
         if self.run.iterations_left < PASS + WAY_BACK:
             return None
         curve, problem = self.run.iterate.curve, self.run.problem
@@ -96,7 +96,7 @@ class CoarseStart(Intervention):
         return Change(point=self.run.problem.on(finest, self._lengths))
 
     def _smoother(self) -> Change | None:
-        """The motion to a smooth curve through the coarse vertices, as far as free; onto the constraints if it can."""
+        """The motion to a smooth curve through the coarse vertices, as far as free; on the constraints if possible."""
         if self._coarse is None:
             return None
         start = self.run.iterate.curve
@@ -110,7 +110,7 @@ class CoarseStart(Intervention):
         return restored or self._motion(way, lambda end: end)
 
     def _motion(self, way: FloatArray, ending: Callable[[Point], Point | None]) -> Change | None:
-        """The longest part of a way that can be gone straight to where it is to end; None if that is hardly any."""
+        """The longest part of a way, with its end as ``ending`` makes it, that is free; None if that is hardly any."""
         problem, start = self.run.problem, self.run.iterate.curve
         share = 1.0
         while share > self.min_share:

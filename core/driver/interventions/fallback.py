@@ -25,7 +25,7 @@ class Fallback(Intervention):
     # its metric does not see how near strands are, and so does not hold them together
     method: Method = METHODS["flow-h3-2"]
     steps: int = number(10)  # number of steps it takes
-    progress: float = number(1e-6, most=1)  # relative decrease of the energy without which another attempt is no use
+    progress: float = number(1e-6, most=1)  # relative decrease of the energy without which another attempt is pointless
     _until: int = field(default=0, init=False)  # iterate at which the fallback hands back
     _tried_at: float = field(default=math.inf, init=False)  # energy at the last attempt on the present mesh
 
@@ -73,7 +73,7 @@ class CheckAccuracy(Intervention):
         return Change(point=self.run.point.changing(objective=replace(problem.objective, energy=accurate)))
 
     def _tightened(self, energy: HierarchicalMoebiusEnergy) -> HierarchicalMoebiusEnergy:
-        """The first of higher and higher order that is accurate enough, or the last one."""
+        """The energy with the lowest order that is accurate enough, or else with the highest."""
         while True:
             self.run.sampled_errors = errors = self._errors(energy)
             tighter = energy.tightened
@@ -82,14 +82,14 @@ class CheckAccuracy(Intervention):
             energy = tighter
 
     def _errors(self, energy: HierarchicalMoebiusEnergy) -> SampledErrors:
-        """At the present curve; near pairs, which the barrier replaces, are exact."""
+        """The errors at the present curve; near pairs, which the barrier replaces, are exact."""
         point = self.run.point
         energy = energy.leaving_out(replaced_pairs(point.curve))
         return SampledErrors.at(energy, point.curve, point.energy, point.gradient, point.gradient_norm)
 
 
 def with_errors(outcome: Outcome, run: Run) -> Outcome:
-    """The outcome with what is known of the errors."""
+    """The outcome with the sampled errors and clauses about them."""
     errors = run.sampled_errors
     if errors is None:
         return outcome

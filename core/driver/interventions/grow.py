@@ -1,4 +1,4 @@
-"""Target lengths grow or shrink to a multiple of those of the start, as fast as what is in the way allows."""
+"""Target lengths grow or shrink to a multiple of the lengths at the start, as fast as anything in the way allows."""
 
 import math
 from dataclasses import dataclass, field, replace
@@ -21,7 +21,7 @@ from ..outcome import Outcome
 from ..run import Change, Event, Intervention, Run
 from .remesh import FinerMesh, split_edges
 
-REACHED = 1e-9  # logarithm of what may be missing: rounding
+REACHED = 1e-9  # logarithm of the factor that may be missing: rounding
 
 CROWDED = "every motion that changes the lengths as requested causes contact or costs too much energy"
 
@@ -29,17 +29,17 @@ CROWDED = "every motion that changes the lengths as requested causes contact or 
 @checked_fields
 @dataclass(eq=False)
 class Grow(Intervention):
-    """Change the lengths, by motions that are proved like all others, where the steps between have settled."""
+    """Change the lengths, by motions proved like all others, each after the steps since the last have settled."""
 
     # fastest, slowest: logarithmic change of the lengths in one motion; less is not worth an iteration
     fastest: float = number(0.2)
     slowest: float = number(0.01)
-    # of the objective, by its scale, in one motion: more is made by contacts that it takes long to relax from
+    # of the objective, by its scale, in one motion: contacts make more, and take long to relax from
     rise: float = number(0.25)
     settled: float = number(0.01)  # decrease of the objective in a step, by its scale, after which the next may come
-    later: float = number(0.1, most=1)  # factor of that after no motion was found
-    edges_per_gap: float = number(2.0)  # what is packed bends as narrowly as strands are near
-    most: int = number(FinerMesh.most)  # vertices, unless there are more
+    later: float = number(0.1, most=1)  # factor on ``settled`` after no motion was found
+    edges_per_gap: float = number(2.0)  # packed curves bend as tightly as strands are near
+    most: int = number(FinerMesh.most)  # vertices, unless there are more already
     _energy: float = field(default=math.inf, init=False)  # after the last event
 
     def __post_init__(self) -> None:
@@ -48,7 +48,7 @@ class Grow(Intervention):
         self._resolution = replace(self.run.resolution, edges_per_gap=self.edges_per_gap)
 
     def __call__(self, event: Event) -> Event | Change:
-        """Look at the start, at steps that gained little, and where the run would end with other lengths."""
+        """Act at the start, after steps that gained little, and where the run would end with other lengths."""
         if self._is_done or (isinstance(event, Outcome) and not event.converged):
             return event
         left = float(np.log(self.run.options.grow / self.run.iterate.grown))
@@ -63,7 +63,7 @@ class Grow(Intervention):
         return event if self._is_done else self._grown(left, event)
 
     def _is_due(self, event: Event) -> bool:
-        """Whether there is nothing else to do, or the curve has its lengths and has all but come to rest."""
+        """Whether there is nothing else to do, or the curve has its lengths and has almost come to rest."""
         before, self._energy = self._energy, self.run.point.energy
         if isinstance(event, NoStep | Outcome):
             return True
@@ -78,7 +78,7 @@ class Grow(Intervention):
         return event.stalling(CROWDED) if isinstance(event, Outcome) else event
 
     def _scaled(self, left: float) -> Change:
-        """With nothing in the way: the whole curve scaled about its barycenter."""
+        """Scale the whole curve about its barycenter, as nothing is in the way."""
         start, problem, factor = self.run.iterate.curve, self.run.problem, float(np.exp(left))
         center = weighted_barycenter(start) / start.length
         end = start.with_vertices(center + factor * (start.vertices - center))
@@ -88,10 +88,10 @@ class Grow(Intervention):
         return Change((step,), self._resolved(step.point))
 
     def _step(self, left: float) -> Step | None:
-        """The shortest motion in the metric to what can be had of the change that is left; None if it is nothing."""
+        """The shortest motion in the metric that makes as much of the remaining change as possible; None if none."""
         point, problem = self.run.point, self.run.problem
         space, change = point.tangent_space, float(np.clip(left, -self._longest, self._longest))
-        # the least change worth an iteration: of an arc that is all but straight, half of its slack
+        # the least change worth an iteration: for an arc that is nearly straight, half of its slack
         spanned = spans(self.run.point.curve, self.run.problem.constraints.pins.vertices)
         slack = (0.5 * float(np.log(span.length / span.distance)) for span in spanned if not span.taut)
         least = min(self.slowest, abs(left), *slack)
@@ -112,11 +112,11 @@ class Grow(Intervention):
 
     @property
     def _energy_scale(self) -> float:
-        """What rises and decreases of the objective are relative to: arcs may have as good as no energy."""
+        """The scale for rises and decreases of the objective: arcs may have practically no energy."""
         return energy_scale(self.run.problem.mesh, self.run.point.energy)
 
     def _resolved(self, point: Point) -> Point | None:
-        """The point on a mesh and in units for its length; None if the present ones do, or are all that there are."""
+        """The point on a mesh and in units that suit its length; None if the present ones do, or none are better."""
         problem, curve = point.problem, point.curve.with_vertices(point.placed)
         pieces = self._pieces(curve)
         if pieces.max() == 1 and Units.of(curve).scale == problem.units.scale:
@@ -124,7 +124,7 @@ class Grow(Intervention):
         return split_edges(problem, curve, pieces)
 
     def _pieces(self, curve: Curve) -> IntArray:
-        """Into how many each edge is to be split."""
+        """The number of pieces into which each edge is to be split."""
         whole = np.ones(curve.mesh.edges, dtype=np.intp)
         if self.run.options.mesh == "fixed":
             return whole
@@ -135,7 +135,7 @@ class Grow(Intervention):
 
 
 def with_growth(outcome: Outcome, run: Run) -> Outcome:
-    """The outcome with how far lengths have come that were to change."""
+    """The outcome with a clause on how far lengths have come, if they were to change."""
     wanted = run.options.grow
     if wanted == 1.0:
         return outcome

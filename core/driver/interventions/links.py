@@ -1,4 +1,4 @@
-"""Links of several parts: unlinked ones would drift apart, and composite ones have no shape of least energy."""
+"""Links of several parts: unlinked parts would drift apart, and composite links have no shape of least energy."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -39,8 +39,8 @@ COMPOSITE_LINK = 90.0  # two Hopf links (47.5 each) 91
 class SplitLinks(Intervention):
     """Give every part that is far from the others a barycenter of its own among the constraints."""
 
-    interval: int = number(5)  # accepted steps between two looks
-    gap: float = number(1.0)  # least one between the balls around two parts, in radii of the larger one
+    interval: int = number(5)  # accepted steps between two checks
+    gap: float = number(1.0)  # least gap between the balls around two parts, in radii of the larger ball
     most: int = number(50)  # parts: each has rows of its own in the linear systems
 
     def stepped(self, step: Step) -> Change | None:
@@ -54,7 +54,7 @@ class SplitLinks(Intervention):
         return Change(point=run.point.changing(constraints=constraints.replacing(held)))
 
     def converged(self, outcome: Outcome) -> Outcome | None:
-        """Say which energies of their own the parts have, unless pins hold them all."""
+        """Report the sum of the parts' own energies, unless pins hold them all."""
         held = self.run.problem.constraints.block(Barycenters)
         if not max(held.parts) or not held.loose:
             return None
@@ -72,8 +72,8 @@ def separate_parts(
 ) -> Parts:
     """For each component the number of its part, from 0; parts lie in balls that are far from each other.
 
-    Disjoint balls prove that parts are not linked.  All is one part if there would be very many.  Obstacles are merged
-    with what is near to them all: between walls nothing drifts away.
+    Disjoint balls prove that parts are not linked.  Everything is one part if there would be too many.  All
+    obstacles count as one body, merged with any part near it: between walls nothing drifts away.
     """
     components = len(curve.mesh.component_sizes)
     if components == 1:
@@ -109,7 +109,7 @@ def _balls(points: FloatArray, part: IntArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _near(centers: FloatArray, radii: FloatArray, gap: float) -> sp.coo_array:
-    """Which balls are not far enough from each other to be parts; sparse, shape (p, p)."""
+    """Which pairs of balls are too near each other to be separate parts; sparse, shape (p, p)."""
     i, j, distance = near_by_octave(centers, radii, 2.0 + gap)
     near = distance < radii[i] + radii[j] + gap * np.maximum(radii[i], radii[j])
     i, j = i[near], j[near]
@@ -118,7 +118,7 @@ def _near(centers: FloatArray, radii: FloatArray, gap: float) -> sp.coo_array:
 
 @dataclass(eq=False)
 class Composite(Intervention):
-    """Report composite curves: unless the energy sees size, only the mesh keeps a part from shrinking to a point."""
+    """Report composite curves: unless energy depends on size, only the mesh keeps a part from shrinking to a point."""
 
     def converged(self, outcome: Outcome) -> Outcome | None:
         ball = shrinking_ball(self.run)
@@ -129,9 +129,9 @@ class Composite(Intervention):
 
 
 def shrinking_ball(run: Run) -> Ball | None:
-    """A ball around a part of a composite curve that shrinks to a point; None if there is none, or was none found."""
+    """A ball around a part of a composite curve that shrinks to a point; None if there is none, or none was found."""
     ball = next(filter(None, map(knotted_ball, _may_shrink(run))), None)
-    # around what stands still nothing shrinks to a point
+    # around a fixed obstacle nothing shrinks to a point
     return ball if ball is not None and all(map(ball.is_clear_of, run.problem.obstacles)) else None
 
 
@@ -143,16 +143,16 @@ def is_unresolved(curve: Curve) -> bool:
 
 
 def _may_shrink(run: Run) -> list[Curve]:
-    """The curve's parts that may be composite, unless the energy sees size; between pins no part shrinks either."""
+    """The curve's parts that may be composite; none if energy depends on size, or with pins, where no part shrinks."""
     if run.problem.objective.sees_size or len(run.problem.constraints.pins):
         return []
     return [part for part in split(run.iterate.curve, parts_of(run)) if _may_be_composite(part)]
 
 
 def _may_be_composite(curve: Curve) -> bool:
-    """Whether there is energy enough for that, in space, on closed components: arcs can be unknotted.
+    """Whether a curve in space has enough energy to be composite, on closed components: arcs can be unknotted.
 
-    A part that has shrunk as far as the mesh lets it is not resolved any more.
+    A part that has shrunk as far as the mesh allows is no longer resolved.
     """
     if curve.dimension != 3 or not curve.mesh.all_closed or not is_unresolved(curve):
         return False

@@ -96,29 +96,29 @@ def proved_remesh(
 @checked_fields
 @dataclass(eq=False)
 class FinerMesh(Intervention):
-    """Split edges where strands are nearer than the mesh resolves, or say that it would help.
+    """Split edges where strands are nearer than the mesh resolves, or report that this would help.
 
-    That is done as soon as what is still to gain on a mesh is small against its own error, and at rest in any case;
-    there edges are also split where the curve bends most, if its energy is too far from that of the spline through it.
-    The error is taken to be what the same curve's energy changes by on the finer mesh, corners included.  What is still
-    to gain is what the last fifth of the steps on this mesh has gained, so that saddles are not mistaken for minima
-    unless they are crossed more slowly than all before, and at least what is promised by the gradient and the bulk of
-    the Hessian's eigenvalues against J_C.
+    Edges are split as soon as the energy still to be gained on a mesh is small against the mesh's error, and at rest in
+    any case; at rest they are also split where the curve bends most, if its energy is too far from that of the spline
+    through it.  The error is taken to be the change of the same curve's energy on the finer mesh, corners included.
+    The gain to come is taken to be that of the last fifth of the steps on this mesh, so that saddles are not mistaken
+    for minima unless they are crossed more slowly than all before, and at least as much as the gradient and the bulk of
+    the Hessian's eigenvalues against J_C promise.
     """
 
     # the barrier acts below 3: strands may draw nearer by half; energies are within some 0.1 % then
     edges_per_gap: float = number(6.0)
     most: int = number(10_000)  # vertices, unless there are more: what the hierarchical solver has time for
-    # that are left: it takes two or three to get back what corners cost when their edges are split
+    # that must be left: it takes two or three to regain what corners cost when their edges are split
     min_iterations: int = number(5)
-    share: float = number(0.1, most=1)  # of the error, up to which a gain is small
-    # relative error of an energy at rest from which on more vertices are taken: estimates of it are a few per cent off
+    share: float = number(0.1, most=1)  # of the error, up to which a gain counts as small
+    # relative error of an energy at rest above which vertices are added: estimates of it are a few per cent off
     accuracy: float = number(9.5e-4)
-    aim: float = number(0.9, most=1)  # part of that error that they are to leave
-    affordable: int = number(1000)  # vertices for that: what second derivatives are factorised for
+    aim: float = number(0.9, most=1)  # part of that error that added vertices are to leave
+    affordable: int = number(1000)  # vertices for that: as many as second derivatives are factorised for
     pieces: int = number(16)  # of an edge: where pins nearly touch, no number of vertices resolves the gap between them
     recent: float = number(0.8, most=1)  # part of the steps on this mesh after which gains count
-    pause: float = number(1.1, above=1)  # factor of the number of steps on this mesh from one look to the next
+    pause: float = number(1.1, above=1)  # factor of the number of steps on this mesh from one check to the next
 
     def __post_init__(self) -> None:
         self._resolution = replace(self.run.resolution, edges_per_gap=self.edges_per_gap)
@@ -138,7 +138,7 @@ class FinerMesh(Intervention):
             return None
         self._looked, finer = steps, self._finer()
         if finer is None or gain > self.share * abs(finer.energy - energy) or shrinking_ball(self.run) is not None:
-            return None  # a ball would shrink on, until that mesh does not resolve it either
+            return None  # a ball would go on shrinking, until that mesh does not resolve it either
         return Change(point=finer, resolution=self._resolution)
 
     def converged(self, outcome: Outcome) -> Outcome | Change | None:
@@ -151,7 +151,7 @@ class FinerMesh(Intervention):
 
     @property
     def _may_leave(self) -> bool:
-        """Whether lengths and vertices are as they shall be, and there is time to relax as long on another mesh."""
+        """Whether lengths and vertices are as required, and iterations are left to relax as long on another mesh."""
         run = self.run
         if len(run.point.vertices) < self._given:
             return False
@@ -172,7 +172,7 @@ class FinerMesh(Intervention):
     def _more_exact(self) -> Point | None:
         """The same curve with edges halved where it bends most, as many as its energy's error asks for; None if none.
 
-        Halving all of them would take three quarters of the error away.
+        Halving all of them would remove three quarters of the error.
         """
         problem, point, curve = self.run.problem, self.run.point, self.run.iterate.curve
         usual = self.run.options.ends_finer and problem.unconfined and is_moebius_invariant(problem.objective.energy)
@@ -192,7 +192,7 @@ class FinerMesh(Intervention):
 
 
 def split_edges(problem: Problem, curve: Curve, pieces: IntArray) -> Point | None:
-    """The same curve in the same problem with every edge in pieces; None if it has too few digits or is too large."""
+    """The same curve and problem with edges split into pieces; None if doubles are too coarse or vertices too many."""
     pieces = problem.constraints.symmetry.most(pieces, curve.mesh)
     finer = subdivide(curve, pieces) if pieces.max() > 1 else curve
     try:

@@ -1,6 +1,6 @@
-"""The end of a relaxation: by second derivatives to the last digits, with the index of the critical point.
+"""The end of a relaxation: to the last digits by second derivatives, with the index of the critical point.
 
-A saddle is left on a way down, where that is wanted.
+A saddle is left downhill, where that is wanted.
 """
 
 from dataclasses import dataclass, field, replace
@@ -36,13 +36,13 @@ RESOLVED = 1e-5  # residual at which Ritz values count as eigenvalues: their err
 @checked_fields
 @dataclass(eq=False)
 class Rest(Intervention):
-    """On the last mesh second derivatives take over from L-BFGS until nothing is left to gain; they tell the index."""
+    """On the last mesh second derivatives take over from L-BFGS until nothing is left to gain; they give the index."""
 
     newton: Newton = field(default_factory=Newton)
-    loosest: float = number(1e-4)  # tolerance from which on gradients are all that is asked for
-    gradient: float = number(1e-3)  # of √E, its norm at which second derivatives take over
-    exact: float = number(1e-8)  # of E, what may be left to gain
-    rounds: int = number(6)  # of steps at rest: in a curved valley, where they are short, there is no end to them
+    loosest: float = number(1e-4)  # tolerance above which small gradients are all that is required
+    gradient: float = number(1e-3)  # norm of the gradient, relative to √E, at which second derivatives take over
+    exact: float = number(1e-8)  # gain that may be left, relative to E
+    rounds: int = number(6)  # of steps at rest: in a curved valley, where these are short, they would never end
     trusted: float = number(0.1)  # largest σ: where more is needed, as on a ridge, L-BFGS goes on
 
     def __post_init__(self) -> None:
@@ -60,7 +60,7 @@ class Rest(Intervention):
             return None
         if self.run.options.ends_finer and is_unresolved(self.run.iterate.curve):
             return None
-        self._below = 0.5 * relative  # in a curved valley these steps, dearer than others, are no better
+        self._below = 0.5 * relative  # in a curved valley these steps, which cost more than others, are no better
         try:
             curvature = Curvature(point)
             inverse, _, shift = self.newton.definite(curvature, unresolved(point.curve))
@@ -73,7 +73,7 @@ class Rest(Intervention):
         try:
             return self._at_rest(outcome)
         except np.linalg.LinAlgError:
-            return None  # at rest it is, by its gradient
+            return None  # it is at rest, judged by its gradient
 
     def _at_rest(self, outcome: Outcome) -> Outcome | Change | None:
         index: int | None
@@ -119,7 +119,7 @@ class Rest(Intervention):
 
 
 def _kind(index: int | None) -> Message:
-    """What critical points of an index are, if it is known."""
+    """The kind of critical point with an index, if that is known."""
     return Message(ILL_CONDITIONED) if index is None else Message(SADDLE, index=index) if index else Message(MINIMUM)
 
 
@@ -149,14 +149,14 @@ class Stability:
 
 
 def stability(point: Point) -> Stability:
-    """That of a point, in the metric J_C whatever metric its problem has: eigenvalues are counted against it."""
+    """The stability of a point, in the metric J_C whatever metric its problem has: eigenvalues are against J_C."""
     if point.problem.metric.name != MoebiusMetric.name:
         point = point.changing(metric=point.problem.solver.of_metric(MoebiusMetric()))
     return Stability(point)
 
 
 def unresolved(curve: Curve) -> float:
-    """Size of eigenvalues of Möbius maps, which change nothing of the energy but what the mesh makes of it."""
+    """Size of the eigenvalues of Möbius maps, which change the energy only through the mesh."""
     ell = curve.edge_lengths
     return max(ZERO, MOEBIUS * max(float(ell[s].max() / ell[s].sum()) ** 2 for s in curve.mesh.edge_slices))
 
