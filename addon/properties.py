@@ -69,7 +69,7 @@ def _property(option: Option, options: set[str]) -> Any:
 
 
 def _items(choices: Collection[str]) -> list[_Item]:
-    """The names to choose; what is there for comparison only has a heading of its own."""
+    """The names to choose from; those that are only for comparison have a heading of their own."""
     entries = choices if isinstance(choices, Mapping) else dict.fromkeys(choices)
     apart = [name for name in choices if getattr(entries[name], "comparison", False)]
     items = {name: _item(name, entries[name]) for name in choices}
@@ -80,7 +80,7 @@ def _items(choices: Collection[str]) -> list[_Item]:
 
 
 def _item(name: str, entry: Any) -> _Item:
-    """A name to choose; it keeps its number in files when others are added."""
+    """A name to choose, whose number in files stays the same when others are added."""
     title = name.replace("moebius", "möbius").replace("-", " ").title()
     label, description = getattr(entry, "label", title), getattr(entry, "description", "")
     number = zlib.crc32(name.encode()) & 0x7FFFFFFF

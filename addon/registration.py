@@ -1,4 +1,4 @@
-"""What Blender is told about at registration, and forgets at unregistration."""
+"""Everything that Blender is told about at registration, and forgets at unregistration."""
 
 from types import ModuleType
 
@@ -14,12 +14,12 @@ _MODULES = (
     *(relaxing, running, mending, pinning, shape, outputs, film, adding, drawing, stroke, presets),
     *(menus, relax, panels),
 )
-# what else there is to register
+# everything else to register
 _PARTS = (translations, settings, presets, menus, handlers, overlay, tool)
 
 
 def declared(module: ModuleType) -> list[type]:
-    """The classes for Blender that a module declares, in the order in which they stand there."""
+    """The classes for Blender that a module declares, in the order of their declaration."""
     classes = (each for each in vars(module).values() if isinstance(each, type))
     return [each for each in classes if issubclass(each, bpy.types.bpy_struct) and each.__module__ == module.__name__]
 
@@ -44,7 +44,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Remove all of it; what is running ends first."""
+    """Remove all of it, after ending what is running."""
     for part in reversed(_PARTS):
         part.unregister()
     for cls in reversed(CLASSES):

@@ -45,7 +45,7 @@ _KINDS: dict[Any, tuple[type, str]] = {
 class Relaxation:
     """Curve objects that are relaxed together, never through themselves or each other.
 
-    Nothing of the scene's settings or of the selection is looked at. Every method does its whole job before it returns,
+    The scene's settings and the selection are ignored. Every method does its whole job before it returns,
     or leaves all as it was and raises an error.
 
     Parameters
@@ -91,17 +91,17 @@ class Relaxation:
             Objects that the curves never touch, as they are shown at the current frame; those that are relaxed
             themselves are left out.
         drag
-            Is called with a `Hand` and every iterate, in the world, and may tell the hand what to do next.
+            Called with a `Hand` and every iterate, in the world; it may tell the hand what to do next.
         **settings
-            Those of the operator ``curve.mobius_flow_relax``, by the same names; defaults for those left out. Besides,
-            ``pins``: points that stay where they are, as those do that are pinned already. They are counted from 0
-            through all splines of all objects; of Bézier and NURBS splines the points are those that are drawn.
+            The settings of the operator ``curve.mobius_flow_relax``, by the same names; defaults for those left out.
+            Also ``pins``: points that stay where they are, besides those pinned already. They are counted from 0
+            through all splines of all objects; for Bézier and NURBS splines the points are those that are drawn.
 
         Returns
         -------
         Report
-            What was done; its ``sentence`` says so, and ``certified`` whether all of it was proved. What cannot be
-            relaxed, or is no setting, raises a MobiusFlowError.
+            What was done, described in its ``sentence``; ``certified`` says whether all of it was proved. Anything that
+            cannot be relaxed, or is not a setting, raises a MobiusFlowError.
         """
         return begin(self.objects, complete(settings) | {"avoid": avoid}, False, self.sample_splines).run(drag)
 
@@ -164,7 +164,7 @@ def begin(
     sample_splines: bool,
     goals: Sequence[bpy.types.Object] = (),
 ) -> Session:
-    """A session with the values of all settings, to become other objects if there are any; raises MobiusFlowError."""
+    """A session with the values of all settings, which becomes the goals if there are any; raises MobiusFlowError."""
     _update()
     require(
         idle() or RELAXABLE.of(objects) or READABLE.of(goals),
@@ -179,12 +179,12 @@ def begin(
 
 
 def _update() -> None:
-    """Let Blender know where objects are that a script has just moved."""
+    """Update Blender's view of where objects are that a script has just moved."""
     bpy.context.view_layer.update()
 
 
 def _objects(avoid: Iterable[bpy.types.Object]) -> list[bpy.types.Object]:
-    """What is to be avoided; raises MobiusFlowError if something is no object."""
+    """The objects to avoid; raises MobiusFlowError if something is not an object."""
     if not isinstance(avoid, Iterable):
         raise MobiusFlowError(f"avoid is of type {type(avoid).__name__}; give a list of objects")
     found = list(avoid)
@@ -195,13 +195,13 @@ def _objects(avoid: Iterable[bpy.types.Object]) -> list[bpy.types.Object]:
 
 
 def implied(given: Collection[str]) -> dict[str, Any]:
-    """What follows from which settings are given: frames for an iterate mean that, and a fit is one of any tube."""
+    """Settings that the given ones imply: frames for an iterate mean that pace, and a fit applies to any tube."""
     by_iterate = "frames_per_iterate" in given and "timing" not in given
     return ({"timing": Pace.ITERATE.name} if by_iterate else {}) | {"any_bevel": "fit_bevel" in given}
 
 
 def complete(given: Mapping[str, Any]) -> dict[str, Any]:
-    """All settings, with defaults for those that are not given; raises OptionError for what is no setting or value."""
+    """All settings, with defaults for those not given; raises OptionError for unknown settings and wrong values."""
     for name, value in given.items():
         if name not in ("any_bevel", "pins"):
             _check(name, value)

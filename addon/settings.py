@@ -1,4 +1,4 @@
-"""What scenes keep beside options: what the panel shows, what the film is, what is avoided, which knot is picked."""
+"""What scenes keep besides options: what the panel shows, what the film is, what is avoided, which knot is picked."""
 
 from typing import Any
 
@@ -12,7 +12,7 @@ from .pictures import icons, staging
 from .pictures.movie import CHOICES
 from .properties import MobiusFlowSettings
 
-# since 5.0 Blender marks relative paths as wrong where a property does not say that it knows them
+# since 5.0 Blender marks relative paths as wrong unless a property declares that it supports them
 _RELATIVE = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (5, 0) else set()
 _LEVELS = [*QUALITIES, "CUSTOM"]
 _LEVEL_ITEMS = [

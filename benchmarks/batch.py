@@ -23,7 +23,7 @@ CORNERS = 12  # of the tiny inputs
 
 
 def processor_seconds() -> float:
-    """Of this process and of its children that have ended."""
+    """Processor seconds of this process and of its children that have ended."""
     return sum(
         use.ru_utime + use.ru_stime for use in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
     )
@@ -56,7 +56,7 @@ def address_in(path: Path) -> str:
 
 
 def workers(names: str = "3_1..6_3", starts: str = "3") -> None:
-    """Print the seconds that one worker takes, and two."""
+    """Print the seconds that one worker takes, and that two take."""
     from distributed import Client
 
     for count in (1, 2):
@@ -72,7 +72,7 @@ def workers(names: str = "3_1..6_3", starts: str = "3") -> None:
 
 
 def many(count: str = "10000") -> None:
-    """Print the peak memory of the process that submits so many runs, which is this one."""
+    """Print the peak memory of the process that submits a number of runs, which is this one."""
     angles = 2.0 * np.pi * np.arange(CORNERS) / CORNERS
     circle = np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], axis=1)
     with tempfile.TemporaryDirectory() as room:
@@ -90,7 +90,7 @@ def many(count: str = "10000") -> None:
 
 
 def peak_megabytes() -> float:
-    """The most memory that this process has had."""
+    """The peak memory of this process."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (1 << 10 if sys.platform != "darwin" else 1 << 20)
 
 

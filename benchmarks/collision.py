@@ -22,7 +22,7 @@ def torus_knot(n: int, p: int = 2, q: int = 3) -> FloatArray:
 
 
 def tangle(n: int) -> FloatArray:
-    """A smooth closed curve that goes everywhere."""
+    """A smooth closed curve that winds everywhere."""
     rng, k = np.random.default_rng(3), np.arange(1, 25)
     t = 2 * np.pi * np.outer(np.arange(n), k) / n
     a, b = rng.normal(size=(2, len(k), 3))

@@ -3,8 +3,8 @@
     python benchmarks/drags.py [DRAGS] [SEED]
 
 Curves are dragged ten times each while they relax: gently, far away, to and fro from step to step, through the middle
-of the curve, with pins left and two strands in turn.  Of each run the path is verified as its file is, the type is
-identified before and after, and what a drag took is told.
+of the curve, with pins left and two strands in turn.  For each run the path is verified like its file, the type is
+identified before and after, and the cost of a drag is reported.
 """
 
 import sys
@@ -41,7 +41,7 @@ def targets(kind: str, held: np.ndarray, curve: Curve, rng: np.random.Generator)
 
 
 def run(name: str, rng: np.random.Generator, told: Counter[str], room: Path) -> float:
-    """One run; return the seconds of its slowest iterate. Raises AssertionError where a promise is broken."""
+    """Do one run; return the seconds of its slowest iterate. Raises AssertionError if a promise is broken."""
     curve = knot(name, int(rng.integers(60, 140)))
     size, beside = np.ptp(curve.vertices), curve.vertices[:, 0].min() * 1.1
     wall = Obstacle([[beside, -size, -size], [beside, size, -size], [beside, 0.0, size]], [[0, 1, 2]], "wall")
@@ -86,7 +86,7 @@ def run(name: str, rng: np.random.Generator, told: Counter[str], room: Path) -> 
 
 
 def main(drags: int, seed: int) -> None:
-    """Drag so often."""
+    """Do as many drags as asked for."""
     rng, told, slowest, began = np.random.default_rng(seed), Counter[str](), 0.0, time.perf_counter()
     with tempfile.TemporaryDirectory() as room:
         for k in range(-(-drags // _OF_A_RUN)):

@@ -26,7 +26,7 @@ from mobius_flow.core.curve.refine import subdivide
 from mobius_flow.core.knots import knot, scramble, smooth_knot, torus_knot
 from mobius_flow.core.verify import verify
 
-PATIENT = RelaxOptions(max_iterations=1_000_000)  # a try takes as many as a run: the time is what is limited
+PATIENT = RelaxOptions(max_iterations=1_000_000)  # a try may take as many as a run: time is the limit
 ESCAPING = replace(PATIENT, escape_saddles=True)
 CASES: Mapping[str, tuple[Callable[[], Curve], RelaxOptions]] = {
     "T34": (partial(torus_knot, 3, 4), PATIENT),
@@ -40,11 +40,11 @@ CASES: Mapping[str, tuple[Callable[[], Curve], RelaxOptions]] = {
     "unknot-60-4": (partial(lattice_unknot, 60, 4), PATIENT),
     "haken": (partial(knot, "haken"), replace(PATIENT, mesh="fixed")),
 }
-MOST_VERTICES = 2500  # of a curve whose index is looked at: dense matrices of 2 GB
+MOST_VERTICES = 2500  # of a curve whose index is computed: dense matrices of 2 GB
 
 
 def limited(minutes: float, curve: Curve, options: RelaxOptions, trajectory: Trajectory) -> Result:
-    """The end of a run, or the lowest curve after so much processor time, even if that is in the middle of a hop."""
+    """The end of a run, or the lowest curve when its processor time is up, even in the middle of a hop."""
     signal.signal(signal.SIGPROF, signal.default_int_handler)
     signal.setitimer(signal.ITIMER_PROF, 60.0 * minutes)
     try:
@@ -54,20 +54,20 @@ def limited(minutes: float, curve: Curve, options: RelaxOptions, trajectory: Tra
 
 
 def at_rest(minutes: float, curve: Curve) -> Result:
-    """The curve relaxed on on its own mesh, with its index unless that takes too much memory to tell."""
+    """The curve relaxed further on its own mesh, with its index unless computing it takes too much memory."""
     tells = len(curve) <= MOST_VERTICES
     options = RelaxOptions(mesh="fixed", vertices=len(curve), edge_lengths="keep", stability=tells)
     return limited(minutes, curve, options, Trajectory())
 
 
 def index(result: Result) -> str:
-    """How many ways lead down from a curve at rest; a dash where that is not known."""
+    """How many independent ways lead down from a curve at rest; a dash if that is unknown."""
     count = result.outcome.negative_eigenvalues
     return "–" if count is None else str(count)
 
 
 def rest(minutes: float, result: Result) -> str:
-    """Where a run has come to rest, the index, and energy and index with edges halved; else why it has not."""
+    """The index where a run has come to rest, and energy and index with edges halved; else why it has not."""
     if result.status is Status.CONVERGED:
         curve = result.curve
         finer = at_rest(minutes, subdivide(curve, np.full(len(curve), 2)))
@@ -86,7 +86,7 @@ def hopped(minutes: float, curve: Curve, options: RelaxOptions) -> tuple[Result,
 
 
 def row(name: str, hops: int, minutes: float) -> str:
-    """What becomes of one case."""
+    """The result of one case."""
     make, options = CASES[name]
     began = time.process_time()
     plain = limited(minutes, make(), options, Trajectory())

@@ -36,7 +36,7 @@ HARD: Curves = {
     **{f"unknot-lattice-{c}": partial(lattice_unknot, c, seed=c) for c in (20, 40, 60, 80, 100, 120, 141)},
     **{
         f"unknot-{name}": partial(knot, name) for name in HARD_UNKNOTS if name != "haken"
-    },  # whose 141 crossings it takes more vertices to untangle
+    },  # 141 crossings take more vertices to untangle
     "unknot-scrambled": lambda: scramble(knot("0_1"), seed=11),
     "unknot-spiral": lambda: spiral(6.0),
     "unknot-rope": lambda: rope(6.0, 0.02),
@@ -80,7 +80,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 class Row(NamedTuple):
-    """What became of a curve: whether it is what it should be, what it took, and how far it is above the least."""
+    """The result for a curve: whether it is right, what it cost, and how far it is above the least energy."""
 
     good: bool
     products: float
@@ -88,11 +88,11 @@ class Row(NamedTuple):
 
 
 def row(name: str, curve: Curve, options: RelaxOptions, width: int, product: float) -> Row:
-    """Relax a curve and print what became of it; ``product`` is what a product of matrices takes, in seconds."""
+    """Relax a curve and print the result; ``product`` is the time of a product of matrices, in seconds."""
     began = time.process_time()
     result = minimize(curve, options)
     seconds = time.process_time() - began
-    if result.status is Status.INTERRUPTED:  # an interrupt ends the bench, not only the curve at hand
+    if result.status is Status.INTERRUPTED:  # an interrupt ends the benchmark, not only the current curve
         raise KeyboardInterrupt
     before, after = quick_invariants(curve), quick_invariants(result.curve)
     is_knot = len(curve.mesh.component_sizes) == 1
@@ -110,7 +110,7 @@ def row(name: str, curve: Curve, options: RelaxOptions, width: int, product: flo
 
 
 def _print_summary(rows: Sequence[Row]) -> None:
-    """Median, 95th percentile and maximum of what rows tell in numbers."""
+    """Median, 95th percentile and maximum of the numbers in rows."""
     for title, values in (("dgemms", [each.products for each in rows]), ("above, in %", [each.above for each in rows])):
         known = [value for value in values if np.isfinite(value)]
         if known:

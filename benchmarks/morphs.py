@@ -26,7 +26,7 @@ from mobius_flow.core.verify import verify
 sys.path.append(str(Path(__file__).parents[1] / "tools"))
 from check_trajectory import check
 
-# two reduced diagrams of 10_161, of writhe 8 and 10, that stood in tables as two knots for 75 years
+# two reduced diagrams of 10_161, of writhe 8 and 10, that tables listed as two knots for 75 years
 PERKO = (
     "Gauss: U1+O2+U3+U4+O5+O6+U7+U8+O9+O1+U2+O3+O10-U5+O8+U9+O4+U10-U6+O7+",
     "Gauss: O1+U8+O2+U1+O4+U7+U9+O6+U5+O3+O7+U10+O8+U2+U6+O9+O10+U4+U3+O5+",
@@ -41,7 +41,7 @@ def diagram(name: str) -> Curve:
 
 
 def messy(name: str) -> Curve:
-    """A polygon whose vertices were moved far and at random."""
+    """A polygon whose vertices have been moved far at random."""
     return scramble(smooth_knot(name, 60), seed=1)
 
 
@@ -96,7 +96,7 @@ def made(text: str) -> Curve:
 
 
 def row(name: str) -> bool:
-    """Print a row; whether all is well."""
+    """Print a row; return whether all is well."""
     (a, b), words = (made(text) for text in PAIRS[name].split(" / ")), PAIRS[name].replace("code Gauss: ", "")
     way: list[Iterate] = []
     began = time.process_time()
@@ -132,7 +132,7 @@ def row(name: str) -> bool:
 
 
 def refused(a: str, b: str) -> bool:
-    """Print why there is no motion from a knot to another; whether it is so."""
+    """Print why no motion leads from one knot to another; return whether that is so."""
     began = time.process_time()
     try:
         morph(knot(a), knot(b), HOPS)

@@ -36,7 +36,7 @@ def bumpy_sphere(rings: int = 120) -> Obstacle:
 
 
 def knot_inside(obstacle: Obstacle, share: float, n: int) -> Curve:
-    """A knotted curve around the obstacle's centre, that reaches a share of the way to its nearest vertex."""
+    """A knotted curve around the obstacle's centre that reaches a share of the way to its nearest vertex."""
     center = 0.5 * (obstacle.vertices.min(axis=0) + obstacle.vertices.max(axis=0))
     reach = float(np.linalg.norm(obstacle.vertices - center, axis=1).min())
     t = 2 * np.pi * np.arange(n) / n

@@ -25,7 +25,7 @@ SCRAMBLED = ("5_2", "7_4", "8_19", "L6a4")
 
 
 def verdict(start: Curve, stages: Iterable[Stage], pins: Sequence[int] = (), walls: Sequence[Obstacle] = ()) -> Verdict:
-    """What the independent check says of stages."""
+    """The verdict of the independent check on stages."""
     trajectory = Trajectory(obstacles=walls)
     held = start.vertices[list(pins)]
     frames = [(start, ()), *((each, path) for s in stages for each, path in ((s.start, ()), (s.end, s.path)))]
@@ -38,7 +38,7 @@ def verdict(start: Curve, stages: Iterable[Stage], pins: Sequence[int] = (), wal
 
 
 def curves(names: Sequence[str]) -> Iterator[tuple[str, Curve]]:
-    """Those with the names, or all."""
+    """The cases with the given names or files, or all."""
     for name in names:
         yield name, read_curve(name) if Path(name).exists() else knot(name)
     if names:

@@ -36,7 +36,7 @@ def sphere(latitudes: int) -> Obstacle:
 
 
 def net(surface: Obstacle) -> Obstacle:
-    """The sides of the same triangles."""
+    """The net of sides of the same triangles."""
     sides = np.sort(np.concatenate([surface.faces[:, [i, i - 1]] for i in range(3)]), axis=1)
     return Obstacle(surface.vertices, np.unique(sides, axis=0), "net")
 

@@ -17,7 +17,7 @@ CROSSINGS = range(3, 8)
 
 
 def row(name: str) -> str:
-    """What becomes of a coarse lattice polygon."""
+    """The result for a coarse lattice polygon."""
     result = minimize(lattice_knot(name))
     found = extrapolated(result.curve, RelaxOptions())
     assert found is not None, f"{name} with shorter edges does not converge"

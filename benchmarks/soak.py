@@ -23,7 +23,7 @@ from mobius_flow.core.energies import ENERGIES
 from mobius_flow.core.knots import KNOTS, braid_closure, knot, scramble
 from mobius_flow.core.verify import verify
 
-# slow ones and those that change the mesh come up less often
+# slow kinds, and those that change the mesh, come up less often
 COMMON = ("lbfgs", "cg", "flow-moebius", "flow-h1", "flow-l2", "flow-h2", "penalty-lbfgs", "penalty-nesterov")
 
 
@@ -68,7 +68,7 @@ def random_options(rng: np.random.Generator, given: int) -> RelaxOptions:
 
 
 def random_obstacles(rng: np.random.Generator, curve: Curve) -> list[Obstacle]:
-    """Triangles and segments among the strands, those of them that are clear of these, and perhaps a box around."""
+    """Triangles and segments among the strands, as far as they are clear of them, and perhaps a box around."""
     middle, half = 0.5 * (curve.vertices.max(axis=0) + curve.vertices.min(axis=0)), 0.5 * np.ptp(curve.vertices)
     found = []
     for _ in range(rng.integers(0, 6)):
@@ -84,7 +84,7 @@ def random_obstacles(rng: np.random.Generator, curve: Curve) -> list[Obstacle]:
 
 
 def in_the_world(rng: np.random.Generator, curve: Curve) -> Task:
-    """Some components opened, some vertices pinned, and obstacles."""
+    """Open some components, pin some vertices, and add obstacles."""
     closed = rng.random(len(curve.components)) < 0.5
     curve = Curve.from_components(curve.components, closed.tolist())
     pins = rng.choice(len(curve), size=int(rng.integers(0, 5)), replace=False)
@@ -94,7 +94,7 @@ def in_the_world(rng: np.random.Generator, curve: Curve) -> Task:
 
 
 def is_accepted(iterates: Sequence[Iterate], task: Task) -> bool:
-    """Whether the independent check accepts the way, and every pin has kept its place."""
+    """Whether the independent check accepts the motion, and every pin has kept its place."""
     trajectory = Trajectory(obstacles=task.obstacles)
     for iterate in iterates:
         trajectory.add(iterate)

@@ -65,7 +65,7 @@ def _plain(machine: Machine, row: Row) -> dict[str, object]:
 
 
 def _print(machine: Machine, rows: Iterator[Row]) -> None:
-    """The rows as they come, then what follows from all of them."""
+    """The rows as they come, then the conclusions from all of them."""
     done: list[Row] = []
     for row in rows:
         if not done:

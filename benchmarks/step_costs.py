@@ -1,7 +1,7 @@
 """What an iteration costs: processor time phase by phase, memory, and how far the hierarchical solver is off.
 
-Times are of the processor, all threads together, so that other programs count for little; what remains of the machine
-is its speed, which the times of two plain operations stand for.
+Times are processor time, all threads together, so that other programs count for little; what remains of the machine
+is its speed, represented by the times of two plain operations.
 """
 
 import time
@@ -24,8 +24,8 @@ from mobius_flow.core.threads import BLAS
 
 MAX_COMPARED = 3000  # vertices up to which the hierarchical solver is compared with the dense one
 ASYMPTOTIC = 2000  # vertices from which times are expected to follow a power law
-ROUNDS = 5  # of which the median counts
-GROUPS = 3  # of METRIC_STEPS iterations each: methods that keep their metric for so many make it once in a group
+ROUNDS = 5  # the median counts
+GROUPS = 3  # of METRIC_STEPS iterations each: methods that keep their metric that long build it once per group
 PRODUCT = 1000  # rows of the matrices whose product is timed
 COPY = 100_000_000  # bytes
 
@@ -39,7 +39,7 @@ class Machine:
 
     @classmethod
     def measured(cls) -> "Machine":
-        """That of this process, as it is now."""
+        """Measure this machine as it is now."""
         matrix = np.random.default_rng(1).normal(size=(PRODUCT, PRODUCT))
         product = np.empty_like(matrix)
         source = np.ones(COPY // matrix.itemsize)
@@ -64,8 +64,8 @@ class Deviation:
     cosine
         Of the angle between the two projected gradients, in the dense J.
     norm
-        Relative error of the projected gradient's norm in the dense J. This and the angle are mostly because the
-        compressed J is another inner product, which moves nothing but the path.
+        Relative error of the projected gradient's norm in the dense J. This and the angle arise mostly because the
+        compressed J is another inner product, which changes nothing but the path.
     """
 
     energy: float
@@ -144,11 +144,11 @@ def _started(curve: Curve, options: RelaxOptions) -> Run:
 
 
 def _phases(start: Point, step: Step, options: RelaxOptions) -> Iterator[tuple[str, Callable[[], object]]]:
-    """What a step is made of, in an order in which each phase finds what it needs; the point knows nothing at first."""
+    """The phases of a step, ordered so that each finds what it needs; at first the point has nothing computed."""
     curve = Curve(start.placed, start.problem.mesh)
     point = start_problem(curve, options).at_curve(curve)
     objective = point.problem.objective
-    yield "lists", lambda: (objective.frozen_at(point.curve), near_pairs(point.curve))  # both keep what they have found
+    yield "lists", lambda: (objective.frozen_at(point.curve), near_pairs(point.curve))  # both cache their results
     yield "energy", lambda: objective.value(point.curve)
     yield "derivative", lambda: point.derivative
     yield "metric", lambda: point.inner_product
@@ -171,7 +171,7 @@ def _iteration(run: Run) -> float:
 
 
 def _peak(curve: Curve, options: RelaxOptions) -> int:
-    """In a pass of its own: while memory is traced everything takes longer."""
+    """Memory in a separate pass: while it is traced everything takes longer."""
     tracemalloc.start()
     try:
         run = _started(curve, options)

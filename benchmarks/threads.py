@@ -50,7 +50,7 @@ def main() -> int:
                     pass
                 seconds, processor = time.perf_counter() - began, time.process_time() - processor
                 print(f"{busy} processes  {words:19} {seconds:8.2f}   {processor:8.2f}", flush=True)
-    profile = cProfile.Profile(builtins=False)  # of built-in functions it would cost more than they take
+    profile = cProfile.Profile(builtins=False)  # tracing built-in functions would cost more than they take
     profile.runcall(list, relax(curve, options))
     tiles, lapack = shares(pstats.Stats(profile))
     for words, share in (("tiles", tiles), ("tiles and LAPACK", tiles + lapack)):
@@ -61,7 +61,7 @@ def main() -> int:
 
 
 def shares(profiled: pstats.Stats) -> tuple[float, float]:
-    """The parts of all time that the default energy and metric take, and the factorisations."""
+    """The shares of the whole time that the default energy and metric, and the factorisations, take."""
     own, within, total = Counter[str](), Counter[str](), 0.0
     for (file, _, function), (_, _, seconds, cumulative, _) in profiled.stats.items():  # type: ignore[attr-defined]
         name = f"{Path(file).parent.name}/{Path(file).stem}.{function}"

@@ -23,7 +23,7 @@ STEPS = 250  # down the other energy
 
 
 def leads_lower(curve: Curve, options: RelaxOptions, motion: Motion, seed: int) -> bool:
-    """Whether one motion from a curve at rest, and a relaxation, end lower; not where numbers fail on the way."""
+    """Whether one motion from a curve at rest, followed by a relaxation, ends lower; not if numbers fail on the way."""
     run = Run(start_problem(curve, options), curve, options)
     below = (1.0 - Hops.gain) * run.iterate.energy
     try:
@@ -39,7 +39,7 @@ def by_another_energy(curve: Curve, options: RelaxOptions) -> float:
 
 
 def row(name: str, seeds: int) -> str:
-    """What becomes of one case."""
+    """The result of one case."""
     make, options = CASES[name]
     rested = minimize(make(), options)
     curve = rested.curve

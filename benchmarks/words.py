@@ -1,4 +1,4 @@
-"""The command line of a benchmark: words of one kind, of which its docstring tells."""
+"""The command line of a benchmark: words of one kind, described in its docstring."""
 
 from argparse import ArgumentParser, RawDescriptionHelpFormatter
 from collections.abc import Callable, Sequence
@@ -8,7 +8,7 @@ _Word = TypeVar("_Word")
 
 
 def words(doc: str | None, name: str, default: Sequence[_Word], kind: Callable[[str], _Word]) -> Sequence[_Word]:
-    """Those that are given, or else the default ones."""
+    """The words given, or else the default ones."""
     parser = ArgumentParser(description=doc, formatter_class=RawDescriptionHelpFormatter)
     parser.add_argument(name, nargs="*", type=kind, default=default)
     given: Sequence[_Word] = getattr(parser.parse_args(), name)

@@ -71,7 +71,7 @@ def _compare(options: argparse.Namespace) -> int:
     file = curves.read(options.input, options.format)
     with curves.refusals(file):
         task, wanted = relax_options.task(options, file), relax_options.from_arguments(options)
-        if stages:  # what comes after the last one is not drawn
+        if stages:  # nothing after the last one is drawn
             wanted = replace(wanted, max_iterations=min(wanted.max_iterations, stages[-1]))
         planned = compare(task, names, wanted, options.time_limit, stages)
         options.notes.show()

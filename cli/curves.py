@@ -25,7 +25,7 @@ def add_input(parser: argparse.ArgumentParser, what: str, name: str = "input", n
 
 
 def add_format(parser: argparse.ArgumentParser, suffixes: Iterable[str] = FORMATS) -> None:
-    """Add the option for what suffixes leave open."""
+    """Add the option that decides where suffixes do not."""
     names = [suffix[1:] for suffix in suffixes]
     text = f"format of - and of files without a known suffix: {', '.join(names)} (default for -: txt)"
     parser.add_argument("--format", metavar="F", choices=names, help=text)
@@ -40,7 +40,7 @@ def format_for(path: str, name: str | None) -> Format:
 
 
 def or_format(path: str) -> str:
-    """What else to do about a file's unknown suffix."""
+    """The advice on a file with an unknown suffix."""
     return "" if os.path.isdir(path) else ", others need --format"
 
 
@@ -56,7 +56,7 @@ def read(path: str, name: str | None = None) -> CurveFile:
 
 @contextmanager
 def measured(path: str, name: str | None) -> Iterator[Curve]:
-    """A curve that is not too large to be looked at; errors about it name its file and line."""
+    """A curve that is not too large to be examined; errors about it name its file and line."""
     file = read(path, name)
     with refusals(file):
         if len(file.curve) > MAX_VERTICES:

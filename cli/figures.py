@@ -1,4 +1,4 @@
-"""Figures by matplotlib, where it is installed: comparisons of methods, and curves in space."""
+"""Figures by matplotlib, if it is installed: comparisons of methods, and curves in space."""
 
 import os
 from collections.abc import Iterator, Sequence
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 DPI, COLORS = 100, 128  # of pictures made of pixels
 LINE_HEIGHT = 0.065  # of an axes' height, between names at the ends of lines
 FAINTEST = 0.55  # share of white in the colour of what is farthest away
-PIECES = 120  # of a polygon, which are in front of each other or behind
+PIECES = 120  # of a polygon, drawn in front of or behind each other
 FLAT = 0.2  # depth, in widths of the curve, below which its parts differ less in colour
 OVERLAP = 0.006  # of neighbouring pieces, in widths of the curve: less than a pixel
 _ENDS = {"converged": "", "time_limit": " (time is up)", "iteration_limit": " (not done)", "stalled": " (stuck)"}
@@ -27,7 +27,7 @@ _CELL = 1.9  # inches of a curve's picture
 
 
 def figure_class(instead: str = "") -> "type[Figure]":
-    """Matplotlib's figure, which needs no window; a MobiusFlowError tells where it is missing."""
+    """Matplotlib's figure, which needs no window; a MobiusFlowError if it is missing."""
     backend = os.environ.pop("MPLBACKEND", None)  # for windows, of which there are none here; it may be nonsense
     try:
         from matplotlib.figure import Figure
@@ -41,7 +41,7 @@ def figure_class(instead: str = "") -> "type[Figure]":
 
 
 def save(figure: "Figure", path: Path) -> None:
-    """Write a figure; a .png has a palette, which nobody sees and which makes it a third of the size."""
+    """Write a figure; a .png has a palette, which nobody notices and which makes it a third of the size."""
     figure.savefig(path, dpi=DPI)
     if path.suffix.lower() == ".png":
         from PIL import Image  # which matplotlib needs, too
@@ -81,7 +81,7 @@ def write_figure(path: Path, runs: Sequence[History]) -> None:
 
 
 def _draw(axes: "Axes", number: int, run: History, x: Sequence[float], y: Sequence[float]) -> "Line2D":
-    """A method's line, with dots where it was helped and a larger one where it has converged."""
+    """A method's line, with dots where a fallback took over and a larger one where it has converged."""
     heights = np.where(np.asarray(y) > 0.0, y, np.nan)
     style: dict[str, Any] = {
         "color": f"C{number % 10}",
@@ -91,7 +91,7 @@ def _draw(axes: "Axes", number: int, run: History, x: Sequence[float], y: Sequen
     helped: dict[str, Any] = {"marker": "o", "markersize": 3, "markevery": list(run.fallback)} if run.fallback else {}
     (line,) = axes.plot(x, heights, **style, **helped)
     last = np.flatnonzero(np.isfinite(heights))[-1:]
-    if run.status == "converged" and not y[-1] < 0.0:  # below the least energy of the others there is no end to be seen
+    if run.status == "converged" and not y[-1] < 0.0:  # a line below the others' least energy has no visible end
         axes.plot(np.asarray(x)[last], heights[last], "o", color=style["color"], markersize=6)
     return line
 
@@ -114,12 +114,12 @@ def write_strip(stages: Sequence[int], path: Path, runs: Sequence[History]) -> N
 
 
 def name_lines(axes: "Axes", lines: Sequence["Line2D"], names: Sequence[str]) -> None:
-    """Write names into the right margin, each as high as its line ends, or where the next room is."""
+    """Write names into the right margin, each level with its line's end or in the next free place."""
     ends = [_end(axes, line) for line in lines]
     heights, low = np.empty(len(ends)), -np.inf
     for k in np.argsort(ends, kind="stable"):
         heights[k] = low = max(ends[k], low + LINE_HEIGHT)
-    heights -= max(0.0, heights.max() - 1.0) / 2.0  # what is pushed out at the top is shared with the bottom
+    heights -= max(0.0, heights.max() - 1.0) / 2.0  # overflow at the top is shared with the bottom
     for line, name, end, height in zip(lines, names, ends, heights, strict=True):
         leader = {"arrowstyle": "-", "color": line.get_color(), "linewidth": 0.6, "shrinkB": 0, "relpos": (0, 0.5)}
         style: dict[str, Any] = {"xycoords": "axes fraction", "va": "center", "fontsize": 9, "arrowprops": leader}
@@ -147,7 +147,7 @@ def draw_curve(axes: "Axes", curve: Curve, color: str, width: float) -> None:
     extent = float(np.ptp(points, axis=0).max())
     white = FAINTEST * (depth[-1] - depth)[:, None] / max(np.ptp(depth), FLAT * extent)
     shades = (1.0 - white) * np.array(to_rgb(color)) + white
-    # each piece covers what is behind it by a broader one in white
+    # each piece covers what is behind it by a broader white one
     lines = [line for piece in pieces for line in (piece[:, :2], _longer(piece[:, :2], OVERLAP * extent))]
     colors = np.stack([np.ones_like(shades), shades], axis=1).reshape(-1, 3)
     widths = np.tile([2.4 * width, width], len(pieces))
@@ -175,7 +175,7 @@ def _pieces(curve: Curve, points: FloatArray) -> Iterator[FloatArray]:
 
 
 def _longer(line: FloatArray, length: float) -> FloatArray:
-    """A polyline that goes a little on at its ends, so that no gap is seen to the next."""
+    """A polyline extended a little at both ends, so that no gap to the next is seen."""
     first, last = line[0] - line[1], line[-1] - line[-2]
     begin = line[0] + length * first / max(float(np.linalg.norm(first)), length)
     end = line[-1] + length * last / max(float(np.linalg.norm(last)), length)

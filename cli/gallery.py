@@ -68,7 +68,7 @@ def add_gallery(parser: argparse.ArgumentParser) -> None:
 
 @dataclass(frozen=True)
 class Shown:
-    """A result: its name, where its curve is, its title, and whether its Möbius images are at rest as well."""
+    """A result: its name, its curve's path, its title, and whether its Möbius images are at rest as well."""
 
     name: str
     curve: Path
@@ -107,14 +107,14 @@ def _is_atlas(directory: Path) -> bool:
 
 
 def _found(directory: Path) -> list[Shown]:
-    """What a directory holds; a MobiusFlowError tells where that is nothing."""
+    """The results in a directory; a MobiusFlowError if there are none."""
     return list(_of_atlas(directory) if _is_atlas(directory) else _of_batch(directory))
 
 
 def _of_batch(directory: Path) -> Iterator[Shown]:
     for folder, _, row in sorted(results(directory), key=lambda each: (each[2].name, each[2].start)):
         free = row.status == Status.CONVERGED.value and HOLDING.isdisjoint(json.loads(row.options))
-        name = folder.name.replace("$", r"\$")  # which would begin a formula
+        name = folder.name.replace("$", r"\$")  # a $ would begin a formula
         yield Shown(folder.name, folder / CURVE, f"{name}\n{_energy(row)}", free)
 
 
@@ -139,7 +139,7 @@ def _of_atlas(directory: Path) -> Iterator[Shown]:
 
 
 def _chosen(found: Sequence[Shown], options: argparse.Namespace) -> list[Shown]:
-    """Those that are wanted, whose files are there: pictures take time."""
+    """The results asked for, once all their files are known to exist: pictures take time."""
     by_name = {each.name: each for each in found}
     wanted = [word.strip() for word in options.only.split(",")] if options.only else list(by_name)
     for name in wanted:
@@ -157,7 +157,7 @@ def _write_page(path: str, titles: Sequence[str], pictures: Sequence[Path], look
     outside = MARGIN + (HEAD if head else 0.0)
     width = CELL * columns + 2.0 * MARGIN
     height = (CELL + FOOT) * math.ceil(len(pictures) / columns) + 2.0 * outside
-    red, green, blue = (1.055 * value ** (1.0 / 2.4) - 0.055 for value in LOOKS[look].floor)  # as screens count
+    red, green, blue = (1.055 * value ** (1.0 / 2.4) - 0.055 for value in LOOKS[look].floor)  # sRGB, as screens expect
     figure = figure_class()(figsize=(width, height), facecolor=(red, green, blue))
     ink, faint = _INKS[green > 0.5]
 
@@ -182,7 +182,7 @@ def _write_page(path: str, titles: Sequence[str], pictures: Sequence[Path], look
 
 
 def _faded(image: FloatArray) -> FloatArray:
-    """A picture, of shape (n, n, 4), whose shadows end before it does."""
+    """A picture, of shape (n, n, 4), whose shadows fade out before its edge."""
     n = len(image)
     x = (np.arange(n) + 0.5) / n - 0.5
     inside = np.clip((0.5 - np.hypot(x, x[:, None])) / (0.5 - FADED), 0.0, 1.0)

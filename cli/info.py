@@ -70,7 +70,7 @@ def _info(options: argparse.Namespace) -> int:
     if options.inputs.count(curves.STREAM) > 1:
         raise CurveError("standard input can be read once only; give - once")
     for path in options.inputs:
-        curves.format_for(path, options.format)  # before what takes time
+        curves.format_for(path, options.format)  # before anything that takes time
     found = []
     for path in options.inputs:
         with curves.measured(path, options.format) as curve:
@@ -85,7 +85,7 @@ def _info(options: argparse.Namespace) -> int:
 
 
 def _as_json(path: str, found: Info) -> Mapping[str, object]:
-    """All of it by names that scripts can rely on; null for what is not known."""
+    """All results under names that scripts can rely on; null for unknown values."""
     rest, kind = found.rest, found.type
     return {
         "input": path,

@@ -53,7 +53,7 @@ def add_knot(parser: argparse.ArgumentParser) -> None:
         "to see (default: a closed braid)"
     )
     parser.add_argument("--smooth", action="store_true", help=text)
-    # like --version, it ends the command whatever else is missing
+    # like --version, it ends the command even if something else is missing
     names = "\n".join(knot_names())
     parser.add_argument("--list", action="version", version=names, help="print the names, one per line, and exit")
     parser.set_defaults(run=_run)
@@ -76,7 +76,7 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _write_list(options: argparse.Namespace) -> int:
-    """A file for each knot of a list; those that cannot be drawn are left out, and named in the end."""
+    """A file for each knot of a list; knots that cannot be drawn are left out, and named in the end."""
     if options.smooth:
         raise OptionError("--smooth is for names of the table, and lists have codes; leave it out")
     if not os.path.isdir(options.output):
@@ -90,7 +90,7 @@ def _write_list(options: argparse.Namespace) -> int:
             refused.append(f"{name}: {error}")
             continue
         stem = re.sub(r"[^0-9A-Za-z_+#-]", "_", name)
-        stem = f"{stem}-{number}" if stem.lower() in written else stem  # other names may be the same but for a sign
+        stem = f"{stem}-{number}" if stem.lower() in written else stem  # different names may become the same
         written.add(stem.lower())
         curves.write(os.path.join(options.output, f"{stem}.{suffix}"), curve)
     if refused:

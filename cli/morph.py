@@ -17,7 +17,7 @@ from .streams import emit, one_line
 
 NOT_FOUND = 1
 NAMES = ("A", "B")  # of the curves, on the command line and in sentences
-_ONE_CURVE = ("balance", "grow", "mesh", "edge_lengths", "stability", "escape_saddles")  # what is not for two
+_ONE_CURVE = ("balance", "grow", "mesh", "edge_lengths", "stability", "escape_saddles")  # not for two curves
 _EPILOG = """\
 examples:
   mobius-flow morph a.txt b.txt film.mp4
@@ -71,7 +71,7 @@ def add_pair(parser: argparse.ArgumentParser) -> None:
 
 
 def inputs(options: argparse.Namespace) -> dict[str, str]:
-    """The files that are read, by what they are on the command line."""
+    """The files that are read, by their names on the command line."""
     return {"A": options.a, "B": options.b, **{f"--avoid {path}": path for path in options.avoid}}
 
 

@@ -16,11 +16,11 @@ from ..core.curve.io import CurveFile
 from ..core.errors import OptionError, choice
 from ..core.threads import THREADS
 
-_OFFERED = "offered"  # names of the options, in a namespace
+_OFFERED = "offered"  # the options' names, in a namespace
 
 
 def add_to(parser: argparse.ArgumentParser, *, without: Collection[str] = ()) -> None:
-    """Add the options to a parser, but for those that a subcommand has in a way of its own."""
+    """Add the options to a parser, except those that a subcommand declares in its own way."""
     group = parser.add_argument_group("relaxation")
     offered = [option for option in declared(RelaxOptions) if option.name not in without]
     for option in offered:
@@ -40,7 +40,7 @@ def from_arguments(arguments: argparse.Namespace) -> RelaxOptions:
 
 
 def flags(values: Mapping[str, object]) -> list[str]:
-    """The words of the command line for options without terms, by their names, in plain values."""
+    """The command-line words for options without terms, given by name in plain values."""
     words: list[str] = []
     for option in declared(RelaxOptions):
         if value := values.get(option.name):
@@ -49,7 +49,7 @@ def flags(values: Mapping[str, object]) -> list[str]:
 
 
 def add_task(parser: argparse.ArgumentParser) -> None:
-    """Add what a curve is to respect."""
+    """Add the constraints on a curve: pins and obstacles."""
     group = parser.add_argument_group("pins and obstacles")
     text = "OBJ file of triangles or polylines, in the curve's units, not to be touched; may be given several times"
     group.add_argument("--avoid", metavar="MESH.obj", action="append", default=[], help=text)
@@ -63,19 +63,19 @@ def add_task(parser: argparse.ArgumentParser) -> None:
 
 
 def task(arguments: argparse.Namespace, file: CurveFile) -> Task:
-    """The curve of a file with its obstacles and pins, which a file's own numbers stand for."""
+    """The curve of a file with its obstacles and pins; pins are given in the file's own numbering."""
     pins = tuple(file.index_of(pin) for text in arguments.pins for pin in pinned(text))
     obstacles = tuple(map(read_obstacle, arguments.avoid))
     return Task(curve=file.curve, obstacles=obstacles, pins=pins, pin_tangents=arguments.pin_tangents)
 
 
 def pinned(text: str) -> tuple[int, ...]:
-    """Indices of vertices that are counted from 1, with commas between."""
+    """Indices of vertices that are counted from 1, separated by commas."""
     return tuple(number - 1 for number in listed(text, 1, "{} is not a vertex number; count from 1, such as 12,40"))
 
 
 def listed(text: str, least: int, refusal: str) -> list[int]:
-    """Whole numbers with commas between; raises OptionError, which names the first word that is none."""
+    """Whole numbers separated by commas; raises OptionError, which names the first word that is not one."""
     words = [word.strip() for word in text.split(",")]
     for word in words:
         if not (word.isascii() and word.isdecimal() and least <= int(word[:20])):
@@ -84,18 +84,18 @@ def listed(text: str, least: int, refusal: str) -> list[int]:
 
 
 def inputs(arguments: argparse.Namespace) -> dict[str, str]:
-    """The files that are read, by what they are on the command line."""
+    """The files that are read, by their names on the command line."""
     return {"IN": arguments.input, **{f"--avoid {path}": path for path in arguments.avoid}}
 
 
 def _value(option: Option, given: Mapping[str, Any]) -> Any:
-    """What is given, with words turned into the items of a tuple."""
+    """The value given, with words turned into the items of a tuple."""
     value = given[option.name]
     return tuple(item for word in value for item in option.read(word)) if option.repeated else value
 
 
 def flag(option: Option) -> str:
-    """What the option is called on the command line."""
+    """The option's name on the command line."""
     return f"--{option.flag or option.name.replace('_', '-')}"
 
 
@@ -112,7 +112,7 @@ def _declaration(option: Option) -> dict[str, Any]:
 
 
 def look(word: str, *others: str) -> str:
-    """The name of a look, or another word that stands in its place."""
+    """The name of a look, or one of some other words allowed in its place."""
     names = [*(name.lower() for name in LOOKS), *others]
     if word not in names:
         raise argparse.ArgumentTypeError(f"{word!r:.40} is unknown; {choice(word, names)}")
@@ -120,7 +120,7 @@ def look(word: str, *others: str) -> str:
 
 
 def provenance(options: Mapping[str, object], name: str, sha256: str | None) -> dict[str, object]:
-    """Where a result comes from: enough to make it again, bit for bit with the same libraries and BLAS threads."""
+    """The provenance of a result: enough to make it again, bit for bit with the same libraries and BLAS threads."""
     return {"options": options, "input": {"name": name, "sha256": sha256}, **environment()}
 
 

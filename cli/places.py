@@ -1,4 +1,4 @@
-"""What is written, by suffix, and where: checked before hours of work are put into it, or else kept elsewhere.
+"""What is written, by suffix, and where: checked before hours of work are spent on it, or else kept elsewhere.
 
 Curve files are `core`'s; keyframed and rendered scenes need Blender's module.
 """
@@ -34,7 +34,7 @@ Writer = Callable[[str, Result, Sequence[Iterate], bool, Playing], object]
 def check_places(inputs: Mapping[str, str], outputs: Mapping[str, str | None]) -> None:
     """Raise a MobiusFlowError unless all outputs can be written and are files of their own.
 
-    Keys are what paths are called on the command line; outputs that are None are not wanted.
+    Keys are the paths' names on the command line; outputs that are None are not wanted.
     """
     wanted = {name: path for name, path in outputs.items() if path is not None}
     for path in wanted.values():
@@ -47,7 +47,7 @@ def check_places(inputs: Mapping[str, str], outputs: Mapping[str, str | None]) -
 
 
 def check_place(path: str) -> None:
-    """Raise a MobiusFlowError unless a file can be there."""
+    """Raise a MobiusFlowError unless a file can be created there."""
     if path in (STREAM, DEVICE) and (sys.stdout is None or not sys.stdout.writable()):
         raise MobiusFlowError(f"{OUTPUT} is closed; name a file")
     if path == STREAM:
@@ -71,13 +71,13 @@ def check_place(path: str) -> None:
 
 
 def foreign(path: Path, command: str) -> MobiusFlowError:
-    """What to say of what is in the way of a command's files, which replaces nothing but its own."""
+    """The error about something in the way of a command's files: a command replaces nothing but its own."""
     why = f"was not written by mobius-flow {command}, or has been changed since"
     return MobiusFlowError(f"{path}: {why}; move it, or name another directory")
 
 
 def is_file(path: str) -> bool:
-    """Whether a path is one of a file, or of nothing yet, rather than of a stream or device, where one may wait."""
+    """Whether a path is a file's, or free for one, rather than a stream's or device's, where one may wait."""
     try:
         found = status_of(path)
     except (OSError, ValueError):
@@ -86,7 +86,7 @@ def is_file(path: str) -> bool:
 
 
 def _identity(path: str, stream: int) -> Identity | None:
-    """What two names of one file have in common; None for terminals and the like, which may be named twice."""
+    """An identity that two names of one file share; None for terminals and the like, which may be named twice."""
     try:
         found = os.fstat(stream) if path == STREAM else status_of(path)
         if found is None:
@@ -94,14 +94,14 @@ def _identity(path: str, stream: int) -> Identity | None:
             parent = target.parent.stat()
             return parent.st_dev, parent.st_ino, os.path.normcase(target.name)
     except (OSError, ValueError):
-        return None  # a missing input, which has its own sentence
+        return None  # a missing input, which is reported elsewhere
     regular = stat.S_ISREG(found.st_mode) or stat.S_ISFIFO(found.st_mode)
     return (found.st_dev, found.st_ino) if regular else None
 
 
 @contextmanager
 def writing(path: str) -> Iterator[Path]:
-    """Give a temporary path whose file takes its place in the end, whole; an OutputError says why it cannot."""
+    """Give a temporary path whose file replaces the real one in the end, whole; an OutputError says why it cannot."""
     try:
         with atomic_write(path) as temporary:
             yield temporary
@@ -110,9 +110,9 @@ def writing(path: str) -> Iterator[Path]:
 
 
 def kept(path: str, write: Write, rescue: Write | None = None, name: str | None = None) -> list[str]:
-    """Write a result; where that fails keep it in a temporary directory, and return the sentences that say so.
+    """Write a result; if that fails, keep it in a temporary directory, and return the sentences that say so.
 
-    It is kept there where it is interrupted, too; the sentence is then that of the KeyboardInterrupt, which goes on.
+    If interrupted, it is kept there too; the sentence is then the message of the KeyboardInterrupt, which is re-raised.
     ``rescue``, ``name``: another way to write it, and a file name, for that directory: a curve instead of a film.
     """
     keep = partial(_elsewhere, rescue or write, os.path.basename(name or path))
@@ -130,7 +130,7 @@ def kept(path: str, write: Write, rescue: Write | None = None, name: str | None 
 
 
 def _elsewhere(write: Write, name: str, reason: str) -> str:
-    """Write to a temporary directory; return the reason for that, and the place if it could be done."""
+    """Write to a temporary directory; return the reason for that, and the place if it worked."""
     try:
         place = Path(tempfile.mkdtemp(prefix="mobius-flow-"), name)
     except OSError:
@@ -149,7 +149,7 @@ class Output:
 
     write: Writer  # the last arguments are whether progress may be shown, and how a scene looks and is played
     admit: Callable[[Curve], object]  # raises a MobiusFlowError if it cannot hold a curve
-    is_scene: bool = False  # which needs Blender's module, and shows the whole run
+    is_scene: bool = False  # shows the whole run, and needs Blender's module
     is_played: bool = False  # as a motion
 
 
@@ -170,7 +170,7 @@ def _write_movie(path: str, iterates: Sequence[Iterate], shown: bool, playing: P
         export.write_movie(path, iterates, show_frames if shown else None, playing)
     except KeyboardInterrupt:
         if shown:
-            print(file=sys.stderr)  # the line with the progress has no end yet
+            print(file=sys.stderr)  # the line with the progress has not been ended
         raise
 
 

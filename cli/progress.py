@@ -12,7 +12,7 @@ from ..core.driver import TimeLeft
 
 @contextmanager
 def bar(shown: bool, **options: Any) -> Iterator[Any]:
-    """A bar of tqdm that vanishes in the end; None if it is not to be shown, or tqdm is not installed."""
+    """A tqdm bar that vanishes in the end; None if it is not wanted, or tqdm is not installed."""
     try:
         from tqdm.auto import tqdm
     except ImportError:
@@ -25,7 +25,7 @@ def bar(shown: bool, **options: Any) -> Iterator[Any]:
 
 
 class Progress:
-    """Lets a bar run from the first gradient norm down to the tolerance, on a logarithmic scale."""
+    """Moves a bar from the first gradient norm down to the tolerance, on a logarithmic scale."""
 
     def __init__(self, options: RelaxOptions) -> None:
         self._left = TimeLeft(options)
@@ -48,7 +48,7 @@ class Progress:
 
 @contextmanager
 def progress(options: RelaxOptions | None = None, shown: bool = True) -> Iterator[Callable[[Iterate], None]]:
-    """Give what draws a bar when it is called with the iterates of a run, such as `minimize` does with a callback."""
+    """Give a callback that draws a bar from the iterates of a run, as `minimize` passes them."""
     drawn = Progress(RelaxOptions() if options is None else options)
     with bar(shown, total=100, bar_format="{l_bar}{bar}| {elapsed} {postfix}") as made:
         yield lambda iterate: drawn.update(made, iterate)
@@ -56,7 +56,7 @@ def progress(options: RelaxOptions | None = None, shown: bool = True) -> Iterato
 
 @contextmanager
 def leg_progress(shown: bool) -> Iterator[Callable[[int, int], None] | None]:
-    """Give what shows the numbers of legs that are checked and of all, or None where nothing can be shown."""
+    """Give a function that shows how many of all legs are checked, or None where nothing can be shown."""
     with bar(shown, unit=" legs") as legs:
 
         def show(done: int, total: int) -> None:
@@ -67,5 +67,5 @@ def leg_progress(shown: bool) -> Iterator[Callable[[int, int], None] | None]:
 
 
 def show_frames(done: int, total: int) -> None:
-    """Show on one line how far a film is."""
+    """Show a film's progress on one line."""
     print(f"\rrendering frame {done} of {total}", end="\n" if done == total else "", file=sys.stderr, flush=True)

@@ -57,7 +57,7 @@ def add_relax(parser: argparse.ArgumentParser) -> None:
 
 
 def add_outputs(parser: argparse.ArgumentParser) -> None:
-    """Add what is written: see `write_results`."""
+    """Add the outputs: see `write_results`."""
     text = f"what to write, by suffix: {', '.join(OUTPUTS)}, or - for standard output"
     parser.add_argument("output", metavar="OUT", help=text)
     as_device = {curves.STREAM: curves.DEVICE}  # standard output, for reports and trajectories
@@ -94,7 +94,7 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def places(options: argparse.Namespace) -> dict[str, str | None]:
-    """The files that are written, by what they are on the command line."""
+    """The files that are written, by their names on the command line."""
     return {"OUT": options.output, "--report": options.report, "--trajectory": options.trajectory}
 
 
@@ -131,7 +131,7 @@ class _Job(NamedTuple):
     slow: bool = False  # may take long, or never end: it can be interrupted, and comes last
 
     def begin(self, interrupted: bool, path: str) -> None:
-        """Write; what takes long is not begun after an interrupt."""
+        """Write; long tasks are not begun after an interrupt."""
         if self.slow and interrupted:
             raise KeyboardInterrupt
         if self.slow:
@@ -142,8 +142,8 @@ class _Job(NamedTuple):
 def write_results(
     options: argparse.Namespace, output: Output, result: Result, iterates: list[Iterate], origin: Mapping[str, object]
 ) -> None:
-    """Write every requested output, and say on standard error how the run ended, unless it is to be quiet."""
-    # write report, trajectory and curve or scene: the others are written all the same where one cannot be
+    """Write every requested output, and report on standard error how the run ended, unless quiet."""
+    # report, trajectory, and curve or scene: if one cannot be written, the others still are
     jobs = _jobs(options, output, result, iterates, origin)
     failures: list[str] = []
     interrupted = False
@@ -195,7 +195,7 @@ def _write_report(result: Result, origin: Mapping[str, object], path: str) -> No
 
 
 def _summary(result: Result, falls: bool) -> str:
-    """How a run ended; energies of a motion that does not fall are those of its ends, which it did not choose."""
+    """How a run ended; energies of a motion that does not fall are those at its ends, which it did not choose."""
     certified = "certified free of contact" if result.certified else "NOT certified"
     error = f" ± {result.final_energy_error * result.final_energy:.1g}" if result.final_energy_error else ""
     energy = f"Möbius energy {result.final_energy:.9g}{error}"
@@ -209,10 +209,10 @@ def _summary(result: Result, falls: bool) -> str:
 
 
 def _phases(result: Result) -> str:
-    """How the time went to meshes, if there were several, and not very many."""
+    """How the time was spent on meshes, if there were several, but not very many."""
     if len(result.phases) > NAMED:
         return f" on {len(result.phases)} meshes"
     each = [f"{phase.iterations} with {phase.vertices} vertices, {phase.seconds:.1f} s" for phase in result.phases]
-    if result.last.strand_moves and result.phases[0].iterations == 0:  # the mesh as it was given saw nothing else
+    if result.last.strand_moves and result.phases[0].iterations == 0:  # the given mesh saw nothing else
         each[0] = f"strand moves, {result.phases[0].seconds:.1f} s"
     return f" ({'; '.join(each)})" if len(each) > 1 else ""

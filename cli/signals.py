@@ -19,7 +19,7 @@ _Result = TypeVar("_Result")
 
 INTERRUPTED = 130
 _NUMBERS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
-_UNSET = (signal.SIG_DFL, signal.default_int_handler)  # what is neither ignored, as by nohup, nor someone else's
+_UNSET = (signal.SIG_DFL, signal.default_int_handler)  # neither ignored, as by nohup, nor someone else's
 _TOGETHER = 1.0  # seconds in which signals count as one: a terminal and a parent process often send one each
 _LEAVE, _RAISE, _HOLD = "leave", "raise", "hold"
 
@@ -37,7 +37,7 @@ def hold() -> None:
 
 
 def allow() -> None:
-    """Let signals interrupt again, first of all one that has been waiting."""
+    """Let signals interrupt again, starting with one that has been waiting."""
     _State.mode = _RAISE
     if _State.waiting:
         _interrupt()
@@ -70,7 +70,7 @@ def raised() -> Iterator[None]:
 
 
 def leave_at_once() -> None:
-    """Let signals end the process with one sentence, for as long as there is nothing to lose, such as in imports."""
+    """Let signals end the process with one sentence as long as there is nothing to lose, such as during imports."""
     _State.mode = _LEAVE
     _install()
 
@@ -85,7 +85,7 @@ def _receive(_number: int, _frame: FrameType | None) -> None:
     if time.monotonic() - _State.raised < _TOGETHER:
         return
     if _State.mode == _LEAVE:
-        _State.mode = _HOLD  # one sentence, also where another signal comes now
+        _State.mode = _HOLD  # one sentence, even if another signal comes now
         with contextlib.suppress(OSError):
             os.write(2, b"mobius-flow: interrupted\n")
         os._exit(INTERRUPTED)

@@ -1,4 +1,4 @@
-"""Standard streams that are closed, full, gone, or of an encoding that lacks our letters."""
+"""Standard streams that are closed, full, gone, or in an encoding that lacks our letters."""
 
 import contextlib
 import io
@@ -13,7 +13,7 @@ class OutputStreamError(Exception):
 
 
 def mend() -> None:
-    """Make the process's streams fit to be written to: whatever a terminal lacks is shown with backslashes.
+    """Make the process's streams safe to write to: whatever a terminal lacks is shown with backslashes.
 
     A closed standard output refuses what is written, a closed or full standard error swallows it.
     """
@@ -34,7 +34,7 @@ def emit(text: str) -> None:
     try:
         print(text, flush=True)
     except OSError as error:
-        with contextlib.suppress(OSError, ValueError):  # what is left goes nowhere, so that Python's exit is quiet
+        with contextlib.suppress(OSError, ValueError):  # the rest goes nowhere, so that Python's exit is quiet
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         if isinstance(error, BrokenPipeError):
             raise
@@ -43,7 +43,7 @@ def emit(text: str) -> None:
 
 
 def one_line(text: str) -> str:
-    """A sentence in which line ends in names, and what no terminal can show, are written with backslashes."""
+    """A sentence in which line ends in names, and what no terminal can show, appear as backslash escapes."""
     return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
 
 
@@ -56,7 +56,7 @@ class _ForgivingFile(io.FileIO):
 
 
 class Notes(logging.Handler):
-    """Collects the library's warnings while it is entered: a refusal is one line, without what was noted before it."""
+    """Collects the library's warnings while active: a refusal is one line, without earlier notes."""
 
     def __init__(self) -> None:
         super().__init__(logging.WARNING)
@@ -77,7 +77,7 @@ class Notes(logging.Handler):
             self.show()
 
     def show(self) -> None:
-        """Print what has been collected, and from now on what is logged at once."""
+        """Print what has been collected; from now on, print what is logged at once."""
         self._shown = True
         for line in self._lines:
             print(line, file=sys.stderr)

@@ -18,7 +18,7 @@ import tomllib
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-# Blender's platforms, and what the names of their wheels have in them
+# Blender's platforms, and the parts of wheels' names that identify them
 PLATFORMS = {
     "linux-x64": "manylinux2014_x86_64",
     "windows-x64": "win_amd64",
@@ -26,7 +26,7 @@ PLATFORMS = {
     "macos-arm64": "macosx_12_0_arm64",
     "macos-x64": "macosx_10_14_x86_64",
 }
-DEBIAN = "-cp314-"  # the Python of Debian's Blender; Blender's own has none of it
+DEBIAN = "-cp314-"  # the Python of Debian's Blender, which Blender's own builds do not have
 ANY = "-none-any"  # wheels without compiled code
 PINS = ROOT / "tools" / "wheels.sha256"
 WHEELS = {
@@ -64,7 +64,7 @@ def build(platform: str, output: Path, wheels: Path, debian: bool = False) -> Pa
 
 
 def fetch_wheels(platform: str, wheels: Path, debian: bool = False) -> list[Path]:
-    """Fetch the wheels for all Pythons of a platform, unless they are there already, bit by bit as pinned."""
+    """Fetch the wheels for all Pythons of a platform, unless they are there already, exactly as pinned."""
     names = [name for name in WHEELS if PLATFORMS[platform] in name or ANY in name]
     paths = [wheels / name for name in names if debian or DEBIAN not in name]
     for path in paths:
@@ -76,12 +76,12 @@ def fetch_wheels(platform: str, wheels: Path, debian: bool = False) -> list[Path
 
 
 def _as_pinned(path: Path) -> bool:
-    """Whether a wheel is there and has the hash that belongs to its name."""
+    """Whether a wheel is there and has the hash listed for its name."""
     return path.is_file() and hashlib.sha256(path.read_bytes()).hexdigest() == WHEELS[path.name]
 
 
 def _download(path: Path) -> None:
-    """Let pip download a wheel by its name and its hash."""
+    """Let pip download a wheel by its name and hash."""
     distribution, version, python, _, platforms = path.stem.split("-")
     wanted = ["--only-binary", ":all:", "--no-deps"]
     if ANY not in path.name:
@@ -97,13 +97,13 @@ def _download(path: Path) -> None:
 
 
 def _stage(stage: Path, platform: str, wheels: list[Path]) -> None:
-    """Copy what git knows of, so that nothing private or left over gets into the zip, and add the wheels."""
+    """Copy the files that git tracks, so that nothing private or left over gets into the zip, and add the wheels."""
     listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True, text=True).stdout
     for name in filter(None, listed.split("\0")):
         if (ROOT / name).is_file():
             (stage / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(ROOT / name, stage / name)
-    shutil.copy2(ROOT / "tools" / "extension.md", stage / "README.md")  # the project's own is about more than is there
+    shutil.copy2(ROOT / "tools" / "extension.md", stage / "README.md")  # the project's own covers more
     (stage / "wheels").mkdir()
     for wheel in wheels:
         shutil.copy2(wheel, stage / "wheels")
@@ -115,7 +115,7 @@ def _stage(stage: Path, platform: str, wheels: list[Path]) -> None:
 
 
 def _tools() -> list[list[str]]:
-    """Commands of Blender's extension tool: of the module that is installed, and of the program that is on the path."""
+    """Commands of Blender's extension tool: of the installed module, and of the program on the path."""
     spec = importlib.util.find_spec("bpy")
     places = spec.submodule_search_locations if spec else None
     scripts = [path for place in places or () for path in Path(place).glob("*/scripts/addons_core/bl_pkg/cli/*_ext.py")]

@@ -21,10 +21,10 @@ from math import gcd, isfinite, prod
 from operator import index, mul
 
 DECISIONS, PER_LEG = 3000, 200  # exact ones, of a file and for each of its legs: files made to take days need more
-ROUNDING_UNITS = 16  # distance from its edge, in units of the last place, of a vertex that is inserted or removed
-FINER = 64  # bits of a place on an edge, by which the unit is finer than coordinates
+ROUNDING_UNITS = 16  # distance from its edge, in units of the last place, of a vertex inserted or removed
+FINER = 64  # extra bits in the unit for a place on an edge, compared with coordinates
 DAMAGE = (OSError, EOFError, zipfile.BadZipFile, zlib.error, struct.error, RuntimeError, ValueError, OverflowError)
-HEADERS = (KeyError, MemoryError, RecursionError, SyntaxError, TypeError, ValueError)  # what wrong ones may raise
+HEADERS = (KeyError, MemoryError, RecursionError, SyntaxError, TypeError, ValueError)  # what bad headers may raise
 CODES = {"f8": "d", "b1": "?", "i1": "b", "u1": "B", "i2": "h", "u2": "H", "i4": "i", "u4": "I", "i8": "q", "u8": "Q"}
 WHOLE = "bBhHiIqQ"
 
@@ -61,7 +61,7 @@ def changes(p):
 
 
 def between(p, i, j, m):
-    """A positive multiple of the polynomial, with times 0 and 1 where this one has i/m and j/m."""
+    """A positive multiple of the polynomial, with times 0 and 1 mapped to this one's i/m and j/m."""
     result = [0] * len(p)
     for k, c in enumerate(p):
         term = [c]
@@ -94,7 +94,7 @@ def common_divisor(p, q):
 
 
 def roots(p):
-    """The roots 0 < t < 1 of a polynomial that is not zero: (p, i, j, m) with i/m < t < j/m, or t = i/m = j/m."""
+    """The roots 0 < t < 1 of a non-zero polynomial: (p, i, j, m) with i/m < t < j/m, or t = i/m = j/m."""
     work = [(0, 1, 1)] if changes(p) else []
     if work:
         p = divided(p, common_divisor(p, [k * c for k, c in enumerate(p)][1:]))[0]  # which has no multiple roots
@@ -110,7 +110,7 @@ def roots(p):
 
 
 def sign(q, time):
-    """A number that has the sign of a polynomial at a root, or at a time that is known."""
+    """A number that has the sign of a polynomial at a root, or at a known time."""
     p, i, j, m = time
     while changes(here := between(q, i, j, m)):
         if changes(between(common_divisor(p, q), i, j, m)) % 2:  # the root is one of both
@@ -142,7 +142,7 @@ def meet(*ends):
     e, f = list(map(minus, x1, x0)), list(map(minus, y1, y0))
     normal = cross(e, f, times, minus)
     volume = [sum(terms) for terms in zip(*map(times, normal, a), strict=True)]
-    # each end beside the other edge: its distances from that one's ends, and the area that they span
+    # for each end and the other edge: its distances from that edge's ends, and the area that they span
     beside = [(p, q, cross(g, p, times, minus)) for p, q, g in ((a, b, f), (c, d, f), (a, c, e), (b, d, e))]
     if any(volume):
         moments = chain([at for at in (START, END) if not sign(volume, at)], roots(volume))
@@ -153,12 +153,12 @@ def meet(*ends):
 
 
 def touch(time, normal, beside):
-    """Whether edges that are in one plane at a time have a common point then."""
+    """Whether edges that lie in one plane at a time have a common point then."""
     for axis, component in enumerate(normal):
         if sign(component, time):  # seen along the axis, each edge has the ends of the other on both sides of it
             sides = [sign(area[axis], time) for _, _, area in beside]
             return sides[0] * sides[1] <= 0 and sides[2] * sides[3] <= 0
-    return any(  # they are parallel, or of no length: an end of one is on the other
+    return any(  # parallel, or of no length: an end of one is on the other
         not any(sign(each, time) for each in area)
         and all(sign(p, time) * sign(q, time) <= 0 for p, q in zip(first, last, strict=True))
         for first, last, area in beside
@@ -166,9 +166,9 @@ def touch(time, normal, beside):
 
 
 def meet_triangle(x0, x1, *corners):
-    """Whether an edge meets a triangle, whose corners stand still; all are motions.
+    """Whether an edge meets a triangle whose corners are at rest; all are motions.
 
-    If they are apart at first, then at first contact the edge meets one of the triangle's, or an end of it is inside.
+    If they are apart at first, then at first contact the edge meets one of the triangle's, or has an end inside it.
     """
     if any(meet(x0, x1, p, q) for p, q in combinations(corners, 2)):
         return True
@@ -181,15 +181,15 @@ def pierces(p, q, a, b, c):
     before, after = dot(normal, minus(p, a)), dot(normal, minus(q, a))
     if not any(normal) or before * after > 0:
         return False
-    along = normal if before == after else minus(q, p)  # in which direction the corners go round the segment
+    along = normal if before == after else minus(q, p)  # the direction around which the corners turn
     turns = [dot(along, cross(minus(u, p), minus(v, p))) for u, v in ((a, b), (b, c), (c, a))]
     return min(turns) > 0 or max(turns) < 0
 
 
 def apart(first, second, halvings=4):
-    """Whether planes, each for a part of the time, separate an edge from another one or a triangle: motions of corners.
+    """Whether fixed planes, each for a part of the time, separate an edge from another or a triangle, by their corners.
 
-    The distance from a plane that stands still is linear in time.
+    The distance from a fixed plane is linear in time.
     """
     for normal in normals(*([plus(*motion) for motion in corners] for corners in (first, second))):
         above, below = ([[dot(normal, motion[t]) for motion in each] for t in (0, 1)] for each in (first, second))
@@ -211,10 +211,10 @@ def normals(first, second):
 
 
 class Mesh:
-    """Edges of polygons, and pairs of a vertex, an edge of no length, and an edge that must not meet besides.
+    """Edges of polygons, and further pairs that must not meet: a vertex, as an edge of no length, and an edge.
 
-    Where neighbouring edges fold together, the edge after them is met too, but for triangles, of which no vertex must
-    meet the opposite edge, and for open polygons, of which no end must meet the edge after its neighbour.
+    Where neighbouring edges fold together, the edge after them is met too, except in triangles, where no vertex may
+    meet the opposite edge, and in open polygons, where no end may meet the edge after its neighbour.
     """
 
     def __init__(self, sizes, closed):
@@ -230,7 +230,7 @@ class Mesh:
                 self.corners += [((v[0],) * 2, (v[1], v[:3][-1])), ((v[-1],) * 2, (v[-2], v[-3:][0]))]
 
     def straightened(self, points, kept, least):
-        """The points, those that are not kept being moved onto the edges between those that are.
+        """The points, after those not kept have moved onto the edges between those that are.
 
         ``least``: bits of the last place of the smallest doubles, which have fewer digits.
         """
@@ -251,7 +251,7 @@ class Mesh:
 
 
 def kept_vertices(first, second, closed):
-    """Indices in both polygons of the vertices that both have, in the same order."""
+    """Indices, in both polygons, of the vertices that they share, in the same order."""
     places = {p: k for k, p in enumerate(second)}
     here = [k for k, p in enumerate(first) if p in places]
     there = [places[first[k]] for k in here]
@@ -281,7 +281,7 @@ def overlapping(first, second):
 
 
 class Check:
-    """A file, and how much of it is checked."""
+    """A file, and how much of it has been checked."""
 
     def __init__(self, path):
         self.legs, self.decisions, self.archive = 0, 0, zipfile.ZipFile(path)
@@ -289,7 +289,7 @@ class Check:
         need(len(set(self.names)) == len(self.names), "two arrays have one name")
 
     def array(self, name, kinds, dimension):
-        """Shape and entries, in C order, of an array whose type is one of some kinds, by their codes."""
+        """Shape and entries, in C order, of an array of one of the allowed types, given by their codes."""
         need(f"{name}.npy" in self.names, f"{name} is missing")
         info = self.archive.getinfo(f"{name}.npy")
         need(info.compress_type in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED), f"{name} is not packed as by NumPy")
@@ -315,14 +315,14 @@ class Check:
         return shape, values
 
     def numbered(self, kind, *parts):
-        """The arrays of a kind, which must be numbered from 000 on, each with all its parts: names without these."""
+        """The names, without parts, of the arrays of a kind, numbered from 000 on; each must have all its parts."""
         found = {name for name in self.names if name.startswith(f"{kind}_")}
         names = [f"{kind}_{k:03d}" for k in range(len(found) // len(parts))]
         need(found == {f"{a}{b}.npy" for a, b in product(names, parts)}, f"{kind}_000, {kind}_001, ... are incomplete")
         return names
 
     def obstacle(self, name):
-        """Its triangles; a segment is one without area."""
+        """Its triangles; a segment becomes a triangle without area."""
         (_, dimension), coordinates = self.array(f"{name}_vertices", "d", 2)
         (count, corners), faces = self.array(f"{name}_faces", WHOLE, 2)
         need(count and corners in (2, 3) and dimension == 3, f"{name} is not of shapes (k, 3) and (f, 2 or 3)")
@@ -331,7 +331,7 @@ class Check:
         return [[points[face[k]] for k in (0, 1, -1)] for face in rows(faces, corners)]
 
     def stage(self, name):
-        """Its mesh, and its frames, which are lists of vertices."""
+        """Its mesh and its frames, which are lists of vertices."""
         sizes_name, flags = (name.replace("stage", f"component_{kind}") for kind in ("sizes", "closed"))
         _, sizes = self.array(sizes_name, WHOLE, 1)
         closed = self.array(flags, "?", 1)[1] if f"{flags}.npy" in self.names else (True,) * len(sizes)
@@ -341,7 +341,7 @@ class Check:
         return Mesh(sizes, closed), [rows(frame, m) for frame in rows(values, m * vertices)]
 
     def run(self):
-        """Check it, and yield what is checked next; raises a ValueError that says what is wrong."""
+        """Check it, and yield what is checked next; a ValueError says what is wrong."""
         triangles = [each for name in self.numbered("obstacle", "_faces", "_vertices") for each in self.obstacle(name)]
         (_, size), values = self.array("pins", "d", 2) if "pins.npy" in self.names else ((0, 0), ())
         pins = rows(values, size)
@@ -374,7 +374,7 @@ class Check:
         return [(*(a << self.bits - b.bit_length() for a, b in p), *[0] * (3 - len(p))) for p in ratios]
 
     def change(self, old, mesh, new, next_mesh):
-        """From a stage to the next: both polygons can be moved to that of the vertices both have, with no contact."""
+        """Check a change of stage: both polygons must reach the one of their common vertices without contact."""
         need(mesh.closed == next_mesh.closed, "the stage before has other components")
         pairs = zip(mesh.parts, next_mesh.parts, mesh.closed, strict=True)
         kept = [kept_vertices([old[k] for k in a], [new[k] for k in b], closed) for a, b, closed in pairs]
@@ -409,11 +409,11 @@ def rows(values, size):
 
 
 def check(path):
-    """Whether a file is accepted, and a sentence."""
+    """Whether a file is accepted, and a sentence that says so."""
     place = ""
     try:
         made = Check(path)
-        for place in made.run():  # noqa: B007 (told where it is rejected)
+        for place in made.run():  # noqa: B007 (reported if it is rejected)
             pass
     except DAMAGE as reason:
         return False, f"rejected: {place}{reason}"

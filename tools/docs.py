@@ -28,7 +28,7 @@ _REGION = re.compile(r"(?<=<!-- generated: )(\w+)( -->\n)(.*?)(?=<!-- end -->)",
 
 
 def energies() -> str:
-    """The energies that can be chosen."""
+    """The available energies."""
     rows = [
         (f"`{name}`", each.description, f"{each.scale_exponent:g}", "yes" if hasattr(each, "hessian") else "no")
         for name, each in ENERGIES.items()
@@ -37,7 +37,7 @@ def energies() -> str:
 
 
 def metrics() -> str:
-    """The metrics, each with its inner product, which is its class's first sentence."""
+    """The metrics, each with its inner product, taken from the first sentence of its class."""
     rows = [
         (f"`{name}`", _typeset(each.description), _first_line(type(each)).removesuffix("."), f"{each.most_vertices:,}")
         for name, each in METRICS.items()
@@ -74,7 +74,7 @@ def formats() -> str:
 
 
 def rooms() -> str:
-    """The import map of the house."""
+    """The import map of the rooms."""
     return f"```{{graphviz}}\n{drawn(import_map(ROOT))}\n```\n"
 
 
@@ -84,7 +84,7 @@ RENDERERS: Mapping[str, Callable[[], str]] = MappingProxyType(
 
 
 def documents() -> list[Path]:
-    """Where such parts may stand."""
+    """The documents that may have generated parts."""
     return [ROOT / "README.md", *sorted(ROOT.glob("docs/**/*.md"))]
 
 
@@ -104,7 +104,7 @@ def _table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:
 
 
 def _typeset(text: str) -> str:
-    """Let spaces and metrics be formulas."""
+    """Typeset spaces and metrics as formulas."""
     return re.sub(r"W\^\{.*?\}|J_C", r"$\g<0>$", text)
 
 
@@ -113,7 +113,7 @@ def _first_line(owner: type) -> str:
 
 
 def _sections() -> Iterator[tuple[str, list[str]]]:
-    """The anchor of each section about methods, as GitHub and MyST make it, and their names or patterns."""
+    """The anchor of each section about methods, as GitHub and MyST make it, and the names or patterns it covers."""
     for heading in re.findall(r"^## (.+: `.+)$", (ROOT / "docs/methods.md").read_text(encoding="utf-8"), re.MULTILINE):
         anchor = re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-")
         yield anchor, re.findall(r"`(\S+)`", heading)

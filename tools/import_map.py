@@ -1,7 +1,7 @@
-"""Which room of the house imports which, read off the sources.
+"""Which room of the house imports which, read from the sources.
 
-A room is a package directly below `core`, `addon` or `cli`, with all that is in it, or a module that stands there
-alone. The files of curves are a room of their own: they hold codes of knots, which are made of curves. Imports inside
+A room is a package directly below `core`, `addon` or `cli`, with everything in it, or a module there on its
+own. The files of curves are a separate room: they hold codes of knots, which are made of curves. Imports inside
 functions and those for type checkers count like the others: whoever reads a file has to know what it names.
 
     python tools/import_map.py         the map as Graphviz draws it
@@ -19,7 +19,7 @@ INNER = ("core.curve.io",)  # rooms within rooms
 
 
 class _AtRunTime(ast.NodeTransformer):
-    """Takes out what only type checkers read."""
+    """Removes imports that only type checkers see."""
 
     def visit_If(self, node: ast.If) -> ast.AST | list[ast.stmt]:
         return node.orelse if isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING" else node
@@ -28,7 +28,7 @@ class _AtRunTime(ast.NodeTransformer):
 def imports(path: Path, root: Path = ROOT, *, types: bool = True) -> Iterator[str]:
     """The dotted names that a module imports; those of the package start with its directory, as in ``core.curve``.
 
-    ``types`` tells whether those for type checkers count.
+    ``types``: whether imports for type checkers count.
     """
     package = path.relative_to(root).parts[:-1]
     tree = ast.parse(path.read_text(encoding="utf-8"))
@@ -42,7 +42,7 @@ def imports(path: Path, root: Path = ROOT, *, types: bool = True) -> Iterator[st
 
 
 def room(name: str, root: Path = ROOT) -> str | None:
-    """The room of a dotted name; None outside of the house, ``core`` for what `core` itself gives."""
+    """The room of a dotted name; None outside the house, ``core`` for names that `core` itself provides."""
     for inner in INNER:
         if f"{name}.".startswith(f"{inner}."):
             return inner
@@ -56,7 +56,7 @@ def room(name: str, root: Path = ROOT) -> str | None:
 
 
 def import_map(root: Path = ROOT) -> Map:
-    """The rooms, and those that each of them imports, itself left out."""
+    """The rooms, and the other rooms that each of them imports."""
     found: dict[str, set[str]] = defaultdict(set)
     for top in ("core", "addon", "cli"):
         for path in sorted((root / top).rglob("*.py")):
@@ -78,7 +78,7 @@ def reachable(rooms: Map, start: str) -> set[str]:
 
 
 def drawn(rooms: Map) -> str:
-    """A Graphviz graph, importers above; arrows that follow from others are left out. Raises CycleError."""
+    """A Graphviz graph, importers above; implied arrows are left out. Raises CycleError."""
     order = list(TopologicalSorter({name: sorted(rooms[name]) for name in rooms}).static_order())[::-1]
     beyond = {name: reachable(rooms, name) for name in rooms}
     lines = ["digraph rooms {", '    node [shape=plain, fontname="sans-serif", fontsize=11];']

@@ -36,7 +36,7 @@ NEAR = 0.25  # in the picture, of the curve's radius
 
 
 def main() -> int:
-    """Make the shapes that the command line names, by default all, and write them with those that are there."""
+    """Make the shapes named on the command line, by default all, and write them along with those already there."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="*", metavar="NAME", help="of the table (default: all)")
     chosen = parser.parse_args().names or list(KNOTS)
@@ -53,7 +53,7 @@ def main() -> int:
 
 
 def rounded(given: FourierCurve) -> FourierCurve:
-    """A shape as it is stored: coefficients are multiples of the quantum."""
+    """A shape as stored: coefficients are multiples of the quantum."""
     return FourierCurve(tuple(QUANTUM * np.round(c / QUANTUM) for c in given.coefficients))
 
 
@@ -85,7 +85,7 @@ def relaxed(name: str) -> Curve:
 
 
 def facing(curve: Curve) -> Curve:
-    """A curve turned so that few of its strands hide others seen from +z, wide along x, and scaled to half-width 1."""
+    """A curve turned so that few strands are hidden as seen from +z, wide along x, and scaled to half-width 1."""
     points = curve.vertices - curve.vertices.mean(axis=0)
     turned = min((points @ view for view in _views()), key=_clutter)
     if _clutter(flat := points @ _principal(points)) < FAVOUR * _clutter(turned):
@@ -96,21 +96,21 @@ def facing(curve: Curve) -> Curve:
 
 
 def _principal(points: FloatArray) -> FloatArray:
-    """Rotation to look along the axis in which a curve is flattest, which shows symmetries; (3, 3)."""
+    """Rotation to look along the curve's flattest axis, which shows symmetries; (3, 3)."""
     x, y = (_signed(axis, points) for axis in np.linalg.svd(points, full_matrices=False)[2][:2])
     return np.stack([x, y, np.cross(x, y)], axis=1)
 
 
 def _wide(points: FloatArray) -> FloatArray:
-    """Rotation of the plane that turns the axis in which a picture is widest to +x; (2, 2)."""
+    """Rotation in the plane that turns the widest axis of a picture to +x; (2, 2)."""
     x, y = _signed(np.linalg.eigh(points.T @ points)[1][:, -1], points)
     return np.array([[x, -y], [y, x]])
 
 
 def _signed(axis: FloatArray, points: FloatArray) -> FloatArray:
-    """An axis with the sign for which the first point that is more than half-way out along it is on its positive side.
+    """An axis with the sign that puts the first point more than half-way out along it on its positive side.
 
-    Eigenvectors have the sign that rounding gives them, which differs from processor to processor.
+    The sign of eigenvectors depends on rounding, which differs from processor to processor.
     """
     along = points @ axis
     return np.asarray(axis * np.sign(along[np.argmax(np.abs(along) > 0.5 * np.abs(along).max())]))
@@ -136,7 +136,7 @@ def _clutter(points: FloatArray) -> int:
 
 
 def shape(name: str) -> FourierCurve:
-    """Fit a knot's shape with as few modes as stay close to it and are proved to keep its type."""
+    """Fit a knot's shape with the fewest modes that stay close to it and are proved to keep its type."""
     curve = facing(relaxed(name))
     for tolerance in TOLERANCES:
         fitted = rounded(FourierCurve(tuple(_fitted(part, tolerance) for part in curve.components)))

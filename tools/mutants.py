@@ -21,7 +21,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 
 class Mutant(NamedTuple):
-    """One change, and the test that must notice."""
+    """One change, and the test that must notice it."""
 
     file: str
     name: str
@@ -31,7 +31,7 @@ class Mutant(NamedTuple):
 
 
 def mutants() -> Iterator[Mutant]:
-    """Read them all; they are sorted by the files that they change."""
+    """Read them all, sorted by the files that they change."""
     for path in sorted((ROOT / "tools/mutations").glob("*.toml")):
         for file, changes in tomllib.loads(path.read_text(encoding="utf-8")).items():
             yield from (Mutant(file, **change) for change in changes)
@@ -52,7 +52,7 @@ def main(names: Sequence[str]) -> int:
 
 
 def killed(copy: Path, mutant: Mutant) -> bool:
-    """Whether the mutant's test fails with it."""
+    """Whether the mutant's test fails with the change."""
     file = copy / mutant.file
     original = file.read_text(encoding="utf-8")
     if original.count(mutant.old) != 1:
@@ -65,7 +65,7 @@ def killed(copy: Path, mutant: Mutant) -> bool:
 
 
 def passes(copy: Path, tests: Sequence[str]) -> bool:
-    """Whether tests pass in the copy, which goes before an installed package."""
+    """Whether tests pass in the copy, which takes precedence over an installed package."""
     environment = {**os.environ, "PYTHONPATH": str(copy.parent), "PYTHONDONTWRITEBYTECODE": "1"}
     command = [sys.executable, "-m", "pytest", "--slow", "-q", "-x", "-p", "no:cacheprovider", *tests]
     return subprocess.run(command, cwd=copy, env=environment, capture_output=True, check=False).returncode == 0

@@ -56,7 +56,7 @@ def icosphere(radius: float = 1.5, halvings: int = 3) -> Obstacle:
 
 
 def cells(shape: IntArray, size: float, name: str) -> Obstacle:
-    """The surface of a union of cubes, which a mask of shape (i, j, k) tells, around the origin."""
+    """The surface of a union of cubes around the origin, given by a mask of shape (i, j, k)."""
     squares = []
     for axis, side in ((axis, side) for axis in range(3) for side in (-1, 1)):
         bare = shape & ~np.roll(np.pad(shape, 1), -side, axis)[1:-1, 1:-1, 1:-1]
@@ -78,14 +78,14 @@ def box() -> Obstacle:
 
 
 def soup(triangles: FloatArray, name: str) -> Obstacle:
-    """Triangles, shape (f, 3, 3), that share equal vertices, but for those that have a vertex twice."""
+    """Triangles, shape (f, 3, 3), with equal vertices merged, without those that have a vertex twice."""
     points, places = np.unique(triangles.reshape(-1, 3).round(DIGITS) + 0.0, axis=0, return_inverse=True)
     faces = places.reshape(-1, 3)
     return Obstacle(points, faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)], name)
 
 
 def write(obstacle: Obstacle) -> None:
-    """Write one as Wavefront OBJ."""
+    """Write a surface as Wavefront OBJ."""
     vertices = ["v " + " ".join(f"{x:.{DIGITS}g}" for x in vertex) for vertex in obstacle.vertices.tolist()]
     faces = ["f " + " ".join(str(k + 1) for k in face) for face in obstacle.faces.tolist()]
     TARGET.mkdir(exist_ok=True)

@@ -1,4 +1,4 @@
-"""Odd command lines by kind, for `odd_commands`: each makes its files in a room of its own."""
+"""Odd command lines by kind, for `odd_commands`: each makes its files in its own directory."""
 
 import json
 import os
@@ -29,7 +29,7 @@ from odd_files import (
 
 @dataclass
 class Case:
-    """One command line and what is around it.
+    """One command line and its surroundings.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def kind(make: Kind) -> Kind:
 
 @kind
 def bad_files(rng: random.Random, room: Path) -> Case:
-    """Curve files with damage."""
+    """Damaged curve files."""
     suffix = rng.choice(TEXTS)
     path = room / f"in{suffix}"
     path.write_bytes(mutated(rng, text_of(trefoil(), suffix).encode()))
@@ -75,7 +75,7 @@ def bad_files(rng: random.Random, room: Path) -> Case:
 
 @kind
 def garbage(rng: random.Random, room: Path) -> Case:
-    """Files of bytes, of one line over and over, or of none."""
+    """Files of random bytes, of one line over and over, or of nothing."""
     path = room / f"in{rng.choice(TEXTS)}"
     n = rng.choice([0, 1, 100, 100_000])
     data = rng.choice(
@@ -102,7 +102,7 @@ def geometry(rng: random.Random, room: Path) -> Case:
 
 @kind
 def trajectories(rng: random.Random, room: Path) -> Case:
-    """Archives with damage."""
+    """Damaged archives."""
     path = room / "t.npz"
     data = trajectory(room)
     if rng.random() < 0.2:
@@ -136,14 +136,14 @@ def bad_options(rng: random.Random, room: Path) -> Case:
 
 @kind
 def bad_words(rng: random.Random, room: Path) -> Case:
-    """Arguments thrown together."""
+    """Arguments in random combinations."""
     words = [rng.choice([*COMMANDS, *VALUES, "relaks", "--version", "-h", "--vers"]) for _ in range(rng.randint(0, 4))]
     return Case(words)
 
 
 @kind
 def knots(rng: random.Random, room: Path) -> Case:
-    """Names of knots that are long, huge or none."""
+    """Knot names that are long, huge or invalid."""
     names = ["3_1", "T(3,5)", "T(999999,999999)", "braid()", "braid(1,2,3)", "m" * 2000, "3_1#" * 200, "0_1", *VALUES]
     extra = rng.choice([[], ["--vertices", rng.choice(["3", "100", "1000000000", "-5"])]])
     return Case(["knot", rng.choice(names), rng.choice(["k.txt", "k.obj", "-", "k", "no/k.txt"]), *extra])
@@ -151,7 +151,7 @@ def knots(rng: random.Random, room: Path) -> Case:
 
 @kind
 def streams(rng: random.Random, room: Path) -> Case:
-    """Standard streams that are closed, full, gone, endless or of a poor encoding."""
+    """Standard streams that are closed, full, gone, endless or in a limited encoding."""
     good = good_file(room)
     words = rng.choice(
         [
@@ -235,7 +235,7 @@ def no_room(rng: random.Random, room: Path) -> Case:
 
 @kind
 def interrupted(rng: random.Random, room: Path) -> Case:
-    """Signals at odd moments, also several at once."""
+    """Signals at odd moments, sometimes several at once."""
     good = good_file(room)
     words = rng.choice(
         [

@@ -88,7 +88,7 @@ def run(case: Case, room: Path, patience: float = PATIENCE) -> Outcome:
 
 
 def _prepare(case: Case) -> None:
-    """In the new process: limits, signals as in a terminal, and streams that are closed."""
+    """In the new process: set limits, signals as in a terminal, and closed streams."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_DFL)
     for limit, value in (LIMITS | case.limits).items():
@@ -145,7 +145,7 @@ def complaints(case: Case, room: Path, before: dict[str, bytes], outcome: Outcom
     if (case.signals or case.limits) and b"Traceback" in outcome.err and os.fsencode(f"{ROOT}/") not in outcome.err:
         return []  # Python itself did not start
     lines = outcome.err.replace(b"\0", b"").decode("utf-8", "replace").splitlines()  # it may be UTF-16
-    several = "compare" in case.words and outcome.status == 130  # the methods that are done
+    several = "compare" in case.words and outcome.status == 130  # the methods that have finished
     if case.err == "pipe" and outcome.status in (2, 130) and not several and len(lines) != 1:
         found.append(f"{len(lines)} lines instead of a sentence")
     return found + _losses(case, room, before, outcome)
@@ -172,7 +172,7 @@ def _losses(case: Case, room: Path, before: dict[str, bytes], outcome: Outcome) 
 
 
 def _whole(path: Path) -> bool:
-    """Whether an output is there to its end."""
+    """Whether an output is complete."""
     if zipfile.is_zipfile(path):
         return True
     data = path.read_bytes()
@@ -182,7 +182,7 @@ def _whole(path: Path) -> bool:
 def judged(
     number: int, seed: int, only: str | None = None, patience: float = PATIENCE
 ) -> tuple[str, Case, Outcome, list[str]]:
-    """Run the command of a number: its kind, what it was, what it did, and what is wrong with that."""
+    """Run the command with a number: return its kind, what it was, what it did, and what is wrong with that."""
     rng = random.Random(f"{seed} {number}")
     kind = only or list(KINDS)[number % len(KINDS)]
     with tempfile.TemporaryDirectory(prefix="odd-") as place:
@@ -195,7 +195,7 @@ def judged(
 
 
 def main() -> int:
-    """Run the commands; exit status 1 if one of them is taken badly."""
+    """Run the commands; exit status 1 if the program handles one of them badly."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=1000)
     parser.add_argument("--first", type=int, default=0, help="number of the first command")

@@ -1,4 +1,4 @@
-"""What odd command lines are made of: curve files and archives, damaged bytes, odd values."""
+"""Ingredients of odd command lines: curve files and archives, damaged bytes, odd values."""
 
 import argparse
 import io
@@ -35,7 +35,7 @@ def text_of(points: list[tuple[float, ...]], suffix: str) -> str:
 
 
 def good_file(room: Path, suffix: str = ".txt", n: int = 24) -> str:
-    """Write a curve file with nothing wrong and give its path."""
+    """Write a valid curve file and return its path."""
     path = room / f"in{suffix}"
     path.write_text(text_of(trefoil(n), suffix))
     return str(path)
@@ -89,7 +89,7 @@ COMMANDS = ("relax", "energy", "info", "knot", "compare", "verify", "methods")
 
 
 def options_of(command: str) -> list[str]:
-    """What the help of a command lists."""
+    """The entries listed in a command's help."""
     parser = argparse.ArgumentParser()
     add_to(parser, command)
     return re.findall(r"^  (?:-\w, )?(--[\w-]+)", parser.format_help(), re.MULTILINE)

@@ -34,7 +34,7 @@ def versions(root: Path) -> dict[str, str]:
 
 
 def objections(root: Path) -> list[str]:
-    """Why this checkout is no release; empty if it is one."""
+    """Why this checkout is not a release; empty if it is one."""
     found = versions(root)
     wrong = []
     if len(set(found.values())) > 1:

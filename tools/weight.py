@@ -49,7 +49,7 @@ def _function_lengths(tree: ast.AST) -> Iterator[int]:
 
 
 def _constants(tree: ast.Module) -> int:
-    """Names in capitals that a module gives numbers, or tuples of them."""
+    """Names in capitals to which a module assigns numbers, or tuples of them."""
     found = 0
     for node in tree.body:
         if isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None and _is_numeric(node.value):
@@ -77,7 +77,7 @@ def _import_map(root: Path) -> dict[str, frozenset[str]]:
 
 
 def _at(revision: str, then: Callable[[Path], dict[str, object]]) -> dict[str, object]:
-    """What is found in a revision, unpacked for the moment."""
+    """The figures of a revision, unpacked for the moment."""
     with tempfile.TemporaryDirectory() as folder:
         archive = subprocess.run(["git", "archive", revision], cwd=ROOT, check=True, capture_output=True).stdout
         subprocess.run(["tar", "-x", "-C", folder], input=archive, check=True)

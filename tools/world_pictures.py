@@ -26,7 +26,7 @@ def fitted(curve: Curve, radius: float) -> Curve:
 
 
 def draw(axes: Any, curve: Curve, obstacles: Sequence[Obstacle], pins: Sequence[int], frame: FloatArray) -> None:
-    """One curve, the pins as dots, the obstacles transparent; the points of a frame are in sight."""
+    """One curve, with pins as dots and obstacles transparent; the view shows the points of a frame."""
     for obstacle in obstacles:
         axes.add_collection3d(Poly3DCollection(obstacle.corners, facecolor=(0.4, 0.5, 0.7, 0.06), edgecolor="none"))
     for number, (points, closed) in enumerate(zip(curve.components, curve.mesh.closed, strict=True)):

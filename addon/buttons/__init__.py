@@ -1,1 +1,1 @@
-"""What can be pressed: the operators, which check, act, and say what happened."""
+"""The operators behind the buttons: they check, act, and report what happened."""

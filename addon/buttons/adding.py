@@ -1,4 +1,4 @@
-"""The operators that add knots by name, woven or smooth, and what all that add knots have in common."""
+"""Operators that add knots by name, woven or smooth, and the base of all operators that add knots."""
 
 import re
 
@@ -21,12 +21,12 @@ OBJECT_MODE = Condition("Go back to Object Mode first", lambda context: context.
 _MAX_TURNS = 100  # of a torus knot, or strands of a braid: 50,000 points and a second
 _SOLID = {"MESH", "CURVE", "CURVES", "SURFACE", "META", "FONT", "VOLUME", "POINTCLOUD", "GREASEPENCIL"}
 _MARGIN = 0.25  # of its width, between a new knot and what is beside it
-_RAISED = 1.0, 1.0, 2.0  # what is woven lies so flat that a tube would be thin
+_RAISED = 1.0, 1.0, 2.0  # woven knots lie so flat that their tubes would be thin
 _MAX_NUMBER = 1e30  # Blender computes with squares and products of such numbers
 
 
 def check_length(label: Message, value: float) -> None:
-    """Raise an OptionError for what Blender lets through but is no number."""
+    """Raise an OptionError for values that Blender lets through although they are not numbers."""
     if not value <= _MAX_NUMBER:
         sentence = "{label} is {value:g}; it must be a number up to {most:g}"
         raise OptionError(Message(sentence, label=label, value=value, most=_MAX_NUMBER))
@@ -55,7 +55,7 @@ class AddsKnot(Button, AddObjectHelper):
     )
 
     def make(self) -> tuple[str, Curve]:
-        """Make the curve, in any size and place, and name it; raises a MobiusFlowError for what cannot be made."""
+        """Make the curve, in any size and place, and name it; raises a MobiusFlowError if it cannot be made."""
         raise NotImplementedError
 
     def act(self, context: bpy.types.Context) -> None:
@@ -159,7 +159,7 @@ class CURVE_OT_mobius_flow_add_knot(AddsKnot, bpy.types.Operator):
 
 
 def named_knot(name: str) -> tuple[str, Curve]:
-    """A knot as it is woven, and its name; raises an OptionError if a torus knot or braid would freeze the window."""
+    """A woven knot and its name; raises an OptionError if a torus knot or braid would freeze the window."""
     numbers = map(int, re.findall(r"\d+", "".join(re.findall(r"\([^)]*\)", name))))
     if max(numbers, default=0) > _MAX_TURNS:
         sentence = "{name} has a number beyond {most}, which is too much for a window; use smaller ones"
@@ -176,7 +176,7 @@ class CURVE_OT_mobius_flow_pick_knot(AddsKnot, bpy.types.Operator):
     """Add a knot or link of the table, smooth, lying flat, with evenly spread strands; Relax lowers its energy"""
 
     bl_label = "Search Knot"
-    bl_property = "choice"  # what the list of the popup is about
+    bl_property = "choice"  # the property that the popup's list sets
 
     knot: StringProperty(
         name="Knot",
@@ -203,7 +203,7 @@ class CURVE_OT_mobius_flow_pick_knot(AddsKnot, bpy.types.Operator):
     )
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask which one, unless it was given."""
+        """Ask which knot, unless one was given."""
         if self.properties.is_property_set("knot"):
             return super().invoke(context, event)
         context.window_manager.invoke_search_popup(self)
@@ -212,7 +212,7 @@ class CURVE_OT_mobius_flow_pick_knot(AddsKnot, bpy.types.Operator):
     def make(self) -> tuple[str, Curve]:
         if self.properties.is_property_set("choice"):
             self.knot = labels()[self.choice]
-            self.properties.property_unset("choice")  # from now on the name is what counts
+            self.properties.property_unset("choice")  # from now on only the name counts
         name = ("m" if self.mirror else "") + name_of(self.knot)
         return name, knots.smooth_knot(name, self.vertices or None)
 

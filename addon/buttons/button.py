@@ -1,4 +1,4 @@
-"""The base of operators: tooltips and scripts get the reason why one cannot be used, and nothing has changed then."""
+"""The base of operators: if one cannot be used, tooltips and scripts get the reason, and nothing changes."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -19,7 +19,7 @@ class Button:
 
     bl_options = {"REGISTER", "UNDO"}
     needs: Sequence[Requirement] = ()
-    needs_at_last: Sequence[Requirement] = ()  # those that take too long for every redraw
+    needs_at_last: Sequence[Requirement] = ()  # requirements that take too long to check on every redraw
     poll_message_set: Callable[[str], None]
     report: Callable[[set[str], str], None]
 
@@ -46,7 +46,7 @@ class Button:
             self.act(context)
         except MobiusFlowError as error:
             return self.fail(error)
-        redraw_views(context.window_manager)  # changed keys alone do not cause it
+        redraw_views(context.window_manager)  # changed keys alone do not cause a redraw
         return {"FINISHED"}
 
     def fail(self, error: MobiusFlowError) -> set[str]:
@@ -55,12 +55,12 @@ class Button:
         return {"CANCELLED"}
 
     def act(self, context: bpy.types.Context) -> None:
-        """Do what it is for; raises MobiusFlowError before anything has changed."""
+        """Do the operator's work; raises MobiusFlowError before anything has changed."""
         raise NotImplementedError
 
 
 def button(label: str, *needs: Requirement, base: type[Button] = Button, **more: Any) -> Callable[[_Act], type]:
-    """Make an operator without settings of a function: its name is the identifier, its docstring the tooltip."""
+    """Turn a function into an operator without settings: its name is the identifier, its docstring the tooltip."""
 
     def operator(act: _Act) -> type:
         body = {"__doc__": act.__doc__, "__module__": act.__module__, "bl_label": label, "needs": needs, "act": act}

@@ -1,4 +1,4 @@
-"""The operators that lift drawings into knots, and that add knots of families: a few numbers make each."""
+"""Operators that lift drawings into knots, and operators that add knots from families given by a few numbers."""
 
 import bpy
 import numpy as np
@@ -107,7 +107,7 @@ class CURVE_OT_mobius_flow_draw_knot(DrawsKnot, bpy.types.Operator):
 
 
 def described(curve: Curve, crossings: int) -> tuple[str, Message]:
-    """A name for a drawn knot, and what can be said of it."""
+    """A name for a drawn knot, and a description of it."""
     found = knot_type(curve)
     said = Message("{count} crossings", count=crossings) if crossings != 1 else Message("1 crossing")
     if found.proved and found.names == ("0_1",):

@@ -18,7 +18,7 @@ from ..scripting import Relaxation
 from ..translations import iface_, rpt_
 from .button import Button, button
 
-_INTERVAL = 0.2  # seconds between looks at whether a render is over
+_INTERVAL = 0.2  # seconds between checks whether a render is over
 _STAGE = Condition(
     "The scene has no stage; press Set Up Stage first", lambda context: not staging.own_stage(context.scene)
 )
@@ -95,7 +95,7 @@ class CURVE_OT_mobius_flow_render_film(_OfFilm, Button, bpy.types.Operator):
         self._report_film()
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        """Render it while Blender stays usable; ask first if there is such a file."""
+        """Render the film while Blender stays usable; ask first if the file already exists."""
         if bpy.app.background or context.window is None:
             return self.execute(context)
         try:

@@ -21,7 +21,7 @@ class _Mending(Button):
 
     @classmethod
     def concerned(cls, context: bpy.types.Context) -> Iterable[bpy.types.Object]:
-        """The objects that need it, examined one by one, as mending one may mend others."""
+        """The objects that need mending, examined one by one, because mending one may mend others."""
         return needing(selected_curves(context), Remedy(cls.bl_idname))
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -96,7 +96,7 @@ class CURVE_OT_mobius_flow_to_curve(_Mending, bpy.types.Operator):
         return convertible(context) if context.mode == "OBJECT" and not selected_curves(context) else ()
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Convert them; all curves are selected afterwards, in place of what they were made of."""
+        """Convert them; all curves are selected afterwards, in place of their sources."""
         before = set(context.view_layer.objects)
         super().execute(context)
         for obj in set(context.view_layer.objects) - before:

@@ -1,4 +1,4 @@
-"""What can be made of relaxed curves: meshes of their tubes, and smooth curves."""
+"""Operators that turn relaxed curves into meshes of their tubes, or into smooth curves."""
 
 from collections.abc import Sequence
 
@@ -42,7 +42,7 @@ class _Output(Button):
     needs = (READABLE,)
 
     def act(self, context: bpy.types.Context) -> None:
-        """Make an object of each, all of them before any is shown; ``link`` is the end of all in the world."""
+        """Make an object from each, all of them before any is shown; ``link`` is the end of all in the world."""
         objects = selected_curves(context)
         recorded = [self.read(obj) for obj in objects]
         link = in_world(objects, recorded, [each.points[-1] for each in recorded])
@@ -95,12 +95,12 @@ FBX does with NLA Strips and All Actions off, one frame later"""
         super().act(context)
 
     def read(self, obj: bpy.types.Object) -> Recorded:
-        """Read the shapes of a curve, more of them where it turns far from key to key."""
+        """Read the shapes of a curve, with more of them where it turns far from key to key."""
         recorded = Recorded.of(obj)
         return recorded.at(places_between(recorded.points, recorded.mesh))
 
     def make(self, objects: _Objects, recorded: _Records, link: Curve) -> list[bpy.types.Object]:
-        """Make the meshes, with the numbers that colors may show as attributes."""
+        """Make the meshes; the numbers that colors may show become attributes."""
         values, radii, first, made = vertex_values(link), self._radii(objects, recorded, link), 0, []
         colours = None if self.color == _PLAIN else COLOURINGS[self.color](values[self.color])
         for obj, each, own in zip(objects, recorded, radii, strict=True):
@@ -165,7 +165,7 @@ are. USD and Alembic keep the control points, glTF and FBX what is drawn (glTF n
     }
 
     def make(self, objects: _Objects, recorded: _Records, link: Curve) -> list[bpy.types.Object]:
-        """Make the splines of all objects together: what one comes near to may be in another."""
+        """Make the splines of all objects together: the strand that one comes near may belong to another."""
         points = max(self.points, FEWEST) if self.points else None
         made, fit = smooth_objects(objects, link, points, self.kind)
         self._report(objects, fit)

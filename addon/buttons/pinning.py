@@ -1,4 +1,4 @@
-"""What else keeps curves in their place: points that are pinned, ends that are closed, and what curves avoid."""
+"""Operators that hold curves in place: they pin points, close ends, and let curves avoid objects."""
 
 import bpy
 
@@ -29,7 +29,7 @@ _NEARBY = Condition("Nothing near the selected curves is left to avoid", lambda 
 
 
 class _Pinning(Button):
-    """What operators that pin points have in common; ``points`` are those of a spline that are meant."""
+    """The base of operators that pin points; ``points`` selects the points of a spline to pin."""
 
     def act(self, context: bpy.types.Context) -> None:
         """Pin the points, if all of them can be."""

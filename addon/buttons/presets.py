@@ -1,4 +1,4 @@
-"""Presets: settings under a name, in files of Blender's own kind; some come with the extension."""
+"""Presets: named settings, in files of Blender's own kind; some come with the extension."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -28,7 +28,7 @@ class CURVE_OT_mobius_flow_preset(bpy.types.Operator):
     filepath: StringProperty(subtype="FILE_PATH", options={"SKIP_SAVE", "HIDDEN"})
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Run the preset; how a motion is kept is changed only by presets that say so."""
+        """Run the preset; only presets that say so change how a motion is kept."""
         if not Path(self.filepath).is_file():
             sentence = "The preset {name} no longer exists; choose another one"
             self.report({"ERROR"}, rpt_(sentence, name=Path(self.filepath).name))
@@ -49,7 +49,7 @@ class CURVE_OT_mobius_flow_preset_add(AddPresetBase, bpy.types.Operator):
     preset_values = tuple(f"settings.{name}" for name in SETTINGS)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Add or remove; those of the extension stay, wherever it is installed."""
+        """Add or remove a preset; the extension's own presets stay, wherever it is installed."""
         shipped = [bpy.path.display_name(path.name, title_case=False) for path in SHIPPED.glob("*.py")]
         if self.remove_name and self.name in shipped:
             sentence = "The preset {name} belongs to Möbius Flow; only your own can be removed"
@@ -68,13 +68,13 @@ class VIEW3D_PT_mobius_flow_presets(PresetPanel, bpy.types.Panel):
     preset_add_operator = CURVE_OT_mobius_flow_preset_add.bl_idname
 
     def path_menu(self, places: Sequence[str], operator: str, **more: Any) -> None:
-        """List the presets; those of the extension also where Blender (4.2.0) could not be told of their place."""
+        """List the presets, the extension's own too where Blender (4.2.0) could not be told where they are."""
         ours = [] if str(SHIPPED) in places else [str(SHIPPED)]
         PresetPanel.path_menu(self, [*ours, *places], operator, **more)
 
 
 def register() -> None:
-    """Tell Blender where the presets of the extension are; 4.2.0 cannot be told, see the panel."""
+    """Tell Blender where the extension's presets are; 4.2.0 cannot be told, see the panel."""
     if hasattr(bpy.utils, "register_preset_path"):
         bpy.utils.register_preset_path(str(ROOM))
 

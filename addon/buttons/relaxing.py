@@ -33,7 +33,7 @@ _PICKED = Condition(
     "Pick a mesh as the container first", lambda context: context.scene.mobius_flow_surroundings.container is None
 )
 _INSIDE = Condition("Put the curves inside the container first", lambda context: container(context) is None)
-_FULL = 20.0  # times its length, which no curve reaches in a container that it is to fill
+_FULL = 20.0  # times its length: more than any curve reaches in a container that it is to fill
 _SEVERAL = Condition(
     "Select a curve, and then the one that it is to become",
     lambda context: context.active_object not in selected_curves(context) or len(selected_curves(context)) < 2,
@@ -41,9 +41,9 @@ _SEVERAL = Condition(
 
 
 class Relaxing(Listening, Button):
-    """What all operators that relax have in common: the whole job in one call, or a live run in a window."""
+    """The base of all operators that relax: the whole job in one call, or a live run in a window."""
 
-    # For scripts; what is not given comes from the scene's settings, and nothing is remembered from run to run.
+    # For scripts; settings that are not given come from the scene, and nothing is remembered from run to run.
     __annotations__ = {
         **settings({"SKIP_SAVE", "HIDDEN"}),
         "sample_splines": BoolProperty(
@@ -136,7 +136,7 @@ keys go on from the end of their animation"""
         return BAKED.of(selected_curves(bpy.context)) is None
 
     def values(self, context: bpy.types.Context) -> dict[str, Any]:
-        """Those of Relax, but that lengths stay unless another size is asked for: pins are to stay where they are."""
+        """The settings of Relax, but lengths stay unless another size is asked for: pins are to stay where they are."""
         values = super().values(context)
         return values | ({"keep_size": "LENGTH"} if values["keep_size"] == "AUTO" else {})
 
@@ -148,7 +148,7 @@ class CURVE_OT_mobius_flow_pack(Relaxing, bpy.types.Operator):
     needs = (RELAXABLE, _PICKED, _INSIDE)
 
     def values(self, context: bpy.types.Context) -> dict[str, Any]:
-        """Those of Relax, but that curves grow, and avoid the container in any case."""
+        """The settings of Relax, but curves grow, and always avoid the container."""
         values = super().values(context)
         if not self.properties.is_property_set("grow"):
             values["grow"] = _FULL
@@ -215,14 +215,14 @@ class CURVE_OT_mobius_flow_leave_saddle(Relaxing, bpy.types.Operator):
         return super().values(context) | {"escape_saddles": True}
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Do the whole job, if there is anything to leave."""
+        """Do the whole job, if there is a saddle to leave."""
         return {"CANCELLED"} if self._at_minimum(context) else super().execute(context)
 
     def begin(self, context: bpy.types.Context) -> set[str]:
         return {"CANCELLED"} if self._at_minimum(context) else super().begin(context)
 
     def _at_minimum(self, context: bpy.types.Context) -> bool:
-        """Whether there is no way down, which is reported; other errors are left to the relaxation."""
+        """Whether the curves rest at a minimum, which is reported; other errors are left to the relaxation."""
         with suppress(MobiusFlowError):
             rest = _rest(context, self.values(context))
             if rest.index == 0:

@@ -1,4 +1,4 @@
-"""The buttons for a run that is going on, has been cancelled, or got stuck, and the question before one starts."""
+"""Buttons for a run that is in progress, cancelled or stuck, and the question asked before one starts."""
 
 import time
 
@@ -17,7 +17,7 @@ from ..live.run import Run, State
 from ..translations import iface_
 from .button import Button, button
 
-_PATIENCE = 0.005  # seconds between looks at whether the keys are ready
+_PATIENCE = 0.005  # seconds between checks whether the keys are ready
 
 
 def _has_no_trouble(context: bpy.types.Context) -> bool:

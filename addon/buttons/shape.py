@@ -1,4 +1,4 @@
-"""What curves look like: their size while they move, how they lie, and the tubes around them."""
+"""Operators for how curves look: their size while they move, how they lie, and the tubes around them."""
 
 import bpy
 from bpy.props import EnumProperty
@@ -66,7 +66,7 @@ def _report_turn(operator: Button, unproved: int) -> None:
 
 
 def _report(operator: Button, what: Message, unproved: int) -> None:
-    """Say what was done, and whether the animation is proved still."""
+    """Report what was done, and whether the animation is still proved."""
     if unproved:
         one, several = (
             "{done}; 1 motion between keys is NOT proved free of contact",
@@ -87,6 +87,6 @@ def fit_tube(_operator: Button, context: bpy.types.Context) -> None:
 def color_components(_operator: Button, context: bpy.types.Context) -> None:
     """Give each spline of the selected objects a material of its own, in slots after those that are there"""
     first = 0
-    for obj in selected_curves(context):  # components are numbered through all objects
+    for obj in selected_curves(context):  # components are numbered across all objects
         colour_components(obj.data, first)
         first += len(obj.data.splines)

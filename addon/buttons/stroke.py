@@ -1,4 +1,4 @@
-"""Strokes of the toolbar's tool, which become knots; a click on a crossing swaps over and under there."""
+"""Strokes of the toolbar's tool, which become knots; clicking a crossing swaps over and under there."""
 
 import contextlib
 import threading
@@ -25,12 +25,12 @@ from .adding import OBJECT_MODE
 from .drawing import DrawsKnot, described
 
 _PLANE = "mobius_flow_plane"  # custom property of drawn curves: origin and axes of the plane, in their coordinates
-_NEAR = 15.0  # pixels, at the usual scale, from a crossing to a click that means it
+_NEAR = 15.0  # pixels, at the usual scale: a click this near a crossing means it
 _STEP = 4.0  # pixels from one point of a stroke to the next
 _SHORTEST = 60.0  # pixels
-_LOOK = 0.1  # seconds between looks at what the stroke is so far
-_NAMED = 16  # crossings of the largest knots that are named meanwhile
-_PASSES = 6  # of averages that take the hand's trembling out of a stroke
+_LOOK = 0.1  # seconds between checks of what the stroke is so far
+_NAMED = 16  # most crossings of a knot that is named while it is drawn
+_PASSES = 6  # averaging passes that take the hand's trembling out of a stroke
 _VIEW = Condition("Draw in a 3D view", lambda context: getattr(context, "region_data", None) is None)
 
 
@@ -85,7 +85,7 @@ class CURVE_OT_mobius_flow_stroke(DrawsKnot, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Take the trace of the stroke and its name away, also when Blender ends it."""
+        """Remove the stroke's trace and name, also when Blender ends the operator."""
         context.window_manager.event_timer_remove(self._timer)
         bpy.types.SpaceView3D.draw_handler_remove(self._handle, "WINDOW")
         if context.area is not None:
@@ -111,15 +111,15 @@ class CURVE_OT_mobius_flow_stroke(DrawsKnot, bpy.types.Operator):
 
 
 class _Name:
-    """What a stroke would be if it ended now; a thread finds that out, and drawing waits for nothing."""
+    """What a stroke would be if it ended now; a thread finds the answer, so drawing never waits."""
 
     def __init__(self) -> None:
         self.said = ""
-        self._seen = 0  # points of the stroke that it is about
+        self._seen = 0  # points of the stroke that the name is about
         self._thread: threading.Thread | None = None
 
     def look(self, stroke: Sequence[FloatArray]) -> None:
-        """Take up what has been drawn since, if the last name is found."""
+        """Start to name what has been drawn since, if the last search is over."""
         if self._seen != len(stroke) and not (self._thread is not None and self._thread.is_alive()):
             self._seen = len(stroke)
             self._thread = threading.Thread(target=self._find, args=(list(stroke),), daemon=True)
@@ -137,7 +137,7 @@ class _Name:
 
 
 class Drawn:
-    """A knot as it was drawn, and where in its coordinates strands cross."""
+    """A knot as it was drawn, and the places, in its coordinates, where strands cross."""
 
     def __init__(self, obj: bpy.types.Object) -> None:
         plane = np.array(obj.data[_PLANE])
@@ -155,7 +155,7 @@ class Drawn:
         return cls(obj) if drawn else None
 
     def crossing(self, context: bpy.types.Context, mouse: FloatArray) -> int | None:
-        """The number, from 1, of the crossing that the mouse is at."""
+        """The number, from 1, of the crossing under the mouse."""
         for number, place in enumerate(self.places, 1):
             there = location_3d_to_region_2d(context.region, context.region_data, self._world @ Vector(place))
             if there and np.linalg.norm(mouse - np.array(there)) < _NEAR * context.preferences.system.ui_scale:

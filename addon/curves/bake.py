@@ -1,4 +1,4 @@
-"""What a curve that was keyed here remembers, in a custom property: the keys, and the curve data that it was before."""
+"""What a curve that was keyed here records in a custom property: its keys, and its curve data before them."""
 
 import hashlib
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ _BEVEL = ("bevel_depth", "bevel_resolution", "use_fill_caps")
 
 
 def remember(data: bpy.types.Curve, before: bpy.types.Curve, timing: Timing) -> None:
-    """Note on curve data that has just been keyed how it was before; nothing is noted on data without keys."""
+    """Record on curve data that has just been keyed what it was before; data without keys gets no record."""
     if animated(data):
         data[_RECORD] = {"original": before, "holds": [timing.hold_start, 0], "loop": timing.loop}
         update(data, timing)
@@ -32,7 +32,7 @@ def original(data: bpy.types.Curve) -> bpy.types.Curve:
 
 
 def update(data: bpy.types.Curve, timing: Timing | None = None) -> None:
-    """Note how the keys are after they were changed here, or, with a timing, more of them were written."""
+    """Record how the keys are after a change made here or, with a timing, after more keys were written."""
     record = data[_RECORD]
     record["fingerprint"], record["shapes"] = _fingerprint(data), _digest(data)
     if timing is not None:  # the rest before the first key of all is the one that was baked
@@ -42,7 +42,7 @@ def update(data: bpy.types.Curve, timing: Timing | None = None) -> None:
 
 
 def scale_bevel(data: bpy.types.Curve, factor: float) -> None:
-    """Scale the bevel; if it is the one that was baked, it still counts as such."""
+    """Scale the bevel; if it is the baked one, it still counts as baked."""
     record, ours = data[_RECORD], data.bevel_depth == data[_RECORD]["bevel_depth"]
     data.bevel_depth *= factor
     if ours:
@@ -55,7 +55,7 @@ def loops(data: bpy.types.Curve) -> bool:
 
 
 def is_baked(data: bpy.types.Curve) -> bool:
-    """Whether a curve has the keys that were written here, and neither others nor other points."""
+    """Whether a curve has the keys that were written here, and no other keys or points."""
     record = data.get(_RECORD)
     return record is not None and record["original"] is not None and list(record["fingerprint"]) == _fingerprint(data)
 
@@ -66,7 +66,7 @@ def was_baked(data: bpy.types.Curve) -> bool:
 
 
 def is_edited(data: bpy.types.Curve) -> bool:
-    """Whether somebody has moved points of a baked curve's shape keys: a look at all of them, not for every redraw."""
+    """Whether somebody has moved points of a baked curve's shape keys: examines them all, so not for every redraw."""
     return bool(data[_RECORD]["shapes"] != _digest(data))
 
 
@@ -82,7 +82,7 @@ def scene_range(objects: Sequence[bpy.types.Object]) -> tuple[int, int] | None:
 
 
 def continued(objects: Sequence[bpy.types.Object], options: KeyOptions) -> KeyOptions:
-    """The options that let an animation go on where the last of some baked objects comes to rest."""
+    """The options with which an animation continues where the last of some baked objects comes to rest."""
     played = scene_range(objects)
     assert played is not None, "they are baked"
     if looping := next((obj.name for obj in objects if loops(obj.data)), None):
@@ -95,7 +95,7 @@ def continued(objects: Sequence[bpy.types.Object], options: KeyOptions) -> KeyOp
 
 
 def clear(obj: bpy.types.Object) -> None:
-    """Take a baked curve's keys away and give the curve back that was there before.
+    """Remove a baked curve's keys and restore the curve that was there before.
 
     A bevel that was changed since the keys were written stays, and so do the materials that splines were given.
     """
@@ -115,13 +115,13 @@ def clear(obj: bpy.types.Object) -> None:
 
 
 def forget(obj: bpy.types.Object) -> None:
-    """Take a curve's keys away, and what is remembered if it was baked; the curve itself is left as its last key."""
+    """Remove a curve's keys, and its record if it was baked; the curve itself keeps the shape of its last key."""
     keyframes.erase(obj)
     obj.data.pop(_RECORD, None)
 
 
 def _fingerprint(data: bpy.types.Curve) -> list[int]:
-    """Numbers of keys, of F-curves and of points, and which splines are open; -1 where somebody else's animation is."""
+    """Counts of keys, F-curves and points, and which splines are open; -1 for animation that is not ours."""
     keys = data.shape_keys
     owner, moved = keys or data, data.animation_data
     blocks = 0 if keys is None else -1 if keys.use_relative else len(keys.key_blocks)
@@ -135,7 +135,7 @@ def _fingerprint(data: bpy.types.Curve) -> list[int]:
 
 
 def _digest(data: bpy.types.Curve) -> str:
-    """A name for where the points are at all shape keys."""
+    """A fingerprint of the positions of the points at all shape keys."""
     hashed = hashlib.blake2b(digest_size=16)
     for block in data.shape_keys.key_blocks if data.shape_keys else ():
         hashed.update(key_points(block).tobytes())

@@ -21,13 +21,13 @@ from .keyframes import coordinate_curves, scale_radii
 from .moving import what_moves
 from .splines import read
 
-_SQUARE = 1e-5  # cosines of angles that are right but for the rounding of Blender's matrices
+_SQUARE = 1e-5  # cosines below which angles count as right: Blender's matrices are rounded
 
 
 class BakedKeys:
-    """What baked curve objects, their transforms evaluated, are at each of their keys; ``frames``: as stored, (n, 3).
+    """Baked curve objects, their transforms evaluated, at each of their keys; ``frames``: points as stored, (n, 3).
 
-    Raises MobiusFlowError if they have not equally many keys, so that they were not baked together.
+    Raises MobiusFlowError if their numbers of keys differ: then they were not baked together.
     """
 
     def __init__(self, objects: Sequence[bpy.types.Object]) -> None:
@@ -52,7 +52,7 @@ class BakedKeys:
         return [Curve(points, self.mesh) for points in world]
 
     def rewrite(self, curves: Sequence[Curve], factors: FloatArray | None = None) -> None:
-        """Give the keys other shapes, in the world, and what is drawn around them other sizes, by factors, (keys,)."""
+        """Give the keys new shapes, in the world, and scale what is drawn around them by factors, (keys,)."""
         self.frames = [self.link.to_stored(self.mesh, curve.vertices).astype(np.float32) for curve in curves]
         for obj, vertices in zip(self._objects, self.link.slices(self.mesh), strict=True):
             _move_keys(obj.data, [frame[vertices] for frame in self.frames])
@@ -72,7 +72,7 @@ class BakedKeys:
 def keep_size(objects: Sequence[bpy.types.Object], measure: Measure, reference: int) -> BakedKeys:
     """Scale all keys about their barycenters to the size of one of them, and the tubes drawn around them alike.
 
-    `engine.size` says why that makes no contact; what the rounded keys are is to be proved once more. Raises
+    `engine.size` says why that makes no contact; the motion between the rounded keys has to be proved again. Raises
     MobiusFlowError if the objects were not baked together, or points of them are pinned.
     """
     if any(pins.count(obj.data) for obj in objects):
@@ -95,7 +95,7 @@ def keyed_points(data: bpy.types.Curve) -> list[Frame]:
 
 
 def _move_keys(data: bpy.types.Curve, frames: Sequence[Frame]) -> None:
-    """Move the points at each key, (n, 3), and leave its time; the curve itself gets those of the last one."""
+    """Move the points at each key, (n, 3), but not the key in time; the curve itself gets the last key's points."""
     if data.shape_keys:
         for block, frame in zip(data.shape_keys.key_blocks, frames, strict=True):
             block.data.foreach_set("co", frame.ravel())
@@ -147,7 +147,7 @@ def _turn(objects: Sequence[bpy.types.Object], wanted: FloatArray) -> int:
     for obj in sorted(objects, key=lambda each: sum(1 for _ in _ancestors(each))):  # parents carry their children along
         obj.matrix_world = turned[obj]
         bpy.context.view_layer.update()
-    # a single object goes wherever it likes; places of several against each other are rounded anew
+    # a single object may go anywhere; the positions of several relative to each other are rounded anew
     proved = len(objects) > 1 and all(bake.is_baked(obj.data) for obj in objects)
     return BakedKeys(objects).unproved if proved else 0
 
@@ -160,7 +160,7 @@ def _obstacles(obj: bpy.types.Object, objects: Sequence[bpy.types.Object], turn:
 
 
 def _shears(obj: bpy.types.Object, turn: Turn) -> bool:
-    """Whether no location, rotation and scale under an object's parent are the turned object."""
+    """Whether no location, rotation and scale under an object's parent give the turned object."""
     matrix, own = (np.array(each, dtype=np.float64)[:3, :3] for each in (obj.matrix_world, obj.matrix_basis))
     parental = matrix @ np.linalg.inv(own)
     columns = np.linalg.solve(parental, turn.rotation @ matrix)

@@ -1,8 +1,8 @@
 """The tube drawn around curve objects: as thick as it can be without touching.
 
-A bevel is the artist's own until somebody asks to have it fitted. Depths that were fitted are noted on the curve data.
-A curve that has one of them, wherever undo or *Clear* have brought it back from, is fitted again when it is relaxed;
-one that has been given another depth since is the artist's.
+A bevel belongs to the artist until somebody asks to have it fitted. Fitted depths are recorded on the curve data. A
+curve with one of these depths, even one that undo or *Clear* has brought back, is fitted again when it is relaxed; a
+curve whose depth has been changed since has a bevel of the artist's own.
 """
 
 from collections.abc import Sequence
@@ -34,7 +34,7 @@ def is_fitted(data: bpy.types.Curve) -> bool:
 
 
 def fitting_radius(curve: Curve, obstacles: Sequence[Obstacle] = ()) -> float:
-    """The largest radius that is free of contact, but no more than looks like a curve."""
+    """The largest radius that is free of contact, but not so large that the tube no longer looks like a curve."""
     return radius_beside(curve, free_radius(curve, thickest_radius(curve)), obstacles)
 
 
@@ -46,7 +46,7 @@ def fit(data: bpy.types.Curve, radius: float) -> None:
 
 def draw(data: bpy.types.Curve, radius: float) -> None:
     if not data.bevel_depth:
-        data.bevel_resolution, data.use_fill_caps = _RESOLUTION, True  # which closed splines have no use for
+        data.bevel_resolution, data.use_fill_caps = _RESOLUTION, True  # caps, which closed splines do not need
     data.bevel_depth = radius
 
 

@@ -1,8 +1,8 @@
-"""Blends: materials that change into others, keyed like the motion of what wears them, and goals, which bring them.
+"""Blends: materials that change into others, keyed like the motion of their wearer, and goals, which cause them.
 
-A blend is a copy of a material in whose tree stand the nodes of the others as well, with keyed shares of their shaders:
+A blend is a copy of a material whose tree also holds the nodes of the others, with keyed shares of their shaders:
 a material like any other, which is shown and rendered everywhere. It takes a slot after those that the curve data
-has, so that these are as they were when it goes.
+has, so that these are unchanged when it goes.
 """
 
 from collections.abc import Iterable, Sequence
@@ -33,14 +33,14 @@ def worn(obj: bpy.types.Object, spline: bpy.types.Spline) -> bpy.types.Material 
 
 
 def put_on(data: bpy.types.Curve, spline: bpy.types.Spline, material: bpy.types.Material | None) -> None:
-    """Let a spline be drawn in a material, in a slot after those that there are unless it has one."""
+    """Let a spline be drawn in a material, which gets a slot after the existing ones unless it has one."""
     if material not in list(data.materials):
         data.materials.append(material)
     spline.material_index = list(data.materials).index(material)
 
 
 def take_off(data: bpy.types.Curve) -> None:
-    """Give splines back the slots that they had before they wore blends, and take the blends' away."""
+    """Give splines back the slots that they had before they wore blends, and remove the blends' slots."""
     slots = [None if each is None else each.get(_SLOT) for each in data.materials]
     for spline in data.splines:
         if spline.material_index < len(slots) and slots[spline.material_index] is not None:
@@ -55,7 +55,7 @@ def take_off(data: bpy.types.Curve) -> None:
 def blend(
     materials: Sequence[bpy.types.Material | None], slot: int, frames: FloatArray, timing: Timing
 ) -> bpy.types.Material:
-    """A material that is each of some at its frame, ascending, (materials,); ``slot``: what `take_off` gives back."""
+    """A material that equals one of some at each frame, ascending, (materials,); ``slot``: what `take_off` restores."""
     plain = bpy.data.materials.new("Default")
     chain = [each or plain for each in materials]
     for each in chain:
@@ -84,7 +84,7 @@ def blend(
 
 
 def _mix(tree: bpy.types.NodeTree, other: bpy.types.NodeTree, name: str) -> list[str]:
-    """Mix the shaders of another tree into those of one; where the shares are found that it has of them."""
+    """Mix another tree's shaders into those of one; return where the tree keeps the shares of the other's shaders."""
     output, copies, paths = tree.get_output_node("ALL"), copied(other, tree), []
     theirs = copies.get(other.get_output_node("ALL"))
     for socket in _SHADERS:
@@ -105,7 +105,7 @@ def _mix(tree: bpy.types.NodeTree, other: bpy.types.NodeTree, name: str) -> list
 
 
 def copied(source: bpy.types.NodeTree, tree: bpy.types.NodeTree) -> dict[bpy.types.Node, bpy.types.Node]:
-    """Copy all nodes of a tree, with their links, into another one; the copy of each.
+    """Copy all nodes of a tree, with their links, into another one; return the copy of each.
 
     Kinds of nodes that no running extension knows are left out: they do nothing.
     """
@@ -133,7 +133,7 @@ def _settings(owner: Any) -> list[str]:
 
 
 def _imitate(one: Any, other: Any, names: Iterable[str]) -> None:
-    """Give something some of the settings of another thing of its kind; ramps and curves are within such things."""
+    """Copy some settings of a thing to another of its kind, with the ramps and curves in them."""
     for name in names:
         value, prop = getattr(one, name, None), one.bl_rna.properties.get(name)
         if prop is None or name == "rna_type":
@@ -168,7 +168,7 @@ class Goals:
     def __init__(self, objects: Sequence[bpy.types.Object], moving: Curve) -> None:
         self.curves = {obj.name: _held(read_link([obj])[0], moving) for obj in objects}
         self._objects = [Reference(obj) for obj in objects]
-        # the iterate in which each is reached, and which of its splines each component is then
+        # the iterate that reaches each goal, and the goal's spline that each component is then
         self._reached: list[tuple[int, list[int]]] = []
 
     def note(self, iterate: Iterate) -> None:
@@ -179,7 +179,7 @@ class Goals:
     def paint(self, objects: Sequence[bpy.types.Object], keys: Keys, frames: FloatArray, timing: Timing) -> None:
         """Let the splines of keyed objects take on the materials of the goals on the way there.
 
-        ``frames``: those of the keys. Without an animation they have the last one's. Goals that are gone change none.
+        ``frames``: of the keys. Without an animation splines get the last goal's. Goals that are gone change nothing.
         """
         times = np.interp([0, *(index for index, _ in self._reached)], [key.time for key in keys.keys], frames)
         made: dict[object, bpy.types.Material] = {}
@@ -199,7 +199,7 @@ class Goals:
 
 
 def _held(goal: Curve, moving: Curve) -> Curve:
-    """A goal whose ends are exactly where those of another curve are if they are there but for Blender's rounding."""
+    """A goal, with its ends moved exactly onto those of another curve if they differ only by Blender's rounding."""
     ends, there = goal.mesh.ends, moving.vertices[moving.mesh.ends]
     vertices = goal.vertices.copy()
     if vertices[ends].shape != there.shape or np.abs(vertices[ends] - there).max(initial=0.0) > _NEAR * moving.length:
@@ -211,14 +211,14 @@ def _held(goal: Curve, moving: Curve) -> Curve:
 def _material(
     goal: bpy.types.Object | None, spline: int, before: bpy.types.Material | None
 ) -> bpy.types.Material | None:
-    """The material of one of a goal's splines; that before if there is no such spline any more."""
+    """The material of one of a goal's splines, or the one before if that spline is gone."""
     if goal is None or goal.type != "CURVE" or spline >= len(goal.data.splines):
         return before
     return worn(goal, goal.data.splines[spline])
 
 
 def _components(curve: Curve, goal: Curve) -> list[int]:
-    """The component of the goal that each of a curve is, whose vertices may have another order; empty if it is not."""
+    """The goal's component that each component of a curve is, whatever its order of vertices; empty if it is not."""
     if sorted(curve.mesh.component_sizes) != sorted(goal.mesh.component_sizes):
         return []
     names = [{tuple(point) for point in part.tolist()} for part in goal.components]

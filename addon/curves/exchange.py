@@ -1,4 +1,4 @@
-"""Curve objects in, polygons in world space out, and back, whatever the object's transform."""
+"""Curve objects converted to polygons in world space, and back, whatever the object's transform."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -49,7 +49,7 @@ def read_splines(obj: bpy.types.Object) -> list[FloatArray]:
 
 
 def stretch(obj: bpy.types.Object) -> float:
-    """The most that an object's coordinates are stretched on the way to the world."""
+    """The largest factor by which an object's coordinates are stretched on the way to the world."""
     return float(np.linalg.norm(np.array(obj.matrix_world)[:3, :3], 2))
 
 
@@ -62,7 +62,7 @@ def box(obj: bpy.types.Object) -> tuple[FloatArray, FloatArray]:
 
 
 def length(scene: bpy.types.Scene, value: float) -> str:
-    """Write a length with its unit, in four digits or so."""
+    """Format a length with its unit, to about four digits."""
     units = scene.unit_settings
     text = bpy.utils.units.to_string(
         units.system, "LENGTH", value * units.scale_length, precision=4, split_unit=units.use_separate

@@ -1,6 +1,6 @@
-"""A modifier of tube meshes that works out numbers of their curve at whatever frame: plain nodes of Blender's own.
+"""A modifier of tube meshes that computes numbers of their curve at any frame, with nothing but Blender's own nodes.
 
-They are about the middles of the rings as these are shown, and so hold between keys too, and need no extension.
+The numbers refer to the middles of the rings as shown, and so hold between keys too, and need no extension.
 """
 
 from typing import Any
@@ -33,7 +33,7 @@ def _tree() -> bpy.types.NodeTree:
 
 
 class _Nodes:
-    """Makes nodes; what they are given and give are sockets, in the order in which Blender shows them."""
+    """Makes nodes; their inputs and outputs are sockets, in the order in which Blender shows them."""
 
     def __init__(self, tree: bpy.types.NodeTree) -> None:
         self._tree = tree
@@ -101,7 +101,7 @@ class _Nodes:
         return self("GeometryNodeSampleIndex", curve, value, point, data_type=kind, domain="POINT")
 
     def _beside(self, curve: Any, here: Any, offset: int) -> Any:
-        """Where the next point is, or the one before; at ends of open splines the point itself."""
+        """The position of the next point, or of the one before; at ends of open splines the point itself."""
         inside, there = (self("GeometryNodeOffsetPointInCurve", None, offset, out=k) for k in (0, 1))
         return self.chosen(inside, here, self.sampled(curve, here, there, "FLOAT_VECTOR"), "VECTOR")
 
@@ -116,7 +116,7 @@ class _Nodes:
         return self.math("MULTIPLY", inner, self.math("DIVIDE", angle, self.math("ADD", *lengths)))
 
     def _distances(self, curve: Any, corner: tuple[Any, Any, Any], arc: Any, component: Any) -> Any:
-        """Store the distances to the nearest other strands: point by point that of the nearest so far."""
+        """Store the distances to the nearest other strands: at each point the least one so far."""
         curve = self.stored(curve, DISTANCE, _FAR)
         count = self("GeometryNodeAttributeDomainSize", curve, component="CURVE")
         start, end = (self._tree.nodes.new(f"GeometryNodeRepeat{side}") for side in ("Input", "Output"))
@@ -133,7 +133,7 @@ class _Nodes:
         return self._bounded(end.outputs["Geometry"])
 
     def _distance(self, curve: Any, point: Any, corner: tuple[Any, Any, Any], arc: Any, component: Any) -> Any:
-        """How far the strand is that passes at a point, by its edges there; far away if none passes."""
+        """The distance to the strand that passes a point, measured to its edges there; far away if none passes."""
 
         def at(value: Any, kind: str = "FLOAT") -> Any:
             return self.sampled(curve, value, point, kind)
@@ -161,7 +161,7 @@ class _Nodes:
         return self.vector("DISTANCE", way, scaled)
 
     def _bounded(self, curve: Any) -> Any:
-        """Where nothing passes the distance is the longest there is, or else the size of the whole."""
+        """Where nothing passes, the longest distance there is, or else the size of the whole."""
         known = self.named(DISTANCE)
         some = self("FunctionNodeCompare", known, 0.5 * _FAR, operation="LESS_THAN")
         longest = self("GeometryNodeAttributeStatistic", curve, some, known, out=4, data_type="FLOAT", domain="POINT")

@@ -22,9 +22,9 @@ from .splines import coordinates
 
 
 class Group:
-    """Curve objects, the link that their splines are, and what is written to them.
+    """Curve objects, the link that their splines form, and what is written to them.
 
-    `checks.refusal` has nothing against the objects, and their transforms are evaluated. They show stand-ins until all
+    `checks.refusal` accepts the objects, and their transforms are evaluated. They show stand-ins until all
     is written, or until `discard`. Where the run ``continues``, baked curves are relaxed on from the ends of their
     animations, and keys are added to theirs. ``curve``: all splines as polygons in world space; ``link``: where their
     vertices are stored. Raises CurveError if the splines cannot be read.
@@ -55,15 +55,15 @@ class Group:
         return [obj for member in self._members if (obj := member.object) is not None]
 
     def member(self, number: int) -> bpy.types.Object | None:
-        """One of the objects, by its number among those that there were; None if it is gone."""
+        """One of the objects, by its original number; None if it is gone."""
         return self._members[number].object
 
     def reworded(self, message: str) -> str:
-        """What the core says of the link and of what it avoids, with the splines named by their objects."""
+        """The core's message about the link and what it avoids, with the splines named by their objects."""
         return in_blenders_words(message, spline_names(self.names, self.link.counts))
 
     def spots(self, place: Place | None, curve: Curve) -> list[Spot]:
-        """Where on the objects a place is on the link, or on the same with other vertices."""
+        """The spots on the objects of a place on the link, or on the same link with other vertices."""
         return [] if place is None else spots(place, curve, self.link)
 
     @property
@@ -86,9 +86,9 @@ class Group:
         )
 
     def lost(self, alone: bool = True) -> Message | None:
-        """Say what somebody did to one of the objects that makes going on impossible.
+        """Say what was done to one of the objects that makes it impossible to go on.
 
-        What is proved of a single one holds wherever it goes, if it is ``alone``, and avoids nothing.
+        What is proved of a single object holds wherever it goes, if it is ``alone``, and avoids nothing.
         """
         reason = next((reason for member in self._members if (reason := member.lost())), None)
         if reason is None and not (alone and len(self._members) == 1):
@@ -146,7 +146,7 @@ class Group:
             unpin(spline, ~chosen)
 
     def make_polygons(self, refined: Curve) -> None:
-        """Give all splines the points of the refined link; where they are is left open."""
+        """Give all splines the points of the refined link; their positions are left open."""
         pieces = zip(self._members, self.link.split(self.curve), self.link.split(refined), strict=True)
         for member, drawn, part in pieces:
             member.make_polygons(drawn, part)
@@ -166,7 +166,7 @@ class Group:
     def writing(
         self, mesh: Mesh, keys: Keys, frames: FloatArray, options: KeyOptions, radii: FloatArray | None
     ) -> Iterator[None]:
-        """Write keys to all objects in short pieces; ``radii`` are those of the tube in the common space, (keys,)."""
+        """Write keys to all objects in short pieces; ``radii``: of the tube in the common space, (keys,)."""
         for member, vertices, scale in zip(self._members, self.link.slices(mesh), self.link.scales, strict=True):
             own = None if radii is None else radii / scale
             yield from member.writing(keys.part(vertices), frames, options, own)
@@ -188,7 +188,7 @@ class Group:
 
 @contextmanager
 def _outside_edit_mode(objects: Sequence[bpy.types.Object]) -> Iterator[None]:
-    """Change curves of which some may just have been opened for editing: close them, and open them again afterwards."""
+    """Change curves while some may just have been opened for editing: close these, and reopen them afterwards."""
     mode = next((obj.mode for obj in objects if obj.mode != "OBJECT"), "OBJECT")
     if mode == "OBJECT":
         yield

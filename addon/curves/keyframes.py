@@ -1,6 +1,6 @@
 """Motion written into curve data: absolute shape keys with one F-curve, or an F-curve for every coordinate.
 
-Data that has such keys already gets more of them after the last.
+Data that already has such keys gets the new ones after the last.
 """
 
 from collections.abc import Iterable, Iterator
@@ -43,12 +43,12 @@ def writing(
 
 
 def erase(obj: bpy.types.Object) -> None:
-    """Remove all that `writing` has written but where the points are."""
+    """Remove all that `writing` has written except the positions of the points."""
     drop_actions(obj.data)
     if obj.data.shape_keys:
         uid = obj.data.shape_keys.session_uid
         obj.shape_key_clear()
-        # Blender 5.0 counts a user too many where curve data was copied, and leaves the keys behind
+        # Blender 5.0 counts one user too many where curve data was copied, and leaves the keys behind
         bpy.data.batch_remove([keys for keys in bpy.data.shape_keys if keys.session_uid == uid])
     animation = obj.data.animation_data
     if animation and not (animation.drivers or animation.nla_tracks):
@@ -89,7 +89,7 @@ def output_of(data: bpy.types.Curve) -> Output | None:
 
 
 def end_of(data: bpy.types.Curve) -> Frame:
-    """Points of a curve at the last of its keys, (n, 3); what is stored may be another frame's."""
+    """Points of a curve at the last of its keys, (n, 3); the stored points may be those of another frame."""
     if data.shape_keys:
         return key_points(data.shape_keys.key_blocks[-1])
     last = [curve.keyframe_points[-1].co[1] for curve in coordinate_curves(data)]
@@ -109,12 +109,12 @@ def _shape_keys(
     """Absolute shape keys, and an F-curve that runs through them."""
     data = obj.data
     there = len(data.shape_keys.key_blocks) if data.shape_keys else 0
-    skipped = min(there, 1)  # the first of more keys is there already
+    skipped = min(there, 1)  # the first of the additional keys is there already
     for k, key in enumerate(keys.keys[skipped:], skipped):
         place = there - skipped + k
         if place:
             # An absolute key is put where the evaluation time is. In steps of 1 it is read back exactly; Blender's own
-            # steps of 10 add up rounding errors, and the animation would pass beside its keys.
+            # steps of 10 add up rounding errors, and the animation would miss its keys.
             data.shape_keys.use_relative = False
             data.shape_keys.eval_time = place
         block = obj.shape_key_add(name=f"Iterate {key.time:g}", from_mix=False)
@@ -132,7 +132,7 @@ def _shape_keys(
 
 
 def _fcurves(obj: bpy.types.Object, keys: Keys, frames: FloatArray) -> Iterator[None]:
-    """One F-curve for every coordinate of every point, for exporters that know no shape keys."""
+    """One F-curve for every coordinate of every point, for exporters that do not support shape keys."""
     curves = FCurves(obj.data, f"{obj.name} Relaxation")
     values = np.stack([key.points for key in keys.keys], axis=-1).astype(np.float64)
     for path, point in zip(point_paths(obj.data), values, strict=True):
@@ -194,7 +194,7 @@ def animated(data: bpy.types.Curve) -> list[bpy.types.ID]:
 
 
 def drop_actions(data: bpy.types.Curve) -> None:
-    """Take the actions of a curve and its shape keys away, and remove what nothing else uses of them."""
+    """Remove the actions of a curve and its shape keys; actions and slots that nothing else uses are deleted."""
     for animation in [owner.animation_data for owner in animated(data)]:
         action, slot = animation.action, getattr(animation, "action_slot", None)
         animation.action = None
@@ -220,7 +220,7 @@ def _own_collections(block: bpy.types.ID) -> Iterator[Any]:
 
 
 def mirror(curve: bpy.types.FCurve, middle: float) -> None:
-    """Let an F-curve that runs straight go back from a frame on as it came."""
+    """Let a piecewise linear F-curve retrace its path backwards from a frame on."""
     for frame, value in [tuple(point.co) for point in curve.keyframe_points][::-1]:
         if frame < middle:
             curve.keyframe_points.insert(2 * middle - frame, value, options={"FAST"}).interpolation = "LINEAR"
@@ -242,7 +242,7 @@ class FCurves:
         (self._fcurves,) = _own_collections(block)
 
     def add(self, path: str, axis: int, frames: FloatArray, values: FloatArray) -> None:
-        """Add keys to a piecewise linear F-curve, made if there is none; what is not after its last is left out."""
+        """Add keys to a piecewise linear F-curve, made if there is none; keys not after its last one are left out."""
         curve = self._fcurves.find(path, index=axis) or self._fcurves.new(path, index=axis)
         points = curve.keyframe_points
         if len(points):

@@ -2,7 +2,7 @@
 
 The original is not touched until all is written, its keys included: to end a run without a result is to show it again.
 The stand-in refers to it in a custom property, so that it is neither purged nor missing in an undo step or an automatic
-save. Where such a file is opened or such a step is undone to, `show_originals` shows it again.
+save. When such a file is opened, or undo returns to such a step, `show_originals` shows it again.
 """
 
 from collections.abc import Iterator
@@ -76,20 +76,20 @@ class Member:
         return self._plain and options.fit_bevel and (self._fitted or options.any_bevel)
 
     def make_polygons(self, drawn: Curve, refined: Curve) -> None:
-        """Give the stand-in the points of the refined curve, unless it is lost; where points are is left open."""
+        """Give the stand-in the points of the refined curve, unless it is lost; their positions are left open."""
         if not self.lost():
             self._splines.polygons(drawn, refined).fill(self.data)
             self._shape = shape(self.data)
 
     def move(self, points: Frame, radius: float | None) -> None:
-        """Move the points, unless they are lost, (n, 3), and make the tube as thick, in the object's coordinates."""
+        """Move the points, (n, 3), unless they are lost, and give the tube the radius, in the object's coordinates."""
         if not self.lost():
             write_points(self.data, points)
             if radius is not None:
                 bevel.draw(self.data, radius)
 
     def lost(self) -> Message | None:
-        """Say what somebody did to the curve that makes going on impossible."""
+        """Say what was done to the curve that makes it impossible to go on."""
         obj, data = self.object, self.data
         if obj is None or not obj.users_scene:
             return Message("'{name}' was deleted", name=self.name)
@@ -112,7 +112,7 @@ class Member:
         return data.shape_keys is not None and not self.keyed
 
     def writing(self, keys: Keys, frames: FloatArray, options: KeyOptions, radii: FloatArray | None) -> Iterator[None]:
-        """Write keys in short pieces; ``radii`` are those of the tube in the object's units, (keys,)."""
+        """Write keys in short pieces; ``radii``: of the tube in the object's units, (keys,)."""
         obj = self.object
         assert obj is not None, "whoever writes looks for it first"
         self.keyed = True
@@ -201,7 +201,7 @@ def _stand_ins() -> list[bpy.types.Curve]:
 
 
 def _show_original(data: bpy.types.Curve) -> None:
-    """Let the original have the users of its stand-in, which goes."""
+    """Give the original the users of its stand-in, which is removed."""
     _name_original(data)
     original = data.pop(_MARK)["original"]
     if original is not None:

@@ -1,7 +1,7 @@
 """What moves objects, their points, or what they show.
 
-Curves that are relaxed together, or avoid something, must keep their places, and what is avoided its shape too. A proof
-about a curve's points says nothing of what is shown when something moves these after its keys have.
+Curves that are relaxed together, or avoid something, must stay in place, and avoided objects must keep their shape too.
+A proof about a curve's points says nothing about what is shown if something moves the points after the keys have.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -71,7 +71,7 @@ def what_deforms(obj: bpy.types.Object) -> Message | None:
 def deforms(modifier: bpy.types.Modifier) -> bool:
     """Whether a modifier may move points of a curve.
 
-    Others add to what is drawn, as a bevel does; of geometry nodes those do that have no node for positions.
+    Others add to what is drawn, as a bevel does; so do geometry nodes without a node that sets positions.
     """
     return _is_of(modifier, _DEFORMING, _DEFORMING_NODES)
 
@@ -94,7 +94,7 @@ def _nodes_of(tree: bpy.types.NodeTree | None, seen: set[bpy.types.NodeTree]) ->
 
 
 def unsteady(avoided: Iterable[bpy.types.Object], relaxed: Sequence[bpy.types.Object]) -> Message | None:
-    """Say what of objects that are avoided, or of curves that avoid them, does not stay as it is, or return None."""
+    """Say what changes in avoided objects, or in curves that avoid them, or return None if nothing does."""
     avoided = list(avoided)
     for obj in avoided:
         if said := unsteady_object(obj, relaxed):
@@ -110,7 +110,7 @@ def unsteady(avoided: Iterable[bpy.types.Object], relaxed: Sequence[bpy.types.Ob
 
 
 def unsteady_object(obj: bpy.types.Object, relaxed: Sequence[bpy.types.Object]) -> Message | None:
-    """Say why an object cannot be avoided, since it does not stand still, or return None if it does."""
+    """Say why an object that does not stand still cannot be avoided, or return None if it stands still."""
     sentence = (
         "'{name}' is moved by {mover}, and what is avoided must stand still; "
         "remove that, or leave it out of what is avoided"
@@ -126,13 +126,13 @@ def what_changes(
 
     What its shape is made with may be relaxed, or move or change itself.
     """
-    seen = set() if seen is None else seen  # shared by all that is asked about in turn
+    seen = set() if seen is None else seen  # shared by all objects examined in turn
     seen.add(obj)
     return what_moves(obj) or next(_changes(obj, relaxed, seen), None)
 
 
 def _changes(obj: bpy.types.Object, relaxed: Sequence[bpy.types.Object], seen: set[bpy.types.ID]) -> Iterator[Message]:
-    """Reasons why a shape may change, but for what was seen already."""
+    """Reasons why a shape may change, except those seen already."""
 
     def changing(blocks: Iterable[bpy.types.ID]) -> bool:
         found = (each for each in blocks if each not in seen)
@@ -196,7 +196,7 @@ def _inputs(block: bpy.types.bpy_struct) -> "Iterator[Any]":
 
 
 def _metaballs(obj: bpy.types.Object) -> Iterator[bpy.types.Object]:
-    """Yield the metaballs that are one surface with a metaball: those called the same up to the first dot."""
+    """Yield the metaballs that form one surface with a metaball: those with the same name up to the first dot."""
     if obj.type == "META":
         stem = obj.name.partition(".")[0]
         yield from (each for each in bpy.data.objects if each.type == "META" and each.name.partition(".")[0] == stem)

@@ -21,7 +21,7 @@ COLOUR = "colour"  # attribute of vertices
 _LOOKS = ("bevel_mode", "bevel_depth", "bevel_resolution", "extrude", "offset", "taper_object", "bevel_object")
 _RESOLUTION = 12  # points drawn for each segment of a smooth spline
 # fmt: off
-_PLACE = (  # a matrix in their stead would be split into these anew, and lose shear and the last bits
+_PLACE = (  # a matrix instead would be split into these anew, and lose shear and the last bits
     "rotation_mode", "location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale",
     "delta_location", "delta_rotation_euler", "delta_rotation_quaternion", "delta_scale",
     "parent_type", "parent", "parent_bone", "parent_vertices", "matrix_parent_inverse",
@@ -30,7 +30,7 @@ _PLACE = (  # a matrix in their stead would be split into these anew, and lose s
 
 
 def _object_like(obj: bpy.types.Object, data: bpy.types.ID) -> bpy.types.Object:
-    """Make an object of other data with the place and the parent of an object, but not its animation."""
+    """Make an object for other data, with the place and the parent of an object but not its animation."""
     made = bpy.data.objects.new(data.name, data)
     for name in _PLACE:
         setattr(made, name, getattr(obj, name))
@@ -38,7 +38,7 @@ def _object_like(obj: bpy.types.Object, data: bpy.types.ID) -> bpy.types.Object:
 
 
 def put_beside(made: bpy.types.Object, obj: bpy.types.Object, hide: bool) -> None:
-    """Put a new object into the collections of the one that it is made of, and select it instead."""
+    """Put a new object into the collections of its source, and select it instead."""
     for collection in obj.users_collection:
         collection.objects.link(made)
     made.select_set(True)
@@ -101,7 +101,7 @@ def _on_rings(mesh: bpy.types.Mesh, values: FloatArray) -> FloatArray:
 
 
 def _fill(mesh: bpy.types.Mesh, vertices: FloatArray, faces: Sequence[IntArray]) -> None:
-    """Fill a mesh with faces, those with equally many corners in an array of their own."""
+    """Fill a mesh with faces; each array holds faces with equally many corners."""
     corners = np.concatenate([each.ravel() for each in faces])
     sizes = np.concatenate([np.full(len(each), each.shape[1]) for each in faces])
     mesh.vertices.add(len(vertices))
@@ -115,7 +115,7 @@ def _fill(mesh: bpy.types.Mesh, vertices: FloatArray, faces: Sequence[IntArray])
 
 
 def _write_keys(made: bpy.types.Object, surface: FloatArray, frames: FloatArray) -> None:
-    """Relative shape keys, of which at most two count at a time: what exporters know, and straight from key to key."""
+    """Relative shape keys, at most two active at a time: exporters support them, and motion is straight in between."""
     for frame, shape in zip(frames, surface, strict=True):
         block = made.shape_key_add(name=f"Frame {frame:g}", from_mix=False)
         block.data.foreach_set("co", shape.astype(np.float32).ravel())

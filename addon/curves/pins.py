@@ -22,7 +22,7 @@ from .splines import control_points, coordinates, kind, read
 
 @dataclass(frozen=True)
 class Held:
-    """What is pinned beside the points that are marked."""
+    """What is pinned besides the marked points."""
 
     points: tuple[int, ...] = ()  # indices of points, counted from 0 through all splines of all objects
     tangents: bool = False  # whether the neighbours of pinned points in the refined curve are pinned too
@@ -86,7 +86,7 @@ def check_place(obj: bpy.types.Object, number: int, chosen: BoolArray) -> None:
 
 
 def pinned_vertices(objects: Sequence[bpy.types.Object], mesh: Mesh) -> tuple[int, ...]:
-    """The pinned vertices of the link that curve objects are, ascending; ``mesh`` has a component for each spline.
+    """The pinned vertices of the link that curve objects form, ascending; ``mesh`` has a component for each spline.
 
     Raises CurveError if a pinned point is between the ends of a smooth spline.
     """
@@ -96,7 +96,7 @@ def pinned_vertices(objects: Sequence[bpy.types.Object], mesh: Mesh) -> tuple[in
             chosen, piece = marked(spline), mesh.slices[len(found)]
             check_place(obj, number, chosen)
             inside = np.flatnonzero(chosen)
-            if spline.type != "POLY":  # at its ends alone
+            if spline.type != "POLY":  # only its ends can be pinned
                 inside = np.where(inside == 0, 0, piece.stop - piece.start - 1)
             found.append(piece.start + inside)
     return tuple(map(int, np.concatenate(found)))

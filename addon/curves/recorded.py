@@ -1,4 +1,4 @@
-"""Curve objects in time: their shapes at their keys, or the one that they have, and where these are in the world."""
+"""Curve objects over time: their shapes at their keys, or their only shape, and where these are in the world."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -20,7 +20,7 @@ from .splines import radii
 
 @dataclass(frozen=True, eq=False)
 class Recorded:
-    """The shapes of one curve object, straight in between, in its own coordinates."""
+    """The shapes of one curve object, linear in between, in its own coordinates."""
 
     mesh: Mesh  # its splines as polygons, a component each
     frames: FloatArray  # scene frames of the shapes, (keys,); a curve that was not baked here has one shape at frame 0
@@ -91,7 +91,7 @@ def _radii(data: bpy.types.Curve, mesh: Mesh) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class WorldMotion:
-    """Curve objects in time; between its frames points move straight, or nearly so where something moves them."""
+    """Curve objects over time; between frames, points move straight, or nearly so if something moves the objects."""
 
     frames: FloatArray  # ascending scene frames; (frames,)
     points: list[FloatArray]  # points of all objects at each of them; (n, 3)
@@ -99,9 +99,9 @@ class WorldMotion:
 
     @classmethod
     def of(cls, scene: bpy.types.Scene, objects: Sequence[bpy.types.Object]) -> "WorldMotion":
-        """Look at curve objects at all their keys; where something moves them, at all frames of the scene too.
+        """Sample curve objects at all their keys; where something moves them, at all frames of the scene too.
 
-        Modifiers are not looked at. Raises CurveError if splines cannot be read.
+        Modifiers are ignored. Raises CurveError if splines cannot be read.
         """
         recorded = [Recorded.of(obj) for obj in objects]
         moving = any(what_moves(obj) for obj in objects)
@@ -121,7 +121,7 @@ class WorldMotion:
 def _placements(
     scene: bpy.types.Scene, objects: Sequence[bpy.types.Object], frames: FloatArray
 ) -> dict[str, list[Placement]]:
-    """Places of objects by their names, at each of some frames; at a single one as they are now."""
+    """Places of objects by their names, at each of some frames; for a single frame, as they are now."""
     found: dict[str, list[Placement]] = {obj.name: [] for obj in objects}
     shown, subframe = scene.frame_current, scene.frame_subframe
     try:

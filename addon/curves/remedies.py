@@ -1,4 +1,4 @@
-"""What keeps a curve object from being relaxed, changed with nothing else: materials, keys and users stay."""
+"""Remedies for what keeps a curve object from being relaxed; all else stays: materials, keys and users."""
 
 import bpy
 import numpy as np
@@ -18,7 +18,7 @@ def close(obj: bpy.types.Object) -> None:
 def make_local(obj: bpy.types.Object) -> None:
     """Make an object and its curve data this file's own; materials stay linked.
 
-    Where the object must stay as it is, because a linked collection has it, a copy is selected in its place.
+    If the object must stay as it is, because it is in a linked collection, a copy is selected in its place.
     """
     local = _own(obj)
     local.data = _own(local.data)
@@ -44,13 +44,13 @@ def to_poly(obj: bpy.types.Object) -> None:
 
 
 def to_curve(obj: bpy.types.Object) -> bpy.types.Object:
-    """Make a curve object of a text or of a mesh of edges, which stays; return it, selected in place of all else."""
+    """Make a curve object from a text or a mesh of edges, which stays; return it, the only object selected."""
     bpy.ops.object.select_all(action="DESELECT")
     obj.select_set(True)
     bpy.context.view_layer.objects.active = obj
     bpy.ops.object.convert(target="CURVE", keep_original=True)
     curve = bpy.context.object
-    curve.data.materials.clear()  # of a mesh Blender leaves them out
+    curve.data.materials.clear()  # for meshes Blender leaves them out
     for slot in obj.material_slots:
         curve.data.materials.append(slot.material)
     return curve
@@ -70,7 +70,7 @@ def still_copy(obj: bpy.types.Object) -> bpy.types.Object:
     _strip(copy)
     shown.fill(copy.data)
     bpy.context.view_layer.update()
-    if copy.matrix_world != world:  # what was taken away held it there
+    if copy.matrix_world != world:  # something that was removed held it there
         copy.matrix_world = world
         bpy.context.view_layer.update()
         copy.data.transform(copy.matrix_world.inverted_safe() @ world)  # shear, which no object has by itself
@@ -91,7 +91,7 @@ def _select_instead(obj: bpy.types.Object, copy: bpy.types.Object) -> None:
 
 
 def _shown(obj: bpy.types.Object) -> Splines:
-    """The splines as keys and modifiers leave them; the modifiers are told to work on the splines themselves."""
+    """The splines as keys and modifiers leave them; the modifiers are set to work on the splines themselves."""
     for modifier in filter(deforms, obj.modifiers):
         modifier.use_apply_on_spline = True
     bpy.context.view_layer.update()
@@ -104,7 +104,7 @@ def _shown(obj: bpy.types.Object) -> Splines:
 
 
 def _strip(obj: bpy.types.Object) -> None:
-    """Take away all that moves an object with curve data of its own, or the points of it."""
+    """Remove all that moves an object with curve data of its own, or moves its points."""
     for modifier in list(filter(deforms, obj.modifiers)):
         obj.modifiers.remove(modifier)
     bake.forget(obj)

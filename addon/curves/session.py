@@ -38,7 +38,7 @@ class Report:
 
     names: tuple[str, ...]  # the objects' names
     outcome: Outcome  # how the relaxation ended
-    keys: int  # number of keys of what was relaxed; 1 without animation
+    keys: int  # number of keys of the relaxed curves; 1 without animation
     continues: bool  # whether the first of them is the last of those that were there
     last_frame: float  # scene frame of the last key
     scene_range: tuple[int, int] | None  # first and last frame of the animation with its rests, if there is one
@@ -65,7 +65,7 @@ class Report:
     def _proof(self) -> Message:
         if not self.certified:
             return Message("NOT proved free of contact everywhere")
-        # nothing but the curves that were relaxed, and what they avoid, is looked at
+        # only the relaxed curves, and what they avoid, are examined
         alone = Message("proved free of contact with itself")
         whom = alone if len(self.names) == 1 else Message("proved free of contact with themselves and each other")
         whom = Message("{proof}, and with {avoided}", proof=whom, avoided=named(self.avoided)) if self.avoided else whom
@@ -167,7 +167,7 @@ class Session:
         return in_common_space(self.task.obstacles, self.group.link)
 
     def lost(self) -> Message | None:
-        """Say what somebody did to one of the objects, or to what they avoid, that makes going on impossible."""
+        """Say what was done to one of the objects, or to what they avoid, that makes it impossible to go on."""
         return self.group.lost(alone=not self.task.obstacles) or self.surroundings.lost()
 
     def reworded(self, error: CurveError) -> CurveError:
@@ -181,7 +181,7 @@ class Session:
 
     @property
     def _measure(self) -> Measure:
-        """What stays as it is."""
+        """The measure of size that stays constant."""
         if self.goals.curves:  # which have sizes of their own
             return Measure.LENGTH
         stays = self.task.pins or self.task.obstacles or self.options.grow != 1.0
@@ -207,7 +207,7 @@ class Session:
         return self.motion.at(frame, self._key_options.timing)
 
     def _mark_pins(self) -> None:
-        """Mark the points that are where the last iterate has pins, of which there may be fewer vertices."""
+        """Mark the points where the last iterate, which may have fewer vertices, has pins."""
         if self._repinned and (last := self.motion.last) is not None:
             link, curve = self.group.link, last.curve
             shown = link.to_common(self.motion.start.mesh, self.motion.frame)

@@ -1,4 +1,4 @@
-"""The splines of curve data: copied with all that they and their points have, made into polygons, compared."""
+"""The splines of curve data: copied with all settings of theirs and of their points, made into polygons, compared."""
 
 import hashlib
 from collections.abc import Sequence
@@ -63,7 +63,7 @@ class Splines:
         return cls([_Spline.of(spline) for spline in data.splines], active)
 
     def polygons(self, drawn: Curve, refined: Curve) -> "Splines":
-        """The same as poly splines with the vertices of a refined curve; where their points are is left open.
+        """The same as poly splines with the vertices of a refined curve; the positions of their points are left open.
 
         New points have values between those of their neighbours; all other settings stay. ``drawn``: the polygons that
         are drawn for the splines, a component each.
@@ -92,7 +92,7 @@ class Splines:
 
 @dataclass(frozen=True)
 class SplineShape:
-    """What a spline is but for where its points are: its type, their number, and whether it is closed."""
+    """A spline apart from the positions of its points: its type, their number, and whether it is closed."""
 
     type: str
     count: int
@@ -104,7 +104,7 @@ def shape(data: bpy.types.Curve) -> list[SplineShape]:
 
 
 def digest(data: bpy.types.Curve) -> bytes:
-    """A name for the points, and for how many keys they have; cheap enough for every redraw."""
+    """A fingerprint of the points and of the number of their keys; cheap enough for every redraw."""
     keys = len(data.shape_keys.key_blocks) if data.shape_keys else 0
     hashed = hashlib.blake2b(repr((shape(data), keys)).encode(), digest_size=16)
     for spline in data.splines:
@@ -118,7 +118,7 @@ def control_points(spline: bpy.types.Spline) -> Any:
 
 
 def coordinates(spline: bpy.types.Spline) -> Frame:
-    """Where the points of a spline of any type are; shape (n, 3)."""
+    """The positions of the points of a spline of any type; shape (n, 3)."""
     width = 3 if spline.type == "BEZIER" else 4
     return read(control_points(spline), "co", width).reshape(-1, width)[:, :3]
 
@@ -136,7 +136,7 @@ def read(items: Any, name: str, width: int = 1, dtype: Any = np.float32) -> npt.
 
 
 def _properties(owner: bpy.types.bpy_struct) -> list[bpy.types.Property]:
-    """Everything that can be written but what belongs to surfaces; the type of a spline is set when it is made."""
+    """Everything writable except what belongs to surfaces; a spline's type is set when it is made."""
     properties = (p for p in owner.bl_rna.properties if p.type in _TYPES and not p.is_readonly)
     return [p for p in properties if p.identifier != "type" and not p.identifier.endswith("_v")]
 
@@ -147,7 +147,7 @@ def kind(spline: bpy.types.Spline) -> str:
 
 
 def smooth_splines(data: bpy.types.Curve) -> list[bpy.types.Spline]:
-    """The splines that are no polygons yet."""
+    """The splines that are not polygons yet."""
     return [spline for spline in data.splines if spline.type != "POLY"]
 
 

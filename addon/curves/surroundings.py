@@ -1,6 +1,6 @@
-"""What curves avoid, as the 3D view shows it when a relaxation begins, and what lies near and is not avoided.
+"""What curves avoid, as the 3D view shows it when a relaxation begins, and nearby objects that are not avoided.
 
-Objects count with their modifiers and all that they show copies of, as triangles and edges.
+Objects count with their modifiers and everything they show copies of, as triangles and edges.
 """
 
 from collections.abc import Iterator, Sequence
@@ -19,7 +19,7 @@ from .exchange import Reference
 from .moving import unsteady, unsteady_object
 from .splines import read
 
-STAGE = "mobius_flow_stage"  # custom property of what only surrounds curves, to be seen with them
+STAGE = "mobius_flow_stage"  # custom property of objects that only surround curves, to be seen with them
 TUBE_OF = "mobius_flow_tube_of"  # custom property of a tube's mesh: the curve object that it was made of
 _MARGIN = 0.1  # of the diagonal of the curves' box
 SOLID = {"CURVE", "MESH", "SURFACE", "META", "FONT"}  # what Blender makes meshes of
@@ -29,7 +29,7 @@ WITHOUT_SHAPE = {"ARMATURE", "CAMERA", "LATTICE", "LIGHT", "LIGHT_PROBE", "SPEAK
 def avoidable(
     collection: bpy.types.Collection | None, relaxed: Sequence[bpy.types.Object]
 ) -> Iterator[bpy.types.Object]:
-    """Yield what of a collection is visible, has a shape, and is not relaxed itself."""
+    """Yield the objects of a collection that are visible, have a shape, and are not relaxed themselves."""
     for obj in collection.all_objects if collection is not None else ():
         bare = obj.type == "EMPTY" and obj.instance_type == "NONE"
         if not bare and obj.type not in WITHOUT_SHAPE and obj not in relaxed and obj.visible_get():
@@ -37,7 +37,7 @@ def avoidable(
 
 
 def add(scene: bpy.types.Scene, objects: Sequence[bpy.types.Object]) -> bpy.types.Collection:
-    """Add objects to the collection that the scene's curves avoid, which is made where there is none.
+    """Add objects to the collection that the scene's curves avoid, which is made if there is none.
 
     Raises MobiusFlowError if the collection belongs to another file.
     """
@@ -98,7 +98,7 @@ class Surroundings:
         return tuple(place.reference.name for place in self._places)
 
     def lost(self) -> Message | None:
-        """Say what somebody did to one of the objects that makes what was proved of them pointless."""
+        """Say what was done to one of the objects that makes the proofs about them pointless."""
         return next((reason for place in self._places if (reason := place.lost())), None)
 
 
@@ -108,7 +108,7 @@ NOTHING = Surroundings()
 def warning(
     context: bpy.types.Context, objects: Sequence[bpy.types.Object], avoided: Sequence[bpy.types.Object] = ()
 ) -> Message | None:
-    """Name what is visible near curve objects, and neither one of them nor avoided by them, or return None."""
+    """Name what is visible near curve objects, but neither one of them nor avoided by them, or return None."""
     if not (found := near(context, objects, avoided)):
         return None
     names = named([obj.name for obj in found])
@@ -145,7 +145,7 @@ def surfaces(
 ) -> list[list[Surface]]:
     """What each of some objects shows, piece by piece.
 
-    Raises MobiusFlowError if one of them is hidden, or shows what cannot be avoided: something else than faces and
+    Raises MobiusFlowError if one of them is hidden, or shows what cannot be avoided: something other than faces and
     edges, or a copy of an object that does not stand still while others are relaxed.
     """
     shown: dict[int, list[Surface]] = {obj.session_uid: [] for obj in objects}
@@ -174,9 +174,9 @@ def surfaces(
 
 
 def _check_kind(obj: bpy.types.Object, shown: str) -> None:
-    """Refuse what is neither a mesh nor can be made one: an object's type, or that of a part which it shows besides.
+    """Refuse the type of an object, or of a part that it shows besides, if it is not a mesh and cannot be made one.
 
-    Geometry nodes can give an object parts of other types, such as points; of curves among them no mesh is made.
+    Geometry nodes can give an object parts of other types, such as points; curves among them are not made into meshes.
     """
     unknown = shown not in SOLID | WITHOUT_SHAPE | {"EMPTY"}
     if unknown or shown not in (obj.type, "MESH"):

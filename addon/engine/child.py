@@ -1,4 +1,4 @@
-"""The worker's program: relaxes a curve in a process of its own, as a hand may drag it, and ends as Blender does.
+"""The worker's program: relaxes a curve, which a hand may drag, in its own process, and ends when Blender does.
 
 Blender runs this file by its path, with its own Python. The package is loaded under a private name, because in
 Blender it is called something like ``bl_ext.user_default.mobius_flow``, which a plain Python cannot import.
@@ -19,7 +19,7 @@ _PACKAGE = "_mobius_flow_worker"
 
 
 def main() -> None:
-    """Do the job that comes in through the standard input; send what comes out through the standard output."""
+    """Do the job that is read from standard input, and send the results to standard output."""
     _load_package(Path(__file__).resolve().parents[2])
     wire = importlib.import_module(f"{_PACKAGE}.addon.engine.wire")
     worker = importlib.import_module(f"{_PACKAGE}.addon.engine.worker")
@@ -44,7 +44,7 @@ def _load_package(root: Path) -> None:
 
 
 def _take_in(read: Callable[[IO[bytes]], Any], inbox: "queue.SimpleQueue[Any]") -> None:
-    """Put what Blender says into the inbox; the input ends when Blender closes it, crashes or is killed."""
+    """Put Blender's messages into the inbox; the input ends when Blender closes it, crashes or is killed."""
     with contextlib.suppress(EOFError, OSError):
         while True:
             inbox.put(read(sys.stdin.buffer))

@@ -24,7 +24,7 @@ Colour = Sequence[float]  # red, green and blue from 0 to 1, as on the screen; m
 _ENOUGH = 3.0  # contrast of lines, after WCAG 2.1
 _EXTREMES = (2.0, 98.0)  # per cent of the values between which the ramp runs: a few corners must not flatten the rest
 COMPONENT, DISTANCE, ENERGY = "component", "strand_distance", "energy_density"  # as attributes are called
-_BLOCK = 2_000_000  # pairs looked at together
+_BLOCK = 2_000_000  # pairs processed together
 
 
 def of_components(components: FloatArray) -> FloatArray:
@@ -41,7 +41,7 @@ def ramp(values: FloatArray) -> FloatArray:
     return np.column_stack([np.interp(share, places, channel) for channel in anchors.T])
 
 
-# by which number vertices are coloured, and how: bright is what is near, and what has much energy
+# the numbers that colour vertices, and how: near strands and high energies are bright
 COLOURINGS: dict[str, Callable[[FloatArray], FloatArray]] = {
     COMPONENT: of_components,
     DISTANCE: lambda distances: ramp(-distances),
@@ -50,17 +50,17 @@ COLOURINGS: dict[str, Callable[[FloatArray], FloatArray]] = {
 
 
 def linear(srgb: FloatArray) -> FloatArray:
-    """From the values that screens are sent, sRGB from 0 to 1, to light."""
+    """Convert the values sent to screens, sRGB from 0 to 1, to light."""
     return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
 
 
 def on_screen(light: FloatArray) -> FloatArray:
-    """From light to the values that screens are sent; the inverse of :func:`linear`."""
+    """Convert light to the values sent to screens; the inverse of :func:`linear`."""
     return np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
 
 
 def flatly_lit(tint: FloatArray) -> FloatArray:
-    """A material's colour for where its light is plain: in Workbench, and in small pictures."""
+    """A material's colour where the light is plain: in Workbench, and in small pictures."""
     return np.asarray(tint**_FLAT)
 
 
@@ -76,12 +76,12 @@ def contrast(one: Colour, other: Colour) -> float:
 
 
 def legible(wanted: Colour, ground: Colour) -> Colour:
-    """The wanted colour, or black or white if it cannot be told from the ground."""
+    """The wanted colour, or black or white if it does not stand out from the ground."""
     return max((wanted, (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)), key=lambda each: min(contrast(each, ground), _ENOUGH))
 
 
 def vertex_values(link: Curve) -> dict[str, FloatArray]:
-    """All of them, by their names, (n,) each.
+    """All values that may colour vertices, by name, (n,) each.
 
     The number of the component, counted from 0; the distance to the nearest other strand, in the link's units; and the
     Möbius energy per length, in 1/unit.

@@ -1,8 +1,8 @@
 """Values in between: on the edges of a polygon, between keys, and at markers that follow changes of its mesh.
 
 Blender's keys need the same points throughout. On each mesh every vertex is a marker, and the others have places on
-edges: so all move straight where vertices do. Where a vertex is left out, its marker stays on the edge; where one is
-put in, a marker of that edge becomes it, and only if none is left, all earlier shapes get one more.
+edges: so all move straight where vertices do. Where a vertex is removed, its marker stays on the edge; where one is
+inserted, a marker of that edge becomes it, and only if none is left do all earlier shapes get one more.
 """
 
 from collections.abc import Sequence
@@ -19,7 +19,7 @@ _HALVINGS = 5
 
 
 def along(values: npt.NDArray[np.float32], size: int, closed: bool) -> FloatArray:
-    """Values of a spline's control points, (k,), at so many points drawn for it, which lie evenly between those."""
+    """Values of a spline's control points, (k,), at the points drawn for it, which are spread evenly between them."""
     if closed:
         return np.interp(np.arange(size) * len(values) / size, np.arange(len(values)), values, period=len(values))
     return np.interp(np.linspace(0.0, len(values) - 1, size), np.arange(len(values)), values)
@@ -62,7 +62,7 @@ def places_between(points: FloatArray, mesh: Mesh) -> FloatArray:
 
 
 class Markers:
-    """Those of one component.
+    """The markers of one component.
 
     A place is the number of a vertex and, after the point, a part of the edge to the next one. Places ascend; round a
     closed polygon the first one comes again in the end, a turn later. The first one is the first vertex at the start.
@@ -72,7 +72,7 @@ class Markers:
         self.closed, self._size = closed, size
         # places on each mesh of the markers that there were then,
         self._places: list[FloatArray] = [np.arange(size + closed, dtype=float)]
-        # where there came more, the number of the mesh, and the places of all among those that there were before
+        # where markers were added, the number of the mesh, and the places of all markers among the earlier ones
         self._more: list[tuple[int, FloatArray]] = []
 
     def __len__(self) -> int:

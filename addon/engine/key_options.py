@@ -13,21 +13,21 @@ from ...core.messages import Message
 from ...core.types import FloatArray
 from .size import Measure
 
-LAST_FRAME = 1_048_574  # of any scene; up to it, 32-bit numbers tell a sixteenth of a frame apart
+LAST_FRAME = 1_048_574  # of any scene; up to here, 32-bit numbers resolve a sixteenth of a frame
 FRAMES_PER_ITERATE = (0.1, 10_000.0)
 _BY_ITERATE = Message("Start Frame, Frames/Iterate or Max Iterations")  # what the last frame depends on
 _BY_LENGTH = Message("Start Frame or Length")
-# shares of an even motion: of distance, of what the energy has fallen by, so that drift takes few frames, and of the
+# weights in an even motion: of distance, of the fall in energy, so that drift takes few frames, and of the
 # iterates, so that the last, small steps get some
 _EVEN = 0.55, 0.3, 0.15
 _DRIFT, _NEAR = 0.1, 0.03  # what a way is worth along which the energy stays near the end, and that in bits of it
-_SLOWEST = 1000  # frames for a way as long as the curve is wide: what is slower seems to rest
-_RAMP = 0.12  # of the time, in which an even motion sets off, and in which it comes to rest
-_CREEP = 0.1  # of its speed, with which it begins and ends
+_SLOWEST = 1000  # frames for a distance as long as the curve is wide: slower motion looks like rest
+_RAMP = 0.12  # share of the time in which an even motion starts, and in which it comes to rest
+_CREEP = 0.1  # share of its speed at which it begins and ends
 
 
 class Pace(Enum):
-    """What advances evenly from frame to frame; the values name it for people."""
+    """What advances evenly from frame to frame; the values are its names for people."""
 
     EVEN = "Even Motion"
     DISTANCE = "By Distance"
@@ -40,7 +40,7 @@ class Course:
     """How far a relaxation has come at each of several frames; ascending arrays of shape (frames,)."""
 
     iterates: FloatArray  # number of iterates passed
-    distance: FloatArray  # way of the fastest vertex, in sizes of the curve, summed up
+    distance: FloatArray  # distance travelled by the fastest vertex, in sizes of the curve
     flow_time: FloatArray  # sum of the step sizes
     fall: FloatArray  # of the logarithm of the energy above where it ends and a bit, see `Motion`
 
@@ -54,14 +54,14 @@ class Course:
         return _share(self.flow_time if pace is Pace.FLOW_TIME else self.distance, self.iterates)
 
     def _worth(self, passed: FloatArray) -> FloatArray:
-        """Something that passes, summed up with less weight where the energy hardly falls any more: drift."""
+        """A running total, with less weight where the energy hardly falls any more: drift."""
         above = np.expm1(np.minimum(self.fall[-1] - self.fall, 50.0))  # bits of energy above the end
         worth = (above + _DRIFT * _NEAR) / (above + _NEAR)
         return np.concatenate([[0.0], np.cumsum(0.5 * (worth[1:] + worth[:-1]) * np.diff(passed))])
 
 
 def _eased(share: FloatArray) -> FloatArray:
-    """When shares of a motion have passed that sets off and comes to rest gently."""
+    """The times at which shares of a motion that starts and stops gently have passed."""
     time = np.linspace(0.0, 1.0, 1001)
     speed = np.clip(np.minimum(time, 1.0 - time) / _RAMP, _CREEP, 1.0)
     passed = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]))])
@@ -69,7 +69,7 @@ def _eased(share: FloatArray) -> FloatArray:
 
 
 def _share(passed: FloatArray, otherwise: FloatArray) -> FloatArray:
-    """From 0 to 1 as something passes, or as something else does if that stands still."""
+    """A running total scaled to go from 0 to 1, or another one if the first does not change."""
     for each in (passed, otherwise):
         if np.ptp(each) > 0:
             return np.asarray((each - each[0]) / np.ptp(each))
@@ -83,9 +83,9 @@ class Timing:
     Raises OptionError if a value is outside its range.
     """
 
-    pace: Pace = Pace.EVEN  # what passes evenly from frame to frame
+    pace: Pace = Pace.EVEN  # what advances evenly from frame to frame
     start_frame: float = 1.0  # frame at which the animation begins
-    # number of frames, those at rest among them; with `Pace.ITERATE` it follows from the number of iterates
+    # number of frames, including those at rest; with `Pace.ITERATE` it follows from the number of iterates
     length: int = 250
     frames_per_iterate: float = 1.0  # frames from one iterate to the next, for `Pace.ITERATE`
     hold_start: int = 0  # frames at rest before and after the motion
@@ -130,7 +130,7 @@ class Timing:
         return _apart(self.moments(course))
 
     def moments(self, course: Course) -> FloatArray:
-        """The same in real numbers, which ascend, several perhaps alike; (keys,)."""
+        """The same as real numbers, which ascend, some of them perhaps equal; (keys,)."""
         begin, end = self._motion(course.iterates[-1])
         return np.asarray(begin + (end - begin) * course.share(self.pace))
 
@@ -152,7 +152,7 @@ class Timing:
 
 
 def _apart(frames: FloatArray) -> FloatArray:
-    """Ascending frames as different 32-bit numbers; where they crowd at the end, the last one stays where it is."""
+    """Ascending frames as distinct 32-bit numbers; where they crowd at the end, the last one stays where it is."""
     stored = frames.astype(np.float32)
     last = stored[-1]
     for k in range(1, len(stored)):
@@ -183,7 +183,7 @@ class KeyOptions:
     # do so with every curve that is drawn as a line or a plain round tube, also where its depth is the artist's own
     any_bevel: bool = False
     constant_radius: bool = False  # draw such tubes as thick at all keys as at the one where they are thinnest
-    # what stays as it is at the first key; where it is not the length, which the flow keeps, keys are scaled; None: the
+    # what is kept as at the first key; where it is not the length, which the flow keeps, keys are scaled; None: the
     # radius, or the length where something is pinned or avoided, or grows
     keep_size: Measure | None = None
 

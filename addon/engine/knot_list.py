@@ -1,4 +1,4 @@
-"""The table's knots as artists pick them: labels, groups of not too many, and small pictures.
+"""The table's knots as artists pick them: labels, groups that are not too large, and small pictures.
 
 Pictures are drawn with NumPy alone: tubes under a light, seen from +z.
 """
@@ -35,7 +35,7 @@ _TINTS = on_screen(flatly_lit(np.array(PALETTE)))
 _RADIUS, _RIM = 0.075, 0.035  # of the tube and of the dark rim that sets it off from what is behind; half-widths
 _FILL = 0.88  # of the picture's width
 _STEP = 0.3  # of the radius, from one ball of the tube to the next
-_BEHIND = 2.5  # of the radius: a rim hides what is so far behind it
+_BEHIND = 2.5  # of the radius: a rim hides what is this far behind it
 _LIGHT = np.array([-0.35, 0.5, 0.79])
 _AMBIENT = 0.35
 _RIM_COLOR = 0.08
@@ -53,7 +53,7 @@ def group(name: str) -> str:
 
 @cache
 def labels() -> Mapping[str, str]:
-    """What each knot of the table is called in lists, such as ``3_1 Trefoil``."""
+    """The label of each knot of the table in lists, such as ``3_1 Trefoil``."""
     words: dict[str, str] = {}
     for alias, name in ALIASES.items():
         if title := _TITLES.get(alias, alias.title()):
@@ -62,7 +62,7 @@ def labels() -> Mapping[str, str]:
 
 
 def name_of(label: str) -> str:
-    """The name that a label begins with; anything else is given back as it is."""
+    """The name that a label begins with; anything else is returned unchanged."""
     first = label.split()[0] if label.split() else label
     return first if labels().get(first) == label.strip() else label
 
@@ -117,7 +117,7 @@ def _balls(
 
 
 def _topmost(rows: IntArray, columns: IntArray, height: FloatArray, depth: FloatArray) -> IntArray:
-    """Those that cover what is there, one for each pixel; the heights there become theirs."""
+    """The balls that cover what is there, one for each pixel; their heights replace the old ones."""
     order = np.argsort(height)
     last = np.full(depth.shape, -1, dtype=np.intp)
     last[rows[order], columns[order]] = order  # of several values assigned to a pixel the last one stays

@@ -21,9 +21,9 @@ from .size import Measure, Size
 
 Proof = Callable[[Mesh, FloatArray, FloatArray], bool]
 
-_HALVINGS = 5  # of one leg; its keys are then still further apart in time than what Blender tells apart
+_HALVINGS = 5  # of one leg; its keys are then still further apart in time than Blender can resolve
 _MANY, _CUTS = 120, 8  # keys with which a rounded motion looks smooth, and at most so many for each that there is
-_BIT = 0.01  # of the least energy: falls far below that are not seen
+_BIT = 0.01  # of the least energy: falls far below this are not visible
 _TINY = 1e-300
 
 
@@ -62,7 +62,7 @@ class Motion:
     """The frames of a relaxation in the numbers that Blender will store, collected as they come.
 
     All keys have as many points: where the mesh changes on the way, vertices and points on edges, see `Markers`.
-    ``first``: the start as it is stored already, where keys are added to others; ``measure``: what stays as it is then,
+    ``first``: the start as already stored, where keys are added to others; ``measure``: what stays constant,
     see `engine.size`; lengths are left to the flow.
     """
 
@@ -84,7 +84,7 @@ class Motion:
     def add(self, iterate: Iterate) -> None:
         """Append an iterate with its legs; raises MobiusFlowError if none lead to it, and it is not the last one.
 
-        If there is one of its number, it takes its place, and those after that one go: a drag was taken back.
+        An iterate of the same number is replaced, and those after it are dropped: a drag was taken back.
         """
         if 0 < iterate.index < len(self._ends):
             self._go_back(iterate.index)
@@ -119,7 +119,7 @@ class Motion:
         self._energies.append(iterate.energy)
 
     def unsized(self, point: FloatArray) -> FloatArray:
-        """The point of the relaxation, shape (3,), that is at another in the size of the last frame."""
+        """The point of the relaxation, shape (3,), that appears at a given one in the size of the last frame."""
         if self._size is None or not self._reached:
             return point
         return self._size.taken_from(point, self._reached[-1])
@@ -134,7 +134,7 @@ class Motion:
         self._mesh = Mesh(tuple(map(len, self._markers)), self._meshes[-1].closed)
 
     def _change(self, old: Curve, new: Curve, frame: Frame) -> None:
-        """Go on to another mesh; vertices that stay keep the numbers that they are stored as."""
+        """Go on to another mesh; vertices that stay keep their stored coordinates."""
         for markers, was, now in zip(self._markers, old.mesh.slices, new.mesh.slices, strict=True):
             try:
                 here, there = common_vertices(old.vertices[was], new.vertices[now], markers.closed)
@@ -151,7 +151,7 @@ class Motion:
 
         ``free``: ``free(mesh, start, end)`` proves a straight motion free of contact; ``limit``: wanted number of keys,
         at least 2, spread evenly over the frames; None keys every iterate. Keys are added beyond it where the straight
-        motion from one to the next cannot be proved; ``pace``: what passes evenly from frame to frame; with
+        motion from one to the next cannot be proved; ``pace``: what advances evenly from frame to frame; with
         `Pace.EVEN` corners are rounded where that can be proved too.
         """
         chosen = self._spread(limit, pace)
@@ -185,7 +185,7 @@ class Motion:
         return {k: leg[1:] for k, leg in legs.items()}
 
     def _sized(self, mean: Key) -> Key:
-        """A mean of keys in the size that these have."""
+        """A mean of keys, scaled to the size that the keys have."""
         if self._size is None or self._size.like is not None:
             return mean
         pieces = zip(self._link.placements, self._link.slices(self._mesh), strict=True)
@@ -204,7 +204,7 @@ class Motion:
     def course(self, keys: Keys) -> Course:
         """How far the relaxation has come at each of some keys.
 
-        The way is measured along all that was recorded: thinning changes no key's frame.
+        The distance is measured along everything recorded: thinning changes no key's frame.
         """
         times = [key.time for key in keys.keys]
         recorded, whole = [shape.time for shape in self._shapes], self._course
@@ -322,9 +322,9 @@ class Motion:
 
 
 def _means(keys: Sequence[Key], cuts: int) -> list[Key]:
-    """Cut legs between keys into so many pieces; of all but the first and the last key, means over the nearest legs.
+    """Cut legs between keys into ``cuts`` pieces each; average all but the first and the last key over nearby legs.
 
-    A motion along straight ways turns in many small corners then, instead of a few sharp ones; points that rest do.
+    A motion along straight lines then turns in many small corners instead of a few sharp ones; points at rest stay so.
     """
     places = np.linspace(0.0, len(keys) - 1.0, (len(keys) - 1) * cuts + 1)
     times = interpolated(np.array([key.time for key in keys]), places)
@@ -345,6 +345,6 @@ def _leg_times(index: int, ways: Sequence[float]) -> list[float]:
 
 
 def _way(a: FloatArray, b: FloatArray) -> float:
-    """Way of the fastest vertex from one frame to another, in sizes of the curve: what the eye follows."""
+    """Distance travelled by the fastest vertex between two frames, in sizes of the curve: what the eye follows."""
     size = max(np.ptp(a, axis=0).max(), np.ptp(b, axis=0).max())  # the larger one: it may just be scaled
     return float(np.linalg.norm(b - a, axis=1).max() / size)

@@ -1,4 +1,4 @@
-"""What objects show, as obstacles that still stand in the world and in the common space of those that move."""
+"""The objects shown, as obstacles at rest in the world and in the common space of the objects that move."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ _WORLD = Placement(np.eye(3), np.zeros(3))
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """Triangles, and the edges of none of them, in the world."""
+    """Triangles, and edges that belong to none of them, in the world."""
 
     vertices: FloatArray  # positions, shape (k, 3)
     triangles: IntArray  # indices of their corners, shape (f, 3)
@@ -38,7 +38,7 @@ class Surface:
 
 
 def _loose(edges: IntArray, triangles: IntArray) -> IntArray:
-    """Those edges that are no side of a triangle; shape (e, 2)."""
+    """The edges that are not sides of a triangle; shape (e, 2)."""
     sides = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     low, high = np.sort(edges, axis=1).T
     count = 1 + max(sides.max(initial=0), edges.max(initial=0))
@@ -46,7 +46,7 @@ def _loose(edges: IntArray, triangles: IntArray) -> IntArray:
 
 
 def obstacles(name: str, surfaces: Sequence[Surface]) -> Iterator[Obstacle]:
-    """Yield what an object shows, all of its parts together: its triangles, and its edges without any.
+    """Yield what an object shows, all of its parts together: its triangles, and its edges that belong to none.
 
     Raises CurveError if there is nothing, or a coordinate is not finite, or as good as infinite.
     """
@@ -65,6 +65,6 @@ def obstacles(name: str, surfaces: Sequence[Surface]) -> Iterator[Obstacle]:
 
 
 def in_common_space(avoid: Iterable[Obstacle], link: Link) -> tuple[Obstacle, ...]:
-    """Obstacles of the world where motions of a link are proved: the vertices mapped there in doubles."""
+    """The world's obstacles in the space where motions of a link are proved: vertices are mapped there in doubles."""
     there = _WORLD.relative_to(link.placements[0])
     return tuple(Obstacle(there.to_world(each.vertices), each.faces, each.name) for each in avoid)

@@ -1,6 +1,6 @@
 """Where objects are, places on them, and how they are turned.
 
-Each keeps points in coordinates of its own, and motions of all are proved in one space.
+Each object keeps points in coordinates of its own; the motions of all are proved in one space.
 """
 
 from collections.abc import Iterator
@@ -32,7 +32,7 @@ class Placement:
 
     @classmethod
     def from_matrix(cls, matrix: npt.ArrayLike) -> "Placement":
-        """The affine map that a matrix is in homogeneous coordinates; shape (4, 4)."""
+        """The affine map that a matrix describes in homogeneous coordinates; shape (4, 4)."""
         linear_and_origin = np.array(matrix, dtype=np.float64)[:3]
         return cls(linear_and_origin[:, :3], linear_and_origin[:, 3])
 
@@ -58,7 +58,7 @@ class Placement:
 
 @dataclass(frozen=True, eq=False)
 class Link:
-    """One or more objects whose splines are one link.
+    """One or more objects whose splines form one link.
 
     Blender rounds points in each object's own coordinates. What is proved about all of them together is proved in
     one common space, the coordinates of the first object: the rounded points, mapped there in doubles. Invertible
@@ -75,7 +75,7 @@ class Link:
 
     @cached_property
     def scales(self) -> tuple[float, ...]:
-        """The most that each object's coordinates are stretched on the way to the common space."""
+        """The largest factor by which each object's coordinates are stretched on the way to the common space."""
         return tuple(float(np.linalg.norm(placement.linear, 2)) for placement in self._to_first)
 
     def slices(self, mesh: Mesh) -> tuple[slice, ...]:
@@ -107,11 +107,11 @@ class Spot:
 
     member: int  # number of the object among those that are relaxed together
     points: FloatArray  # the points to select, in the object's coordinates; shape (k, 3)
-    marks: FloatArray  # the places to mark, likewise; one for the object at which the place is, none for others
+    marks: FloatArray  # the places to mark, likewise; one for the object that has the place, none for others
 
 
 def spots(place: Place, curve: Curve, link: Link) -> list[Spot]:
-    """The spots of a place on a curve in the world, object by object, that with the mark first."""
+    """The spots of a place on a curve in the world, object by object, the one with the mark first."""
     vertices = list(place.vertices)
     if not vertices:  # the nearest one
         vertices = [int(np.linalg.norm(curve.vertices - place.position, axis=1).argmin())]
@@ -129,7 +129,7 @@ def spots(place: Place, curve: Curve, link: Link) -> list[Spot]:
 
 
 def at(points: FloatArray, wanted: FloatArray) -> FloatArray:
-    """Which points, (n, 3), are nearest to one of those wanted, (k, 3), or in the same place as it is; shape (n,)."""
+    """Which points, (n, 3), are nearest to one of those wanted, (k, 3), or coincide with such a point; shape (n,)."""
     distances = np.linalg.norm(points[:, None] - wanted[None], axis=2)
     return np.asarray((distances <= distances.min(axis=0)).any(axis=1))
 

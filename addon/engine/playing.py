@@ -47,7 +47,7 @@ class Origin:
 
     @classmethod
     def of(cls, vertices: FloatArray) -> "Origin":
-        """None of both for a curve of everyday size near the origin."""
+        """The origin for a curve: neither moved nor scaled if it has everyday size and is near the origin."""
         low, high = vertices.min(axis=0), vertices.max(axis=0)
         size = float((high - low).max())
         near = np.abs(0.5 * (low + high)).max() <= _FAR * size
@@ -73,7 +73,7 @@ def check_dimension(curve: Curve) -> None:
 def recorded(iterates: Sequence[Iterate], measure: Measure = Measure.LENGTH) -> tuple[Motion, Origin]:
     """Collect the iterates of a run in the numbers that Blender will store; raises MobiusFlowError if it cannot.
 
-    ``measure`` is what stays as it is, see `Motion`.
+    ``measure``: what stays constant, see `Motion`.
     """
     start = iterates[0].curve
     check_dimension(start)

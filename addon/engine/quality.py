@@ -21,7 +21,7 @@ class Quality:
 
     @property
     def values(self) -> dict[str, Any]:
-        """The settings that it stands for; 0 vertices are as many as the core thinks right."""
+        """The settings that it stands for; 0 vertices leaves the number to the core."""
         return {name: getattr(self, name) for name in ("method", "tolerance", "max_iterations")} | {"vertices": 0}
 
     @property
@@ -33,7 +33,7 @@ class Quality:
         )
 
     def fits(self, settings: Any) -> bool:
-        """Whether settings have these values, up to what 32-bit numbers tell apart."""
+        """Whether settings have these values, to the precision of 32-bit numbers."""
         return all(_same(getattr(settings, name), value) for name, value in self.values.items())
 
 
@@ -51,5 +51,5 @@ QUALITIES: Mapping[str, Quality] = {
 
 
 def quality_of(settings: Any) -> str | None:
-    """The level that settings have, or None if they are of nobody's but the user's."""
+    """The level that settings match, or None if they are the user's own."""
     return next((name for name, quality in QUALITIES.items() if quality.fits(settings)), None)

@@ -12,7 +12,7 @@ from ...core.types import FloatArray
 
 CIRCLE = 4.0  # Möbius energy of the round circle, the least of any closed curve: Freedman, He and Wang (1994)
 SEGMENT = 0.0  # that of the straight segment, the least of any arc
-_MOST = 2000  # vertices of a curve whose type is looked at: a tenth of a second
+_MOST = 2000  # most vertices of a curve whose type is identified: a tenth of a second
 MAX_POINTS = 1500  # some ten seconds
 _ITERATIONS = 100  # that lead from points rounded to Blender's numbers back to a critical point
 _DECADE = 10.0  # ratio of energies from which they are drawn on a logarithmic scale
@@ -52,18 +52,18 @@ class Rest:
 
 @dataclass(frozen=True)
 class Target:
-    """A least energy, and what has it."""
+    """A least energy, and its label in the plot."""
 
     energy: float
     label: Message
 
 
 def target_of(curve: Curve | Task, options: RelaxOptions) -> Target | None:
-    """What the energy of a curve goes down to at the least; None if nothing useful is known.
+    """The least energy that a curve may come down to; None if nothing useful is known.
 
-    A closed component has at least the energy of a circle, which a knotted one is far from: a curve whose Alexander
-    polynomial shows that it is knotted has no target. An arc has at least that of a segment, which it comes near to
-    where its ends are free. Pins and obstacles keep curves far above that.
+    A closed component has at least the energy of a circle, and a knotted one far more: a curve whose Alexander
+    polynomial shows that it is knotted has no target. An arc has at least the energy of a segment, and comes near it
+    if its ends are free. Pins and obstacles keep curves far above that.
     """
     task = Task.of(curve)
     if options.energy != "moebius" or options.terms or task.pins or task.obstacles:

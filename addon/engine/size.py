@@ -1,4 +1,4 @@
-"""The size of moving curves: the flow keeps lengths, and people who look at them may want their size kept instead.
+"""The size of moving curves: the flow keeps lengths, but viewers may want the size kept instead.
 
 Scaling each key by a factor of its own about a centre of its own makes no contact.  Between keys A and B scaled by
 a, b > 0 the straight motion is
@@ -19,7 +19,7 @@ from ...core.types import FloatArray
 
 
 class Measure(Enum):
-    """What stays as it is; the values name it for people."""
+    """The quantity that stays constant; the values are its names for people."""
 
     LENGTH = "Length"
     BOX = "Bounding Box"
@@ -44,8 +44,8 @@ def barycenter(curve: Curve) -> FloatArray:
 class Size:
     """A size that all curves of a motion are given, until something is pinned: then all are scaled like that one."""
 
-    measure: Measure  # what is measured
-    value: float  # how much of it they are to have
+    measure: Measure  # the quantity measured
+    value: float  # its value for all of them
     like: Curve | None = field(default=None, compare=False)  # the curve whose factor and centre are those of all
 
     @classmethod
@@ -61,7 +61,7 @@ class Size:
         return curve if factor == 1.0 else curve.with_vertices(center + factor * (curve.vertices - center))
 
     def taken_from(self, point: FloatArray, curve: Curve) -> FloatArray:
-        """The point, shape (m,), that is seen at another when a curve is seen at this size."""
+        """The point, shape (m,), that appears at a given one when a curve is shown at this size."""
         center = barycenter(self.like or curve)
         return np.asarray(center + (point - center) / self.factor(curve))
 

@@ -26,7 +26,7 @@ _FIRST = 8  # control points tried first
 _GROWTH = 2**0.25  # of their number, until the spline is near enough
 _SAMPLES = 8  # per segment of the spline, where it is compared with the polygon
 _CLOSE = 0.05  # of the radius of the thickest tube, an error that the eye does not see
-_OF_EDGES = 1e-2  # weight of points on edges: without them control points beside long edges would be anywhere
+_OF_EDGES = 1e-2  # weight of points on edges: without them control points beside long edges would be arbitrary
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,9 +41,9 @@ class SmoothFit:
 
     @cached_property
     def error(self) -> float:
-        """The furthest that splines and polygons are from each other at the same parameter.
+        """The largest distance between splines and polygons at the same parameter.
 
-        Looked at are the polygons' vertices and eight points of every segment.
+        It is taken over the polygons' vertices and eight points of every segment.
         """
         polygon, spline = self._compared
         return float(np.linalg.norm(spline.vertices - polygon.vertices, axis=1).max())
@@ -167,13 +167,13 @@ def _shares_of_length(curve: Curve) -> list[FloatArray]:
 
 
 def _on_polygon(curve: Curve, shares: list[FloatArray]) -> FloatArray:
-    """Points of all components where so much of the length is passed; (sum of their numbers, 3)."""
+    """Points of all components at these shares of their lengths; (sum of their numbers, 3)."""
     component = np.repeat(np.arange(len(shares)), [len(t) for t in shares])
     return points_along(curve, component, np.concatenate(shares) * curve.component_lengths[component])
 
 
 def _merged(own: FloatArray, count: int) -> FloatArray:
-    """Parameters of vertices, and evenly spread ones that are not as good as the same."""
+    """Parameters of vertices, and evenly spread ones that do not nearly coincide with them."""
     even = np.arange(count) / count
     apart = np.abs(even[:, None] - np.append(own, 1.0)).min(axis=1) > 1e-3 / max(count, len(own))
     return np.sort(np.concatenate([own, even[apart]]))

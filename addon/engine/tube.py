@@ -24,7 +24,7 @@ from .motion import Keys, Proof
 _THICKEST = 0.016  # of a component's length: a round circle's tube is then a tenth of its radius
 _DISTINCT = 3.0  # two points lie on different strands if they are this many times further apart along the curve
 AIR = 0.94  # of half the gap, so that strands do not seem to touch
-_FINE = 8.0  # edges this many times shorter than a distance tell it
+_FINE = 8.0  # edges this many times shorter than a distance measure it well enough
 _FEWEST = 16  # vertices of a component that is thinned
 _POINTS = 350  # into which a film's curve is split at least: long edges have nothing to round
 _ROUND = 0.8  # of the free radius: the length over which corners are rounded
@@ -35,7 +35,7 @@ _GROWTH = 0.04  # of the thickest radius, per frame
 
 
 def thickest_radius(curve: Curve) -> float:
-    """Radius that looks right where there is room enough."""
+    """The radius that looks right where there is enough room."""
     return _THICKEST * curve.length / len(curve.mesh.component_sizes)
 
 
@@ -45,7 +45,7 @@ def free_radius(curve: Curve, thickest: float) -> float:
 
 
 def radius_beside(curve: Curve, radius: float, obstacles: Sequence[Obstacle]) -> float:
-    """A radius, or as much less, to 2 %, as obstacles leave room for; at least a thousandth of it."""
+    """A radius, or the largest that obstacles leave room for, to 2 %; at least a thousandth of it."""
 
     def fits(thick: float) -> bool:
         return clears(_thinned(curve, thick), obstacles, thick / AIR)
@@ -62,8 +62,8 @@ def radius_beside(curve: Curve, radius: float, obstacles: Sequence[Obstacle]) ->
 def strand_gap(curve: Curve, widest: float) -> float:
     """Least distance between strands of a curve, inf if it is more than ``widest``, to 1 %.
 
-    Where edges are much shorter than that, some of the vertices tell as much as all of them, which make too many pairs;
-    where these say that strands are near, more of them look for what is nearer still.
+    Where edges are much shorter than that, some vertices give the same answer as all, which make too many pairs;
+    where these find strands that are near, more of them are used to look for nearer ones.
     """
     while True:
         some = _thinned(curve, widest)
@@ -80,7 +80,7 @@ def between_edges(ends: FloatArray | float, lengths: FloatArray | float) -> Floa
 
 
 def _thinned(curve: Curve, distance: float) -> Curve:
-    """A curve with as few vertices, a few at least of each component, as tell such a distance; itself if all do."""
+    """A curve with only as many vertices as such a distance needs, a few at least in each component; itself if all."""
     stride = int(distance / (_FINE * curve.edge_lengths.max()))
     if stride <= 1:
         return curve

@@ -31,7 +31,7 @@ def write(stream: IO[bytes], message: Packet) -> None:
 
 
 def read(stream: IO[bytes]) -> Packet:
-    """Read a message; EOFError if there is no whole one any more."""
+    """Read a message; EOFError if no whole one is left."""
     header = json.loads(_exactly(stream, _LENGTH.unpack(_exactly(stream, _LENGTH.size))[0]))
     arrays = []
     for shape in header.pop("shapes"):
@@ -90,12 +90,12 @@ def unpack_goals(message: Packet) -> dict[str, Curve]:
 
 
 def pack_deed(deed: str, *facts: Any) -> Packet:
-    """What a hand does: a method of `Hand`, and what it is given."""
+    """An action of the hand: a method of `Hand`, and its arguments."""
     return {"deed": deed, "facts": facts}, []
 
 
 def unpack_deed(message: Packet, hand: Hand) -> None:
-    """Let the hand do it."""
+    """Perform it with the hand."""
     getattr(hand, message[0]["deed"])(*message[0]["facts"])
 
 
@@ -140,7 +140,7 @@ def pack_error(error: MobiusFlowError) -> Packet:
 
 
 def unpack_error(message: Packet) -> MobiusFlowError:
-    """The inverse of `pack_error`, as far as Blender tells errors apart."""
+    """The inverse of `pack_error`, as far as Blender distinguishes errors."""
     header = message[0]
     sentence = _unpack_message(header["error"])
     return OptionError(sentence) if header["of_option"] else CurveError(sentence, _place(header["place"]))

@@ -31,7 +31,7 @@ def _quoted(name: str) -> str:
 
 
 def spline_names(objects: Sequence[str], counts: Sequence[int]) -> list[Message]:
-    """Names of all splines of some objects, of which each has so many."""
+    """Names of all splines of some objects, given how many each object has."""
     return [
         Message(_SPLINE, number=k, name=_quoted(name))
         for name, count in zip(objects, counts, strict=True)
@@ -40,7 +40,7 @@ def spline_names(objects: Sequence[str], counts: Sequence[int]) -> list[Message]
 
 
 def in_blenders_words(message: str, splines: Sequence[Message]) -> str:
-    """What the core says, to somebody who sees objects; ``splines`` are the names of the components in turn."""
+    """A message of the core in the words of somebody who sees objects; ``splines`` names the components in turn."""
 
     def word(said: Message) -> Message:
         if said.template == COMPONENT:

@@ -34,7 +34,7 @@ from .obstacles import in_common_space
 from .placement import Frame, Link
 
 _AHEAD = 64  # iterates that wait to be taken in while Blender draws; then the worker waits too
-_PATIENCE = 0.1  # seconds between looks at whether anybody still wants the next iterate
+_PATIENCE = 0.1  # seconds between checks whether anybody still wants the next iterate
 
 
 Inbox = queue.SimpleQueue[wire.Packet | None]
@@ -43,7 +43,7 @@ Inbox = queue.SimpleQueue[wire.Packet | None]
 def messages(inbox: Inbox) -> Iterator[wire.Packet]:
     """Yield the iterates of a job as messages, or one message with the reason why it cannot be done.
 
-    The inbox has the job first, and then pauses and what the hand does, looked at between steps; None ends it.
+    The inbox holds the job first, and then pauses and actions of the hand, read between steps; None ends it.
     """
     job = inbox.get()
     if job is None:

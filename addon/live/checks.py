@@ -1,6 +1,6 @@
-"""The table of what is required of curves to be relaxed, drawn as tubes, cleared and so on.
+"""The table of requirements on curves to be relaxed, drawn as tubes, cleared and so on.
 
-Cheap enough for every redraw, but for `UNEDITED`. Coordinates, and what is drawn for smooth splines, are left for
+Cheap enough for every redraw, except `UNEDITED`. Coordinates, and what is drawn for smooth splines, are left for
 `exchange.read_link` to check.
 """
 
@@ -15,7 +15,7 @@ from ..curves import bake, bevel, splines
 from ..curves.moving import what_deforms, what_moves
 from .requirements import Check, Curves, Remedy, curves_at_hand, shown_curves
 
-_FLATTEST = 1e-6  # smallest ratio of an object's scales that 32-bit matrices can be inverted with
+_FLATTEST = 1e-6  # smallest ratio of an object's scales at which 32-bit matrices can be inverted
 
 
 def _short_spline(obj: bpy.types.Object) -> dict[str, int] | None:
@@ -175,7 +175,7 @@ def needing(objects: Sequence[bpy.types.Object], remedy: Remedy) -> Iterator[bpy
 
 
 def closable(objects: Sequence[bpy.types.Object]) -> Iterator[bpy.types.Object]:
-    """Yield the curve objects with open splines that may be closed: keys of a baked curve are about open ones."""
+    """Yield the curve objects with open splines that may be closed: a baked curve's keys are made for open ones."""
     for obj in objects:
         is_open = not all(spline.use_cyclic_u for spline in obj.data.splines)
         if is_open and not bake.is_baked(obj.data) and not _UNKEYED.of([obj]):

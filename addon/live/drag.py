@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
 _NEAR = 15.0  # pixels from the mouse to a strand, at the usual scale of the interface
 _ALIKE = 4.0  # pixels by which a strand in front may be farther from the mouse than one behind
-_STRAND = 0.05  # part of all edges within which those under the mouse are of one strand
+_STRAND = 0.05  # share of all edges within which the edges under the mouse belong to one strand
 _OVER = ("UI", "TOOLS", "HEADER", "TOOL_HEADER")  # regions that may lie over a view
 _GIZMOS = np.array([1.2, 4.0])  # width and height of the navigation gizmo's corner, in sizes of the gizmo
 
 
 @dataclass(eq=False)
 class Drag:
-    """What is held of a link: a component at a share of its length; in view, where it is pulled to."""
+    """The held point of a link, by component and share of its length, and the place in view that it is pulled to."""
 
     component: int
     share: float
@@ -34,9 +34,9 @@ class Drag:
 
     @classmethod
     def at(cls, curve: Curve, region: Any, mouse: FloatArray, near: float, radius: float = 0.0) -> "Drag | None":
-        """That of the strand under the mouse, the one in front if there are several; None if none is near.
+        """A drag of the strand under the mouse, the one in front if there are several; None if none is near.
 
-        ``near``: how far it may be, in pixels; ``radius``: that of the tube, in the world.
+        ``near``: how far it may be, in pixels; ``radius``: of the tube, in the world.
         """
         flat, depth, seen = projected(region, curve.vertices)
         tails, heads = curve.mesh.tails, curve.mesh.heads
@@ -61,7 +61,7 @@ class Drag:
         return cls(component, share, place, region, flat[tails[edge]] + t[edge] * along[edge] - mouse)
 
     def held(self, curve: Curve) -> FloatArray:
-        """Where the strand that is held is on a curve; shape (3,)."""
+        """The held point on a curve; shape (3,)."""
         place = self.share * curve.component_lengths[[self.component]]
         return np.asarray(points_along(curve, np.array([self.component]), place)[0])
 
@@ -72,7 +72,7 @@ class Drag:
 
 
 def handle(run: "Run", context: bpy.types.Context, event: bpy.types.Event) -> bool:
-    """Let the mouse drag what is relaxed; whether the event was about that.
+    """Let the mouse drag what is relaxed; return whether the event was about that.
 
     A press with a modifier belongs to Blender; letting go with Ctrl leaves a pin.
     """
@@ -136,7 +136,7 @@ def _size(region: Any) -> FloatArray:
 
 
 def projected(region: Any, points: FloatArray) -> tuple[FloatArray, FloatArray, Any]:
-    """Where points, (n, 3), are seen in a region, in pixels, (n, 2), how deep, (n,), and which are in front, (n,)."""
+    """Where points, (n, 3), appear in a region, in pixels, (n, 2), how deep, (n,), and which are in front, (n,)."""
     matrix = np.array(region.data.perspective_matrix, dtype=np.float64)
     *place, w = (np.pad(points, ((0, 0), (0, 1)), constant_values=1.0) @ matrix.T).T
     x, y, depth = np.array(place) / np.where(w > 0.0, w, 1.0)

@@ -72,7 +72,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """End what is running, and listen no more."""
+    """End what is running, and stop listening."""
     if run := registry.current():
         run.cancel(Message("Möbius Flow was disabled; all is as it was"))
     registry.forget()

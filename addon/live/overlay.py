@@ -48,7 +48,7 @@ def unregister() -> None:
 
 
 def _draw() -> None:
-    """Draw what there is in the view at hand; a view that cannot be drawn into is left alone."""
+    """Draw everything in the current view; a view that cannot be drawn into is left alone."""
     try:
         context = bpy.context
         run = registry.shown(context.active_object)
@@ -60,13 +60,13 @@ def _draw() -> None:
             _hand(context, run)
             if context.scene.mobius_flow_panel.show_plot and run.energies:
                 _plot(context, run)
-    except Exception:  # whatever happens to windows, files and graphics cards, nobody is to be interrupted by it
+    except Exception:  # whatever happens to windows, files and graphics cards must not interrupt anybody
         _log.debug("nothing was drawn over the view", exc_info=True)
 
 
 @dataclass(frozen=True, eq=False)
 class _Style:
-    """Sizes in pixels and colours of the plot, as interface and theme have them."""
+    """Sizes in pixels and colours of the plot, from the interface's scale and the theme."""
 
     scale: float
     font: float
@@ -121,7 +121,7 @@ def _curve(style: _Style, run: Run, origin: FloatArray, size: FloatArray) -> Non
 
 
 def _right(context: bpy.types.Context) -> float:
-    """Where the view ends at the right, or the sidebar begins that lies over it."""
+    """The right end of the view, or the beginning of the sidebar that lies over it."""
     region = context.region
     sidebars = [each for each in context.area.regions if each.type == "UI" and each.width > 1]
     return float(min([region.width, *(each.x - region.x for each in sidebars if each.x > region.x)]))
@@ -136,7 +136,7 @@ def _marks(context: bpy.types.Context, run: Run) -> None:
 
 
 def _hand(context: bpy.types.Context, run: Run) -> None:
-    """Mark the strand that is held, and draw a line from there to where it is pulled."""
+    """Mark the strand that is held, and draw a line from there to the place it is pulled to."""
     curve = run.group.in_view if run.drag is not None else None
     if run.drag is None or curve is None:
         return
@@ -162,7 +162,7 @@ def _pins(context: bpy.types.Context) -> None:
 
 
 def _seen(context: bpy.types.Context, places: Iterable[tuple[bpy.types.Object, FloatArray]]) -> Iterator[FloatArray]:
-    """Yield where places of objects are in the view at hand, those that are; shape (2,)."""
+    """Yield the positions of objects' places in the current view, if they are in it; shape (2,)."""
     for obj, place in places:
         if (there := _in_region(context, obj.matrix_world @ mathutils.Vector(place))) is not None:
             yield there

@@ -15,8 +15,8 @@ _latest: "list[Run]" = []
 class History:
     """Counts other actions during a run, such as selecting or moving an object: undo takes these back before the run.
 
-    ``others`` were done and not undone, ``undone`` may be redone. Drags have one step of undo among them, made anew
-    after each undo: Blender's takes back the last one then.
+    ``others`` were done and not undone, ``undone`` may be redone. Drags share one undo step among them, made anew after
+    each undo: Blender's own undo then takes back the last drag.
     """
 
     def __init__(self) -> None:
@@ -27,7 +27,7 @@ class History:
         self._seen = _last_operation()
 
     def push(self, run: "Run") -> None:
-        """Let there be a step of undo if there are drags; the file has the originals in it."""
+        """Make an undo step if there are drags; the originals are in the file for that moment."""
         if run.drags and not self._step and run.endures:
             run.group.hide()
             bpy.ops.ed.undo_push(message=iface_("Drag"))
@@ -43,7 +43,7 @@ class History:
         self._seen = last
 
     def undo(self, count: int = 1) -> bool:
-        """Note that an action was undone, or redone if ``count`` is -1; whether it was the drags' step."""
+        """Note that an action was undone, or redone if ``count`` is -1; return whether it was the drags' step."""
         self.others, self.undone = self.others - count, self.undone + count
         self._seen = _last_operation()
         if drag := self._step > self.others:

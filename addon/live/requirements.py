@@ -1,4 +1,4 @@
-"""What operators require of curves and scenes: a failed requirement gives a sentence, and a remedy if there is one."""
+"""Requirements of operators on curves and scenes: a failed one gives a sentence, and a remedy if there is one."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from . import registry
 
 
 class Remedy(Enum):
-    """What mends something that is refused; the values are operators of `buttons.mending`."""
+    """A remedy for a refusal; the values are operators of `buttons.mending`."""
 
     OBJECT_MODE = "curve.mobius_flow_object_mode"
     MAKE_LOCAL = "curve.mobius_flow_make_local"
@@ -40,9 +40,9 @@ _Choice = Callable[[bpy.types.Context], list[bpy.types.Object]]
 
 @dataclass(frozen=True)
 class Check:
-    """What is required of a curve object: where ``failure`` finds something, the sentence says so.
+    """A requirement on a curve object: where ``failure`` finds something, the sentence says so.
 
-    What is found fills in the sentence's field of that name, or, if it is a mapping, several fields. ``together`` marks
+    What is found fills in ``field`` in the sentence or, if it is a mapping, several fields. ``together`` marks
     what is required only of curves that are relaxed together.
     """
 
@@ -61,7 +61,7 @@ class Check:
 
 @dataclass(frozen=True)
 class Condition:
-    """What is required of the scene, or of all that is selected."""
+    """A requirement on the scene, or on everything selected."""
 
     sentence: str
     fails: Callable[[bpy.types.Context], bool]
@@ -142,7 +142,7 @@ def convertible(context: bpy.types.Context) -> list[bpy.types.Object]:
 
 
 def avoided(context: bpy.types.Context, name: str | None = None) -> list[bpy.types.Object]:
-    """What the selected curves are not to touch: visible objects of a collection, and the container they lie in.
+    """What the selected curves must not touch: visible objects of a collection, and the container they lie in.
 
     The collection is the scene's, or one given by name, and then there is no container. An empty name means to avoid
     nothing; raises MobiusFlowError if there is no collection of that name.

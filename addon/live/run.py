@@ -49,7 +49,7 @@ class Run:
 
     def __init__(self, session: Session, refresh: Refresh, stays: bool = False) -> None:
         self.state = State.RUNNING
-        self.message, self.failed = "", False  # what is to be said of its end
+        self.message, self.failed = "", False  # the message about its end
         self.on_end: Callable[[], None] = lambda: None
         self.last: Iterate | None = None
         self.report: Report | None = None
@@ -58,7 +58,7 @@ class Run:
         self.energies: list[float] = []
         self.drag: Drag | None = None  # the one that is going on
         self.drags = 0  # those that may be taken back
-        self.trouble: list[Spot] = []  # where the reason is why it failed or got stuck, if it is somewhere
+        self.trouble: list[Spot] = []  # where it failed or got stuck, if the reason has a place
         self._left: dict[int, bytes] | None = None  # what the objects were at its end, by their identities
         self._session, self._refresh = session, refresh
         self.time_left = TimeLeft(session.options)

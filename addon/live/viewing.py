@@ -1,4 +1,4 @@
-"""What the 3D views show of a run, as often as drawing allows, and its keys, in slices: the window never waits."""
+"""A run shown in the 3D views as often as drawing allows, and its keys written in slices: the window never waits."""
 
 import contextlib
 import threading
@@ -13,7 +13,7 @@ from ...core.types import FloatArray
 from ..curves.session import Prepared, Report, Session
 from ..engine.motion import Proof
 
-_REST = 2.0  # times as long as drawing takes nothing is drawn after it: drawing gets a third of the time
+_REST = 2.0  # pause after drawing, in multiples of the time that it took: drawing gets a third of the time
 _SLICE = 0.02  # seconds of writing at a time
 
 
@@ -24,7 +24,7 @@ def looks_back() -> bool:
 
 
 class Refresh:
-    """Decides which iterates are shown: every so many; 0: so that drawing takes at most a third of the time."""
+    """Decides which iterates are shown: one in every so many, or for 0 as many as take a third of the time to draw."""
 
     def __init__(self, every: int = 0, clock: Callable[[], float] = time.perf_counter) -> None:
         self._every, self._clock = every, clock
@@ -80,11 +80,11 @@ class KeyWriter:
 
     @property
     def has_begun(self) -> bool:
-        """Whether some keys are written, and perhaps not all."""
+        """Whether some keys have been written, though perhaps not all."""
         return self._pieces is not None
 
     def advance(self, seconds: float | None = None) -> Report | None:
-        """Write for so long, by default a moment, if the keys are ready, and report once all are written."""
+        """Write for a time, by default a moment, if the keys are ready, and report once all are written."""
         if self._thread.is_alive():
             return None
         if self._prepared is None:

@@ -1,6 +1,6 @@
 """Keyframed scenes, movies and pictures of a relaxation: what the command line calls.
 
-Each starts from an empty factory scene, so what is open in Blender is gone afterwards; writes the whole file
+Each starts from an empty factory scene, so what is open in Blender is lost; writes the whole file
 or none; and returns whether everything it shows was proved free of contact, in Blender's own numbers.
 """
 
@@ -49,7 +49,7 @@ def require_blender() -> None:
 
 
 def write_blend(path: Target, iterates: Sequence[Iterate], playing: Playing = ONCE) -> bool:
-    """Write a .blend in which the relaxation plays, ready to render, where the extension is not installed too.
+    """Write a .blend in which the relaxation plays, ready to render even where the extension is not installed.
 
     ``iterates`` are those of a run, from the start to the last. Raises MobiusFlowError if
     Blender's module is missing or the file cannot be written.
@@ -93,7 +93,7 @@ def _played(
 ) -> tuple[Any, bool]:
     """A scene that plays a relaxation, and whether all it shows is proved.
 
-    ``in_place``: as large and where it is, with its corners; otherwise these are rounded.
+    ``in_place``: in its own size and place, with its corners; otherwise these are rounded.
     """
     from . import film
 

@@ -47,7 +47,7 @@ def compose(
 ) -> None:
     """Put a keyed curve on a look's stage, by default near the scene's origin, and fit the scene's frames to it.
 
-    ``cut_out``: it is seen down the third axis, and of the floor there is nothing in the picture but shadows.
+    ``cut_out``: it is seen down the third axis, and nothing of the floor is in the picture but shadows.
     """
     points, look = [key.points for key in keys.keys], playing.look or DEFAULT
     radii = tube_radii(mesh, [each.astype(np.float64) for each in points], frames)

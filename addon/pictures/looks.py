@@ -11,8 +11,8 @@ Tint = tuple[float, float, float]  # linear RGB
 Nodes = Mapping[str, tuple[str, Mapping[Any, Any], Mapping[str, Any]]]
 
 SHADER = "Principled BSDF"
-# what stands, as a value, for a component's colour, for the shares of the ways along and around the tube, and for the
-# turns of a rope's strands and how far they and their yarns stand out
+# placeholders among values for a component's colour, for the shares of the length along and around the tube, and for
+# the turns of a rope's strands and how far they and their yarns stand out
 TINT, ALONG, TURNS, STRAND, YARN = "tint", "along", "turns", "strand", "yarn"
 
 
@@ -46,7 +46,7 @@ class Look:
 
     @property
     def uses_place(self) -> bool:
-        """Whether its nodes ask where on the tube they are."""
+        """Whether its nodes depend on the position on the tube."""
         return any(ALONG in inputs.values() for _, inputs, _ in self.nodes.values())
 
 
@@ -103,7 +103,7 @@ LOOKS = {
             "Emission Color": TINT,
             "Emission Strength": "glow.Result",
         },
-        nodes={  # dark edges tell which strand is in front
+        nodes={  # dark edges show which strand is in front
             "facing": ("ShaderNodeLayerWeight", {"Blend": 0.5}, {}),
             "glow": (
                 "ShaderNodeMapRange",

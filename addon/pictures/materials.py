@@ -1,4 +1,4 @@
-"""Materials of looks, built from their descriptions, and one that shows the colours of a mesh's vertices."""
+"""The materials of looks, built from their descriptions, and one that shows the colours of a mesh's vertices."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -18,10 +18,10 @@ _PITCH = 1.55  # of a rope's strands, in its radii
 def colour_components(
     data: bpy.types.Curve, first: int = 0, look: str = DEFAULT, along: FloatArray | None = None
 ) -> None:
-    """Give every spline the colour of its component, the ``first`` onwards, in slots after those that there are.
+    """Give every spline the colour of its component, from number ``first`` on, in slots after the existing ones.
 
     ``along``: the share of the length at each vertex of a component that is alone, (n,), where it is not even. With it,
-    colours change along the component if the look has any for that: they tell its strands apart.
+    colours change along the component if the look has any for that: they set its strands apart.
     """
     made_of, slots = LOOKS[look], dict[int, int]()
     hues = len(made_of.palette)
@@ -36,7 +36,7 @@ def colour_components(
 
 
 def _glaze(data: bpy.types.Curve, look: str, hue: int, along: FloatArray | None) -> bpy.types.Material:
-    """What a component is made of; the material that is there already if there is one, as other objects may have it.
+    """The material of a component; one that already exists is used, as other objects may have it.
 
     After the palette's hues comes the gradient.
     """
@@ -68,7 +68,7 @@ def _glaze(data: bpy.types.Curve, look: str, hue: int, along: FloatArray | None)
 
 
 def vertex_colours(attribute: str) -> bpy.types.Material:
-    """A material whose colour is an attribute of the mesh; the one of that name if there is one already."""
+    """A material whose colour is an attribute of the mesh; the existing one of that name if there is one."""
     name = f"Glaze {attribute}"
     if name in bpy.data.materials:
         return bpy.data.materials[name]

@@ -35,7 +35,7 @@ CHOICES = {
 
 
 class Reel:
-    """A scene made for one film, which is rendered beside its place and moved there if it is whole."""
+    """A scene made for one film, which is rendered next to its destination and moved there if it is whole."""
 
     def __init__(self, scene: bpy.types.Scene, path: Path) -> None:
         self.path = path
@@ -54,7 +54,7 @@ class Reel:
         scene.render.filepath, scene.render.use_file_extension = str(self._part), False
 
     def render(self) -> None:
-        """Render the film in this call; raises OSError or RuntimeError if it does not come to its end."""
+        """Render the film in this call; raises OSError or RuntimeError if it does not finish."""
         try:
             with rendering.quiet():
                 bpy.ops.render.render(animation=True, scene=self._scene)
@@ -64,7 +64,7 @@ class Reel:
             raise OSError(rendering.NOT_WHOLE)
 
     def start(self) -> None:
-        """Begin to render in Blender's own window, and return at once; `finish` is to be called when that is over."""
+        """Begin to render in Blender's own window, and return at once; call `finish` when that is over."""
         self._began = time.monotonic()
         bpy.app.handlers.render_write.append(self._count)
         try:
@@ -75,7 +75,7 @@ class Reel:
 
     @property
     def seconds_left(self) -> float | None:
-        """How long the frames that are missing take, if they take as long as those before; None before the first."""
+        """The time for the missing frames, if they take as long as those before; None before the first."""
         return (time.monotonic() - self._began) / self.done * (self.frames - self.done) if self.done else None
 
     def _count(self, scene: bpy.types.Scene, *_: object) -> None:
@@ -103,7 +103,7 @@ def render_movie(scene: bpy.types.Scene, path: Path, progress: Progress | None =
     ``progress`` gets the number of frames done and of all frames. The film has the scene's resolution at 100 %; at more
     its pixels are rendered more finely. Stopped by an exception, such as a KeyboardInterrupt, it ends after the frame
     at hand, or after the seconds in which the frames are put together, and leaves nothing behind. A frame in which
-    all is where it was in another is that one again. Raises OSError or RuntimeError if the film cannot be written.
+    everything is where it was in another reuses that one. Raises OSError or RuntimeError if the film cannot be written.
     """
     try:
         with tempfile.TemporaryDirectory(dir=path.absolute().parent) as room:
@@ -114,7 +114,7 @@ def render_movie(scene: bpy.types.Scene, path: Path, progress: Progress | None =
 
 
 def copied(scene: bpy.types.Scene) -> bpy.types.Scene:
-    """A copy of a scene with the same objects, to be rendered with other settings, until `sweep`."""
+    """A copy of a scene with the same objects, to be rendered with other settings; `sweep` removes it."""
     copy = scene.copy()
     copy.name, copy[_MARK] = "Film", True
     return copy
@@ -195,7 +195,7 @@ class Filming(Reel):
         super().__init__(copy, place)
 
     def render(self) -> None:
-        """Render the film in this call; raises MobiusFlowError if it does not come to its end."""
+        """Render the film in this call; raises MobiusFlowError if it does not finish."""
         try:
             super().render()
         except RuntimeError as error:
@@ -213,7 +213,7 @@ class Filming(Reel):
 
 
 def play(path: Path) -> None:
-    """Play a film in Blender's own player, or in the system's where Blender is no program; raises OutputError."""
+    """Play a film in Blender's own player, or in the system's where Blender is a module; raises OutputError."""
     try:
         if bpy.app.binary_path:
             subprocess.Popen([bpy.app.binary_path, "-a", str(path)], stdout=subprocess.DEVNULL)
@@ -224,7 +224,7 @@ def play(path: Path) -> None:
 
 
 def target(path: str) -> Path:
-    """Where a film of that name goes; raises MobiusFlowError if it is no film's, or beside a file never saved."""
+    """The path of a film; raises MobiusFlowError if the name is not a film's, or is relative to a file never saved."""
     if not path.strip():
         raise MobiusFlowError(Message("The film has no name; give it a file"))
     if path.startswith("//") and not bpy.data.filepath:

@@ -16,7 +16,7 @@ from .looks import Look
 FRAME_RATE = 24
 NOT_WHOLE = "Blender did not finish writing it; is the disk full?"
 _PATIENCE = 60  # seconds
-_CLAMP = 4.0  # of light that comes by ways seldom found: without it single pixels stay bright
+_CLAMP = 4.0  # of light along paths seldom found: without it single pixels stay bright
 _TRIAL = """
 import bpy
 bpy.ops.wm.read_factory_settings()

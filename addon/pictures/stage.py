@@ -22,7 +22,7 @@ _ELEVATIONS = np.arange(36.0, 69.0, 4.0)  # degrees: over the horizon, and not s
 _ABOVE = np.radians(89.5)  # a camera at 90 would not know what is upright
 _WIDE = 1.7  # for shadows
 _STEP = 10.0  # degrees, from one direction that is tried to the next
-_ACROSS = 0.2  # what it is worth that a motion is wide in the picture
+_ACROSS = 0.2  # the weight of how wide a motion is in the picture
 _TINY = 1e-300
 _LENS = 60.0  # mm
 _SENSOR = 36.0  # mm
@@ -106,7 +106,7 @@ def build(collection: bpy.types.Collection, stage: Stage, look: Look) -> bpy.typ
 
 
 def light_workbench(scene: bpy.types.Scene, direction: npt.ArrayLike) -> None:
-    """Let Workbench, which knows no lights, have its light from a direction of the world, (3,)."""
+    """Light Workbench, which ignores lights, from a direction of the world, (3,)."""
     x, y, z = np.asarray(direction) / np.linalg.norm(direction)
     scene.display.light_direction = (x, z, -y)  # its second axis is the world's up
 

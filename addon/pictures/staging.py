@@ -31,7 +31,7 @@ def set_up(
     use_world: bool = True,
     look: str = DEFAULT,
 ) -> bpy.types.Collection:
-    """Put a camera, lights and a floor around curve objects for as long as they move; a stage there was is replaced.
+    """Put a camera, lights and a floor around curve objects for as long as they move; an existing stage is replaced.
 
     The objects' transforms are evaluated. ``use_camera`` and ``use_world`` say whether the scene is rendered by the
     stage's camera and under its sky, instead of its own. Curves without materials of their own get those of the
@@ -85,7 +85,7 @@ def strike(scene: bpy.types.Scene) -> None:
 
 
 def restyle(scene: bpy.types.Scene, look: str) -> None:
-    """Give a scene's stage, if it has one, another look; curves that are gone, or are no curves any more, stay out."""
+    """Give a scene's stage, if it has one, another look; curves that are gone, or no longer curves, are left out."""
     collection = own_stage(scene)
     if collection is None or look not in LOOKS:
         return

@@ -1,4 +1,4 @@
-"""What panels of the sidebar are made of: rows that draw themselves, and sentences, which Blender does not wrap."""
+"""Building blocks of the sidebar's panels: rows that draw themselves, and sentences, which Blender does not wrap."""
 
 from collections.abc import Callable, Sequence
 from typing import Any

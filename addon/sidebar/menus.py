@@ -25,9 +25,9 @@ class VIEW3D_MT_mobius_flow(bpy.types.Menu):
     bl_label = "Möbius Flow"
 
     def draw(self, _context: bpy.types.Context) -> None:
-        """Offer it all; what does not apply is grey, and its tooltip says why."""
+        """Offer everything; entries that do not apply are grey, and their tooltips say why."""
         self.layout.operator_context = "INVOKE_REGION_WIN"  # or else they do the whole job while Blender waits
-        # Operator Search lists this first for who types no ö
+        # Operator Search lists this first for those who type no ö
         operator(self.layout, "relax", text="Relax and Untangle (Mobius Flow)", icon="PLAY")
         for group in _OPERATORS:
             self.layout.separator()

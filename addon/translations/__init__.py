@@ -21,7 +21,7 @@ from bpy.app.translations import pgettext_iface, pgettext_rpt, pgettext_tip
 
 from ...core.messages import Message
 
-CONTEXT = "Möbius Flow"  # of all but tooltips, which Blender looks for in no context
+CONTEXT = "Möbius Flow"  # of all but tooltips, which Blender looks up without a context
 ANY = "*"  # what Blender calls the context of entries that have none
 _FIELDS = ("msgctxt", "msgid", "msgstr")
 
@@ -29,17 +29,17 @@ Table = dict[tuple[str, str], str]
 
 
 def iface_(template: str, **values: Any) -> str:
-    """Say what stands in the interface; ``template`` may be a phrase that is filled in already."""
+    """Translate text of the interface; ``template`` may be a phrase that is already filled in."""
     return _said(pgettext_iface, template, values)
 
 
 def tip_(template: str, **values: Any) -> str:
-    """Say what stands in a tooltip."""
+    """Translate text of a tooltip."""
     return _said(pgettext_tip, template, values)
 
 
 def rpt_(template: str, **values: Any) -> str:
-    """Say what is reported."""
+    """Translate a report."""
     return _said(pgettext_rpt, template, values)
 
 
@@ -75,7 +75,7 @@ def unregister() -> None:
 
 
 def tables(folder: Path) -> dict[str, Table]:
-    """Read the ``.po`` files of a folder, which bear Blender's codes of languages: ``de`` serves for de_AT, too.
+    """Read the ``.po`` files of a folder, named by Blender's codes of languages: ``de`` serves for de_AT, too.
 
     A file that cannot be read leaves its language in English, and a warning in the log.
     """

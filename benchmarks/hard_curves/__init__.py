@@ -1,4 +1,4 @@
-"""Curves that are hard each in its own way, for benchmarks and tests."""
+"""Curves that are each hard in their own way, for benchmarks and tests."""
 
 from .contacts import rope, spiral
 from .polygons import bent_trefoil, chain_of_rings, graded_trefoil, uneven

@@ -8,7 +8,7 @@ _BEND = 0.3  # the knot is 3 wide and its edges still differ by less than EVEN_R
 
 
 def bent_trefoil(vertices: int) -> Curve:
-    """A torus knot T(2, 3) after three shears of space, which keep its type."""
+    """A torus knot T(2, 3) after three shears of space, which preserve its type."""
     x, y, z = torus_knot(2, 3, vertices).vertices.T
     x = x + _BEND * np.sin(2.0 * z + 1.0)
     z = z + _BEND * np.sin(2.0 * y)
@@ -27,7 +27,7 @@ def uneven(curve: Curve, ratio: float, seed: int) -> Curve:
 
 
 def graded_trefoil(n: int, ratio: float) -> Curve:
-    """The trefoil with edges that are so many times shorter at three places than halfway between them."""
+    """The trefoil with edges ``ratio`` times shorter at three places than halfway between them."""
     density = np.sqrt(ratio) ** np.cos(6 * np.pi * np.arange(n) / n)
     t = 2 * np.pi * np.cumsum(density) / density.sum()
     radius = 2 + np.cos(3 * t)
@@ -35,7 +35,7 @@ def graded_trefoil(n: int, ratio: float) -> Curve:
 
 
 def chain_of_rings(count: int, sizes: tuple[int, ...]) -> Curve:
-    """Round rings, each through the next one, with so many vertices in turn."""
+    """Round rings, each linked with the next, with the given numbers of vertices in turn."""
     rings = []
     for k in range(count):
         t = 2 * np.pi * np.arange(sizes[k % len(sizes)]) / sizes[k % len(sizes)]

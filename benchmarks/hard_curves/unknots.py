@@ -103,12 +103,12 @@ def _grown(word: list[int], length: int, largest: int, rng: np.random.Generator)
 
 
 def _rarer(word: list[int], letters: list[int]) -> int:
-    """The letter that the word has less often, so that crossings spread over all strands."""
+    """The letter that occurs less often in the word, so that crossings spread over all strands."""
     return min(letters, key=lambda letter: word.count(letter) + word.count(-letter))
 
 
 def _mix(word: list[int], rng: np.random.Generator) -> None:
-    """Apply braid relations all over the word, round the end too, which is conjugation; take back what cancels."""
+    """Apply braid relations all over the word, also across its end, which is conjugation; undo those that cancel."""
     for start in rng.integers(len(word), size=_MOVES_PER_LETTER * len(word)).tolist():
         old = list(word)
         _relate(word, start)
@@ -145,7 +145,7 @@ def _is_reduced(word: list[int]) -> bool:
 
 
 def _cancels(word: list[int], place: int) -> bool:
-    """Whether a letter meets its inverse further on, round the end too, past letters it commutes with."""
+    """Whether a letter meets its inverse further on, also across the end, past letters it commutes with."""
     letter = word[place]
     for step in range(1, len(word)):
         other = word[(place + step) % len(word)]

@@ -1,4 +1,4 @@
-"""``mobius-flow atlas``: the minima that batches have found, as pages to read and as a package of data."""
+"""``mobius-flow atlas``: the minima that batches have found, as pages to read and as a data package."""
 
 import argparse
 import sys
@@ -46,7 +46,7 @@ def add_atlas(parser: argparse.ArgumentParser) -> None:
 
 
 def _run(options: argparse.Namespace) -> int:
-    """Make what is not there, entry by entry."""
+    """Make what is missing, entry by entry."""
     style = usable(options.look)
     folder = Folder(Path(options.output))
     runs = Runs.of(map(Path, options.results))

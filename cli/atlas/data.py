@@ -1,4 +1,4 @@
-"""The package of data: tables, curves, and files that describe them, by themselves and in one archive."""
+"""The data package: tables, curves, and files that describe them, separately and in one archive."""
 
 import csv
 import io
@@ -58,7 +58,7 @@ def curve_path(entry: Mapping[str, str], minimum: Values, suffix: str) -> str:
 
 
 def _descriptions(entries: Sequence[Values], minima: int) -> dict[str, str]:
-    """The files that say what the others are."""
+    """The files that describe the others."""
     runs = sum(entry["runs"] for entry in entries)
     abstract = _ABSTRACT.format(types=len(entries), minima=minima, runs=runs, version=__version__)
     columns = "\n".join(f"| `{each['name']}` | {each['description']} |" for each in _columns())
@@ -72,13 +72,13 @@ def _descriptions(entries: Sequence[Values], minima: int) -> dict[str, str]:
 
 
 def template(name: str) -> str:
-    """A text of ours whose blanks are to be filled."""
+    """A template of ours, with blanks to fill in."""
     return files(__package__).joinpath("templates", name).read_text(encoding="utf-8")
 
 
 @cache
 def _columns() -> list[dict[str, str]]:
-    """Those of the tables: names, types of Frictionless's table schema, descriptions."""
+    """The columns of the tables: names, types of Frictionless's table schema, descriptions."""
     fields: list[dict[str, str]] = json.loads(template("datapackage.json"))["resources"][0]["schema"]["fields"]
     return fields
 
@@ -101,13 +101,13 @@ def _short(row: Values) -> Values:
 
 
 def bounds(row: Values) -> dict[str, str]:
-    """Those of a type's least energy that are proved, to six decimals, rounded outwards; empty where there is none."""
+    """The proved bounds of a type's least energy, to six decimals, rounded outwards; empty where there is none."""
     values = {name: row[name] for name in _OUTWARDS}
     return {k: "" if x is None else str(Decimal(x).quantize(_MILLIONTH, _OUTWARDS[k])) for k, x in values.items()}
 
 
 def rounded(energy: float, error: float) -> str:
-    """An energy to the first decimal of its error, but for more than nine."""
+    """An energy to the first decimal of its error, but to nine at most."""
     return f"{energy:.{min(max(-math.floor(math.log10(error)), 0), 9) if error else 9}f}"
 
 
@@ -135,7 +135,7 @@ def _parquet(rows: Sequence[Values]) -> bytes:
 
 
 def _archive(package: Mapping[str, str | bytes]) -> bytes:
-    """All files, the same bytes for the same: entries have no time of their own."""
+    """All files as one archive, equal bytes for equal files: entries have no time of their own."""
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, data in package.items():

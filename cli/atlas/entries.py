@@ -1,4 +1,4 @@
-"""What an atlas says of one knot or link: its minima and saddles, measured, as plain values that files hold."""
+"""What an atlas contains on one knot or link: its minima and saddles, measured, as plain values that files hold."""
 
 import hashlib
 import json
@@ -25,11 +25,11 @@ from .folder import Folder
 from .runs import Run
 
 Values = dict[str, Any]
-_FINER = 2  # times the vertices that represent a curve, where it is measured
+_FINER = 2  # times the vertices that represent a curve, when it is measured
 
 
 def entry(folder: Folder, name: str, runs: Sequence[Run]) -> Values:
-    """The entry of a type, made anew unless it is there, of the same runs by the same version."""
+    """The entry of a type, made anew unless the one of the same runs by the same version exists."""
     file = f"entries/{name}.json"
     text = "\n".join([__version__, str(_proves()), *(run.mark for run in runs)])
     made_from = hashlib.sha256(text.encode()).hexdigest()
@@ -55,7 +55,7 @@ def _made(name: str, runs: Sequence[Run]) -> Values:
 
 
 def _described(name: str, runs: Sequence[Run]) -> Values:
-    """What is known of a curve, by the names of the tables' columns: the balanced end of the first run."""
+    """Everything known about a curve, by the names of the tables' columns: the balanced end of the first run."""
     rest = balanced(runs[0].rest)
     curve, polygon = rest.curve, rest.curve.polygon(rest.curve.sizes)
     group = symmetries(polygon)
@@ -89,14 +89,14 @@ def _proves() -> bool:
 
 
 def _proved(name: str, curve: FourierCurve) -> tuple[float, float] | None:
-    """Bounds of a curve's energy that are proved, as its type is, or its mirror image's; None where one is not."""
+    """Proved bounds of a curve's energy if its type, or its mirror image's, is proved too; None where one is not."""
     if not _proves():
         return None
     from ...core.smooth.bounds import energy_bounds
     from ...core.smooth.isotopy import inscribed
 
     try:
-        kind = knot_type(inscribed(curve.coefficients))  # at first: it takes less time, in vain too
+        kind = knot_type(inscribed(curve.coefficients))  # first, because it takes less time, also when it fails
         same = kind.proved and {each.removeprefix("m") for each in kind.names} == {name}
         return energy_bounds(curve.coefficients) if same else None
     except CurveError:
@@ -104,7 +104,7 @@ def _proved(name: str, curve: FourierCurve) -> tuple[float, float] | None:
 
 
 def _command(row: Row) -> str:
-    """The command that makes a run again, with all those of the starts before; FILE stands for a file."""
+    """The command that repeats a run, along with those of all earlier starts; FILE stands for a file."""
     seed = [] if row.seed in (None, row.start) else ["--seed", str(row.seed - row.start)]
     name, file = (row.name, "") if row.input_sha256 is None else ("FILE", f"  # SHA-256 of FILE: {row.input_sha256}")
     words = [name, "--starts", str(row.start), *seed, *flags(json.loads(row.options)), "--extrapolate"]

@@ -1,4 +1,4 @@
-"""The directory of an atlas: every file in it that is ours is in its list of checksums, as sha256sum writes them."""
+"""The directory of an atlas: each of its own files is in its list of checksums, as sha256sum writes them."""
 
 import hashlib
 from pathlib import Path
@@ -13,38 +13,38 @@ _MARK = "# mobius-flow atlas; check with: sha256sum -c SHA256SUMS\n"
 
 
 class Folder:
-    """A directory that is filled anew: what is the same stays, what is not ours is neither replaced nor removed.
+    """A directory that is filled anew: unchanged files stay, and foreign ones are neither replaced nor removed.
 
-    Each file is listed before it is in its place, so that an interruption leaves none behind that is not.  Raises
-    MobiusFlowError where something else is there, or a file has been changed since.
+    Each file is listed before it is in place, so that an interruption leaves no file that is not listed.  Raises
+    MobiusFlowError where something foreign is there, or a file has been changed since.
     """
 
     def __init__(self, path: Path) -> None:
         self.path, self._sums = path, path / SUMS
         self._ours: dict[str, set[str]] = {}  # hashes that files may have
-        self._kept: dict[str, str] = {}  # those of this time
+        self._kept: dict[str, str] = {}  # hashes of the files kept or written this time
         text = self._sums.read_text(encoding="utf-8", errors="replace") if self._sums.is_file() else ""
         if not text.startswith(_MARK) and (path.is_symlink() or (path.exists() and not path.is_dir()) or self._any()):
             raise foreign(path, "atlas")
         for line in text.splitlines()[1:]:
             digest, _, name = line.partition("  ")
-            if not (Path(name).is_absolute() or ".." in Path(name).parts):  # what is elsewhere is not ours
+            if not (Path(name).is_absolute() or ".." in Path(name).parts):  # files elsewhere are not ours
                 self._ours.setdefault(name, set()).add(digest)
         for name in self._ours:  # before any work
             self._check(name)
 
     def read(self, name: str) -> bytes | None:
-        """A file of ours, of this time or before."""
+        """A file of ours, from this time or before."""
         return (self.path / name).read_bytes() if name in self._ours and (self.path / name).is_file() else None
 
     def keep(self, name: str) -> bool:
-        """Whether a file of ours is there, which is to stay as it is."""
+        """Whether a file of ours is there; if so, it stays as it is."""
         if name in self._ours and (digest := sha256_of(self.path / name)):
             self._kept[name] = digest
         return name in self._kept
 
     def put(self, name: str, data: bytes | str) -> None:
-        """Write a file, unless it is there."""
+        """Write a file, unless it is there already."""
         data = data.encode() if isinstance(data, str) else data
         digest = hashlib.sha256(data).hexdigest()
         there = self._check(name)
@@ -62,7 +62,7 @@ class Folder:
             raise OutputError(self.path / name, error) from error
 
     def close(self) -> None:
-        """Remove what was ours and is not wanted any more."""
+        """Remove files of ours that are not wanted any more."""
         for name in self._ours.keys() - self._kept.keys():
             (self.path / name).unlink(missing_ok=True)
         lines = (f"{digest}  {name}\n" for name, digest in sorted(self._kept.items()))
@@ -72,7 +72,7 @@ class Folder:
         return self.path.is_dir() and next(self.path.iterdir(), None) is not None
 
     def _check(self, name: str) -> str | None:
-        """The hash of a file, None where there is none; a MobiusFlowError if it is not ours."""
+        """The hash of a file, None if there is none; a MobiusFlowError if it is not ours."""
         path = self.path / name
         digest = sha256_of(path)
         if path.is_symlink() or (path.exists() and digest not in self._ours.get(name, ())):

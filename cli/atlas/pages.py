@@ -109,7 +109,7 @@ def _group(minimum: Values) -> str:
 
 
 def typeset(name: str) -> str:
-    """A name with its number as an index: 6_2, L6a4."""
+    """A name with its number as a subscript: 6_2, L6a4."""
     return re.sub(r"_(\d+)", r"<sub>\1</sub>", name)
 
 

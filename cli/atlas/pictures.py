@@ -1,4 +1,4 @@
-"""Pictures of the minima, by Blender where its module is there; each is made once."""
+"""Pictures of the minima, by Blender if its module is installed; each is made once."""
 
 import hashlib
 import json
@@ -13,14 +13,14 @@ from .entries import curve_of
 from .folder import Folder
 
 LARGE, SMALL = (640, 480), (240, 180)
-SAMPLES = 8  # of a pixel: more are not seen once noise is taken off
+SAMPLES = 8  # of a pixel: more make no visible difference after denoising
 NO_LOOK = "none"
 
 
 def picture(folder: Folder, name: str, minimum: Mapping[str, Any], look: str) -> str | None:
-    """The path of a minimum's picture in the folder, rendered unless it is there; the least one's is large.
+    """The path of a minimum's picture in the folder, rendered unless it is there; the least minimum's is large.
 
-    Its name has the hash of what it shows, as another curve may take its place.
+    Its name contains the hash of what it shows, as another curve may take its place.
     """
     if look == NO_LOOK:
         return None
@@ -38,7 +38,7 @@ def picture(folder: Folder, name: str, minimum: Mapping[str, Any], look: str) ->
 
 
 def usable(look: str | None) -> str:
-    """The look that is wanted, by default the pictures' own where Blender's module is there; raises MobiusFlowError."""
+    """The look asked for, by default the pictures' own if Blender's module is installed; raises MobiusFlowError."""
     if look == NO_LOOK:
         return look
     try:

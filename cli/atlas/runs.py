@@ -1,4 +1,4 @@
-"""The runs of batches, by the types that they ended as, and those that are left out."""
+"""The runs of batches, by the types that they ended as, and the runs that are left out."""
 
 import json
 from collections import defaultdict
@@ -19,7 +19,7 @@ from ..batch.table import Row
 SMOOTH = "without a smooth shape (run batch with --extrapolate)"
 CHECKED = "that verify did not accept"
 PROVED = "whose type is not proved to be one of the table"
-_SHOWN = 8  # names of runs that are left out
+_SHOWN = 8  # names listed of the runs that are left out
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,11 +28,11 @@ class Run:
 
     row: Row
     curve: FourierCurve
-    mark: str  # of its results: their hash
+    mark: str  # the hash of its results
 
     @property
     def rest(self) -> Rest:
-        """The curve as it is at rest; the index is that of the polygon, -1 if it is not known."""
+        """The curve at rest; the index is the polygon's, -1 if it is not known."""
         row = self.row
         index = -1 if row.index is None else row.index
         return Rest(self.curve, row.extrapolated_energy or 0.0, row.extrapolated_energy_error or 0.0, index)
@@ -40,14 +40,14 @@ class Run:
 
 @dataclass
 class Runs:
-    """Runs by the names of the table, in its order, and the names of those that are left out, by the reason."""
+    """Runs by the names of the table, in its order, and the names of the runs left out, by reason."""
 
     by_type: dict[str, list[Run]] = field(default_factory=lambda: defaultdict(list))
     left_out: dict[str, list[str]] = field(default_factory=lambda: defaultdict(list))
 
     @classmethod
     def of(cls, directories: Iterable[Path]) -> "Runs":
-        """Those of directories that batches wrote to, each once; a MobiusFlowError tells where there is none."""
+        """The runs in directories that batches wrote to, each once; a MobiusFlowError if there are none."""
         found = cls()
         for directory in {directory.resolve(): directory for directory in directories}.values():
             for folder, report, row in results(directory):
@@ -59,7 +59,7 @@ class Runs:
 
     @property
     def missing(self) -> str:
-        """What is left out, and why."""
+        """The runs left out, and why."""
         return "; ".join(_told(why, names) for why, names in self.left_out.items())
 
     def _add(self, folder: Path, report: Mapping[str, object], row: Row) -> None:
@@ -79,7 +79,7 @@ class Runs:
 
 
 def _type_of(row: Row) -> tuple[str, bool]:
-    """The table's name of what a run, which keeps its type, began with or ended as, and whether it is mirrored."""
+    """The table's name of the type that a run, which keeps it, began with or ended as, and whether it is mirrored."""
     made = row.input_sha256 is None and row.type_before == row.type_after
     for name, known in ((row.name, made), (row.type_after or "", row.proved)):
         with suppress(MobiusFlowError):

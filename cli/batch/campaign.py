@@ -20,7 +20,7 @@ from .table import Row, check_tables, save, summary
 
 
 def campaign(options: argparse.Namespace) -> None:
-    """Do the runs that are not finished, write the table, also of an interrupted batch, and print a line about it."""
+    """Do the unfinished runs, write the table, even if the batch is interrupted, and print a line about it."""
     if not options.output:
         raise OptionError("output is empty; name the directory of the results")
     if options.starts < 1:
@@ -37,7 +37,7 @@ def campaign(options: argparse.Namespace) -> None:
         directory.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise OutputError(directory, error) from error
-    for name in (CSV, PARQUET):  # what is in the way of results is told before any work
+    for name in (CSV, PARQUET):  # obstacles to the results are reported before any work
         check_place(str(directory / name))
     check_tables(directory)
     for job in left:
@@ -58,7 +58,7 @@ def _found(planned: Iterable[Job]) -> dict[Job, Row]:
 
 
 def _run(left: list[Job], rows: dict[Job, Row], directory: Path, options: argparse.Namespace) -> None:
-    """Add the rows of runs as they come, and write the table of those that there are in the end."""
+    """Add the rows of runs as they come, and write the table of all of them in the end."""
     shown = not options.quiet and sys.stderr.isatty()
     with (
         cluster.submitting(options.scheduler) as submit,
@@ -70,13 +70,13 @@ def _run(left: list[Job], rows: dict[Job, Row], directory: Path, options: argpar
                 _show(progress, rows)
         finally:
             signals.hold()  # the table is neither lost nor halved
-            rows |= _found(job for job in left if job not in rows)  # whose rows were still on their way
+            rows |= _found(job for job in left if job not in rows)  # rows that were still on their way
             save(rows.values(), directory)
     sweep(directory)
 
 
 def _show(progress: Any, rows: Mapping[Job, Row]) -> None:
-    """Count another run that has ended, and all that failed."""
+    """Count another run that has ended, and the failed ones."""
     if progress is not None:
         progress.set_postfix_str(f"{sum(row.failed for row in rows.values())} failed", refresh=False)
         progress.update()

@@ -1,4 +1,4 @@
-"""Where the runs of a batch are done: on this machine's cores, or on a Dask cluster that is running already."""
+"""Where the runs of a batch are done: on this machine's cores, or on a running Dask cluster."""
 
 import asyncio
 import logging
@@ -19,8 +19,8 @@ from .table import Row
 
 Submit = Callable[..., Any]  # of a function and its arguments; gives a future
 
-WINDOW = 1000  # runs that are submitted at a time: enough for hundreds of cores, and little memory
-TRIES = 3  # of a run whose process dies
+WINDOW = 1000  # runs submitted at a time: enough for hundreds of cores, and little memory
+TRIES = 3  # for a run whose process dies
 _LOGS = "distributed", "distributed.client"
 _PATIENCE = 4.0  # seconds for the scheduler to answer
 _JOINING = 30.0  # seconds for the first worker to join
@@ -42,7 +42,7 @@ def require(address: str | None) -> None:
 
 
 def submitting(address: str | None) -> AbstractContextManager[Submit]:
-    """What submits to a scheduler, or to all cores of this machine; raises MobiusFlowError where nobody answers."""
+    """A function that submits to a scheduler, or to all cores of this machine; a MobiusFlowError if nobody answers."""
     return _own_cores() if address is None else _joined(address)
 
 
@@ -63,7 +63,7 @@ def _joined(address: str) -> Iterator[Submit]:
     from distributed import Client
 
     for name in _LOGS:
-        logging.getLogger(name).setLevel(logging.CRITICAL)  # rows tell what goes wrong
+        logging.getLogger(name).setLevel(logging.CRITICAL)  # rows report what goes wrong
     try:
         asyncio.run(asyncio.wait_for(_greet(address), _PATIENCE))  # a peer may take the call and say nothing
         client = Client(address, timeout=_PATIENCE)
@@ -78,7 +78,7 @@ def _joined(address: str) -> Iterator[Submit]:
 
 
 async def _greet(address: str) -> None:
-    """Connect and part; a client that cannot connect would be left half made, and hang when it is collected."""
+    """Connect and disconnect; a client that cannot connect would be half made, and hang when it is collected."""
     from distributed.comm.core import connect
     from distributed.security import Security
 
@@ -87,7 +87,7 @@ async def _greet(address: str) -> None:
 
 
 def rows(submit: Submit, jobs: Iterable[Job]) -> Iterator[tuple[Job, Row]]:
-    """Do all runs, and give each with its row as they come; a MobiusFlowError says why the others cannot be done."""
+    """Do all runs, and yield each with its row as they finish; a MobiusFlowError says why the others cannot be done."""
     waiting, under_way, ended = iter(jobs), dict[Any, tuple[Job, int]](), queue.SimpleQueue[Any]()
 
     def begin(job: Job, tries: int = 1) -> None:

@@ -1,7 +1,7 @@
 """Dask's own command, also where SnapPy is installed: ``python -m mobius_flow.cli.batch.dask worker tcp://HEAD:8786``.
 
-dask.distributed takes any module called snappy for python-snappy, a library of compression, and fails to load where it
-is SnapPy. Worker processes that are started by others load this module first, too.
+dask.distributed takes any module called snappy for python-snappy, a compression library, and fails to load if it
+is SnapPy. Worker processes started by others load this module first, too.
 """
 
 import sys

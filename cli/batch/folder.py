@@ -1,4 +1,4 @@
-"""Folders of results, each whole or not there; what somebody else wrote is never moved, changed or removed."""
+"""Folders of results, each whole or absent; what somebody else wrote is never moved, changed or removed."""
 
 import hashlib
 import json
@@ -17,16 +17,16 @@ from ..places import foreign
 from .job import CURVE, REPORT, TRAJECTORY, Job, limit_of, sha256_of
 from .table import Row
 
-_ROOM = ".mobius-flow-{}.partial"  # short, so that whatever can be the name of results has one beside it
+_ROOM = ".mobius-flow-{}.partial"  # short, so that it fits beside any valid name of results
 _NOTE = "note"  # in a room while it is filled
 _OURS = re.compile("|".join([*map(re.escape, (CURVE, REPORT, TRAJECTORY, _NOTE)), r"\.[0-9a-f]{16}\.npz"]))
-_ABANDONED = 3600.0  # seconds after which nobody fills a room any more: it takes seconds
+_ABANDONED = 3600.0  # seconds after which a room counts as abandoned: filling one takes seconds
 _FILES = "files"  # of a report: the mark, SHA-256 of each file as it was written
 
 
 @contextmanager
 def new_folder(path: Path) -> Iterator[Path]:
-    """Give an empty directory to fill; it takes the place of ``path`` when the block ends well, and else vanishes."""
+    """Give an empty directory to fill; it replaces ``path`` if the block ends well, and otherwise vanishes."""
     room = _beside(path)
     room.mkdir()
     try:
@@ -44,7 +44,7 @@ def _note(room: Path) -> bytes:
 
 
 def _take_place(room: Path, path: Path) -> None:
-    """Move a directory; results that are there give way, in one move, so that nobody finds half of them."""
+    """Move a directory; existing results are replaced in one move, so that nobody finds half of them."""
     while True:
         check_replaceable(path)
         with suppress(FileNotFoundError):
@@ -61,12 +61,12 @@ def _take_place(room: Path, path: Path) -> None:
 
 
 def _beside(path: Path) -> Path:
-    """A new name for what is not, or no longer, in its place."""
+    """A new name for something that is not in its place yet, or no longer."""
     return path.with_name(_ROOM.format(secrets.token_hex(8)))
 
 
 def _remove(folder: Path) -> None:
-    """Remove a folder but for files that are not ours by name, and then raise OSError."""
+    """Remove a folder, except files whose names are not ours; OSError if there are any."""
     for path in folder.iterdir():
         if _OURS.fullmatch(path.name):
             path.unlink()
@@ -74,7 +74,7 @@ def _remove(folder: Path) -> None:
 
 
 def check_replaceable(path: Path) -> None:
-    """Raise a MobiusFlowError if there is something else than results, whole and as a batch wrote them."""
+    """Raise a MobiusFlowError if there is anything other than results, whole and as a batch wrote them."""
     try:
         path.lstat()
     except FileNotFoundError:
@@ -91,7 +91,7 @@ def check_replaceable(path: Path) -> None:
 
 
 def _report(folder: Path) -> dict[str, Any]:
-    """What the report of results says; empty where there is none."""
+    """The contents of the report of results; empty if there is none."""
     try:
         if not (folder / REPORT).is_file():  # a pipe might never end
             return {}
@@ -106,7 +106,7 @@ def _sha256_of(report: dict[str, Any]) -> str:
 
 
 def sweep(directory: Path) -> None:
-    """Remove the rooms that killed runs have left behind, and none that runs of another batch may still be filling."""
+    """Remove the rooms that killed runs have left behind, but none that runs of another batch may still be filling."""
     for room in directory.glob(_ROOM.format("*")):
         with suppress(OSError):
             note = room / _NOTE
@@ -116,9 +116,9 @@ def sweep(directory: Path) -> None:
 
 
 def finished(job: Job) -> Row | None:
-    """The row of a run whose results are there already; None if they are missing, or of another recipe.
+    """The row of a run that already has results; None if they are missing, or made by another recipe.
 
-    A run that was stopped by its time limit is not finished where there is more time now.
+    A run that was stopped by its time limit is not finished if there is more time now.
     """
     report = _report(Path(job.folder))
     try:
@@ -130,7 +130,7 @@ def finished(job: Job) -> Row | None:
 
 
 def results(directory: Path) -> Iterator[tuple[Path, dict[str, Any], Row]]:
-    """The folders of results in a directory, whose reports are as a batch wrote them, with these and their rows.
+    """The result folders in a directory whose reports are as a batch wrote them, with their reports and rows.
 
     Raises a MobiusFlowError if there are none.
     """

@@ -1,4 +1,4 @@
-"""The runs of a batch: what the words of its command line stand for, and where the results of each run go."""
+"""The runs of a batch: the meaning of the words of its command line, and where the results of each run go."""
 
 import glob
 import hashlib
@@ -22,18 +22,18 @@ from ...core.knots.names import table_name
 CURVE, REPORT, TRAJECTORY = "curve.txt", "report.json", "trajectory.npz"
 STILL = ("avoid", "pins", "pin_tangents")  # options of a task, beside those of its relaxation
 CSV, PARQUET = "results.csv", "results.parquet"
-_FORMULA = tuple("=+-@\t\r\n＝＋－＠")  # what begins one in a spreadsheet
+_FORMULA = tuple("=+-@\t\r\n＝＋－＠")  # characters that begin a formula in a spreadsheet
 
 
 class Input(NamedTuple):
-    """A curve to start from: what its results are called, and its file; None for a knot that is made by its name."""
+    """A curve to start from: the name of its results, and its file; None for a knot that is made by its name."""
 
     name: str
     file: Path | None = None
 
 
 def inputs(words: Iterable[str]) -> list[Input]:
-    """The inputs that words stand for, in their order, none twice; a MobiusFlowError names words without a meaning."""
+    """The inputs that words stand for, in order and without repeats; a MobiusFlowError names meaningless words."""
     found = dict.fromkeys(each for word in words for each in _meant(word))
     if not found:
         raise MobiusFlowError("there is nothing to relax: name a file, a directory or a knot")
@@ -58,18 +58,18 @@ def _meant(word: str) -> Iterator[Input]:
     elif ".." in word:
         yield from map(Input, _range(word))
     else:
-        knot(word)  # which says what is wrong with names that mean nothing
+        knot(word)  # which reports names that mean nothing
         yield Input(word.strip())
 
 
 def _of_file(path: Path) -> Input:
-    """Results are called as the file; bytes that are no text are shown in hexadecimal, as tables have text only."""
-    name = path.stem if path.stem.strip(".") else path.name  # nothing but dots is another directory
+    """Results are named after the file; undecodable bytes are shown in hexadecimal, as tables have text only."""
+    name = path.stem if path.stem.strip(".") else path.name  # a name of nothing but dots is another directory
     return Input(as_text(os.fsencode(name).decode(errors="backslashreplace")), Path(os.path.abspath(path)))
 
 
 def as_text(text: str) -> str:
-    """What no spreadsheet takes for a formula, and runs."""
+    """A text that no spreadsheet takes for a formula and runs."""
     return f"_{text}" if text.startswith(_FORMULA) else text
 
 
@@ -94,7 +94,7 @@ def _range(word: str) -> list[str]:
 
 @dataclass(frozen=True)
 class Job:
-    """One run, in plain values, which travel to other machines; its folder tells it from others."""
+    """One run, in plain values, which travel to other machines; its folder identifies it."""
 
     name: str  # of the input
     start: int  # 1 for the input itself
@@ -116,12 +116,12 @@ class Job:
 
     @property
     def recipe(self) -> dict[str, object]:
-        """All that the results depend on, as JSON has it: runs of equal recipes need not be repeated."""
+        """All that the results depend on, as JSON: runs with equal recipes need not be repeated."""
         made = asdict(self)
         del made["folder"], made["file"]
         made["options"].pop("time_limit", None)
         if not self.options.get("hops"):
-            made["options"].pop("seed", None)  # which only hops draw from: that of a scrambled start is the job's own
+            made["options"].pop("seed", None)  # which only hops use: a scrambled start's seed is the job's own
         plain: dict[str, object] = json.loads(json.dumps(made))
         return plain
 
@@ -133,7 +133,7 @@ def limit_of(options: Mapping[str, object]) -> float:
 
 
 def folder_name(name: str, start: int) -> str:
-    """What the folder of a run's results is called."""
+    """The name of the folder of a run's results."""
     return name if start == 1 else f"{name}-{start}"
 
 
@@ -145,7 +145,7 @@ def jobs(
     still: Mapping[str, Any],
     extrapolate: bool,
 ) -> list[Job]:
-    """The runs of a batch, first starts first; a MobiusFlowError tells where two would share a folder.
+    """The runs of a batch, first starts first; a MobiusFlowError if two would share a folder.
 
     ``still`` are the obstacles' files, pins and pin_tangents of all of them.
     """
@@ -158,7 +158,7 @@ def jobs(
         for name, file, sha256 in hashed:
             folder = str(directory / folder_name(name, start))
             made.append(Job(name, start, seed, file, sha256, folder, values, extrapolate))
-    count = Counter(job.folder.casefold() for job in made)  # case does not tell folders apart everywhere
+    count = Counter(job.folder.casefold() for job in made)  # some file systems ignore case
     for job in made:
         own = Path(job.folder).name
         if count[job.folder.casefold()] > 1 or own.casefold() in (CSV, PARQUET):  # where the tables are
@@ -167,7 +167,7 @@ def jobs(
 
 
 def _hash(path: Path) -> str | None:
-    """Of a file's bytes; None for what no run can read: its own sentence comes from there."""
+    """The hash of a file's bytes; None for files that no run can read: the run reports why."""
     try:
         return sha256_of(path) if path.stat().st_size <= MAX_BYTES else None
     except OSError:
@@ -175,7 +175,7 @@ def _hash(path: Path) -> str | None:
 
 
 def sha256_of(path: Path) -> str | None:
-    """Of a regular file; None for all else, such as a pipe, which might never end."""
+    """The hash of a regular file; None for anything else, such as a pipe, which might never end."""
     if not path.is_file():
         return None
     with path.open("rb") as stream:

@@ -1,4 +1,4 @@
-"""Runs in child processes, one for each thread that asks, so that what hangs, crashes or is killed is only one.
+"""Runs in child processes, one for each thread that asks, so that a hang, crash or kill affects one run only.
 
 A child lives on from run to run, since NumPy and SciPy take half a second to import. It runs this module: a line of
 JSON for each job in, one for its row out, until there is no parent.
@@ -23,7 +23,7 @@ from ...core.errors import OutputError
 from .job import Job
 from .table import Row
 
-PATIENCE, GRACE = 2.0, 60.0  # of its time limit, and seconds: a run that takes more hangs, and is killed
+PATIENCE, GRACE = 2.0, 60.0  # times its time limit, plus seconds: a run that takes longer hangs, and is killed
 _READY, _REFUSED = "ready", "refused"
 _own = threading.local()
 _open: "WeakSet[Sandbox]" = WeakSet()
@@ -55,7 +55,7 @@ class Sandbox:
         self._answer()  # it is ready, or there would be an error
 
     def run(self, job: Job) -> Row:
-        """The row of a run, which is killed where it goes on long after its time limit.
+        """The row of a run, which is killed if it goes on long after its time limit.
 
         Raises ChildDiedError if there is none, so that another sandbox is needed, and MobiusFlowError if results cannot
         be written.
@@ -87,7 +87,7 @@ class Sandbox:
         return self._process.poll() is None
 
     def _answer(self, line: str = "") -> str:
-        """The next line of the child, after one for it."""
+        """The child's next line, after sending it one."""
         process = self._process
         assert process.stdin is not None, "it is a pipe"
         assert process.stdout is not None, "it is a pipe"
@@ -104,7 +104,7 @@ class Sandbox:
 
 
 def _ended(code: int) -> str:
-    """How a process ended."""
+    """How a process ended, in words."""
     if code >= 0:
         return f"ended with status {code}"
     with suppress(ValueError):
@@ -122,7 +122,7 @@ def run(job: Job) -> Row:
 
 @contextmanager
 def closed() -> Iterator[None]:
-    """End all children of this process, and those that threads start in the block."""
+    """End all children of this process, including those that threads start in the block."""
     _closed.set()
     try:
         for box in list(_open):
@@ -136,7 +136,7 @@ def _serve() -> None:
     """Answer jobs for ever; only the end of standard input ends it."""
     lines: queue.SimpleQueue[str] = queue.SimpleQueue()
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8", buffering=1)
-    os.dup2(2, 1)  # what libraries print is no answer
+    os.dup2(2, 1)  # output of libraries is no answer
     warnings.simplefilter("ignore")
     threading.Thread(target=_listen, args=(lines,), daemon=True).start()
     from .single import relaxed
@@ -151,7 +151,7 @@ def _serve() -> None:
 
 
 def _listen(lines: "queue.SimpleQueue[str]") -> None:
-    """Take lines in; the parent's end, also a sudden one, is noticed at once and ends the work under way."""
+    """Take lines in; the parent's end, even a sudden one, is noticed at once and ends the work under way."""
     for line in sys.stdin:
         lines.put(line)
     os._exit(0)

@@ -30,7 +30,7 @@ from .table import Row, given
 
 
 def relaxed(job: Job) -> Row:
-    """Do a run; its row says what goes wrong, but for an OutputError, which is about the place of all results."""
+    """Do a run; errors go into its row, except an OutputError, which is about the place of all results."""
     try:
         if job.version != __version__:
             raise MobiusFlowError(f"a worker has version {__version__} of mobius-flow, and {job.version} is wanted")
@@ -49,7 +49,7 @@ def _relaxed(job: Job) -> Row:
     if job.file is not None:
         curves.check_regular(job.file)
         file = load_curve(job.file)
-        job = replace(job, sha256=file.source.sha256)  # of what is really relaxed
+        job = replace(job, sha256=file.source.sha256)  # of the file that is really relaxed
     origin = provenance(job.options, job.file or job.name, job.sha256)
     with nullcontext() if file is None else curves.refusals(file):
         kind, task = _task(job, file)
@@ -82,7 +82,7 @@ def _relaxed(job: Job) -> Row:
 
 
 def _task(job: Job, file: CurveFile | None) -> tuple[str, Task]:
-    """The start and its kind, with its obstacles, which are read, and its pins, by a file's own numbers."""
+    """The start and its kind, with its obstacles, which are read, and its pins, in the file's own numbering."""
     still: dict[str, Any] = {name: job.options[name] for name in STILL}
     pins = tuple(still["pins"] if file is None else map(file.index_of, still["pins"]))
     kind, curve = start(job.name, job.start, job.seed or 0) if file is None else ("file", file.curve)
@@ -100,7 +100,7 @@ def _task(job: Job, file: CurveFile | None) -> tuple[str, Task]:
 
 
 def _smooth(job: Job, options: RelaxOptions, result: Result) -> Rest | Extrapolation | None:
-    """Where finer meshes lead, if that is wanted: as a smooth curve at rest, or among obstacles from three meshes."""
+    """The limit of ever finer meshes, if asked for: as a smooth curve at rest, or among obstacles from three meshes."""
     if not (job.extrapolate and result.outcome.converged):
         return None
     end = replace(result.task, curve=result.curve, pins=result.last.pins, pin_tangents=False)
@@ -110,7 +110,7 @@ def _smooth(job: Job, options: RelaxOptions, result: Result) -> Rest | Extrapola
 
 
 def _findings(start: Curve, result: Result) -> dict[str, object]:
-    """What the row says of a result."""
+    """The entries of a row for a result."""
     curve, kind = result.curve, knot_type(result.curve)
     few = len(curve) <= PAIRS_UP_TO
     writhe, crossings = writhe_and_crossings(curve) if few and curve.dimension == 3 else (None, None)

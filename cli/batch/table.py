@@ -24,7 +24,7 @@ _MARK = b"mobius-flow batch"  # in the Parquet file's metadata: SHA-256 of the C
 
 @dataclass(frozen=True, kw_only=True)
 class Row:
-    """What became of one run; what is not known is None. The columns are described in docs/batch.md."""
+    """The outcome of one run; unknown values are None. The columns are described in docs/batch.md."""
 
     name: str
     start: int
@@ -72,19 +72,19 @@ class Row:
 
 
 def given(job: Job) -> str:
-    """The options of a job that are not the default, as JSON: it has no tuples, wherever they come from."""
+    """The options of a job that differ from the defaults, as JSON: it has no tuples, wherever they come from."""
     values = {**vars(RelaxOptions()), "avoid": {}, "pins": [], "pin_tangents": False}, job.options
     defaults, options = (json.loads(json.dumps(each)) for each in values)
     return json.dumps({name: value for name, value in options.items() if value != defaults[name]})
 
 
 def in_order(rows: Iterable[Row]) -> list[Row]:
-    """By name and start."""
+    """The rows, sorted by name and start."""
     return sorted(rows, key=lambda row: (row.name, row.start))
 
 
 def summary(rows: Iterable[Row]) -> str:
-    """How many runs ended in which way."""
+    """How many runs ended in each way."""
     ends = Counter(row.status.replace("_", " ") for row in in_order(rows))
     return f"{counted(ends.total(), 'run')}: " + ", ".join(f"{count} {end}" for end, count in ends.most_common())
 
@@ -117,7 +117,7 @@ def check_tables(directory: Path) -> None:
 
 
 def _marks(parquet: Path) -> list[str]:
-    """The mark of a Parquet file; none if there is none, or not of its contents."""
+    """The mark of a Parquet file; empty if there is none, or it does not match the contents."""
     import pyarrow
     import pyarrow.parquet
 

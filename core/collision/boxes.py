@@ -1,7 +1,7 @@
-"""Trees of boxes over moving edges and still triangles: which of them can come near each other, and when.
+"""Trees of boxes over moving edges and triangles at rest: which of them can come near each other, and when.
 
-These trees are complete, so that children need no table and all leaves are on one level, which `ClusterTree` is not: a
-search of a few milliseconds would spend a good part of them on telling leaves from others.
+These trees are complete, unlike `ClusterTree`: children need no table and all leaves are on one level.  Otherwise a
+search of a few milliseconds would spend a good part of them on finding out which nodes are leaves.
 """
 
 from collections.abc import Callable, Iterator
@@ -17,7 +17,7 @@ from ..types import BoolArray, FloatArray, IntArray
 from .planes import UNDERFLOW
 
 CHUNK = 1 << 14  # pairs of boxes handled at once: bounds the memory whatever the curve
-_ROOTS = 24  # the coarsest level has at most this many boxes; above it a tree only costs calls
+_ROOTS = 24  # the coarsest level has at most this many boxes; levels above it would only cost calls
 _NOWHERE = -4.0  # upper bounds of a padding box: empty, and away from everything when coordinates are at most 1
 _SLACK = 16 * float(np.finfo(np.float64).eps)
 
@@ -33,7 +33,7 @@ class Level:
     """
 
     upper: FloatArray  # upper bounds of (x, −x) at the two times; shape (2, 2m, boxes)
-    flipped: FloatArray  # the same of (−x, x)
+    flipped: FloatArray  # the same for (−x, x)
     leaves: bool  # whether a box holds a single simplex
 
     @classmethod
@@ -49,7 +49,7 @@ class Level:
 
 @dataclass(frozen=True, eq=False)
 class BoxTree:
-    """Boxes over contiguous ranges of simplices, neighbours in order being near in space, halved level by level."""
+    """Boxes over contiguous ranges of simplices, ordered so that neighbours are near, halved level by level."""
 
     order: IntArray  # edge, or triangle, at each position of the finest level; shape (k,)
     corners: IntArray  # vertices of the simplex at each position; shape (2, k) for edges, (3, k) for triangles
@@ -57,15 +57,15 @@ class BoxTree:
 
     @classmethod
     def build(cls, mesh: Mesh, start: FloatArray, end: FloatArray) -> "BoxTree":
-        """The tree of one leg; ``start`` and ``end`` have shape (m, n) and entries of at most 1 in size."""
+        """The tree of one leg; ``start`` and ``end`` have shape (m, n) and entries of absolute value at most 1."""
         order = component_order(mesh, start)
         return cls.over(order, np.stack([mesh.tails[order], mesh.heads[order]]), np.stack([start, end]))
 
     @classmethod
     def over(cls, order: IntArray, corners: IntArray, points: FloatArray) -> "BoxTree":
-        """A tree over simplices; ``points``, shape (2 or 1, m, n), are all vertices at both times, or at all.
+        """A tree over simplices; ``points``, shape (2 or 1, m, n), are all vertices at both times, or at all times.
 
-        Boxes are wider than what they hold by a number that counts only where scaling has cost digits.
+        Boxes are wider than their contents by an amount that matters only where scaling has cost digits.
         """
         ends = [points[..., vertices] for vertices in corners]
         upper = _padded(np.concatenate([np.maximum.reduce(ends), -np.minimum.reduce(ends)], axis=1) + UNDERFLOW)
@@ -76,7 +76,7 @@ class BoxTree:
         return cls(order, corners, tuple(reversed(levels)))
 
     def pairs(self, near: Test) -> Iterator[tuple[IntArray, IntArray]]:
-        """`pairs_with` itself: each pair of edges once, without those that share a vertex."""
+        """`pairs_with` itself: each pair of edges once, except pairs that share a vertex."""
         for a, b in self.pairs_with(self, near):
             common = [p[a] == q[b] for p in self.corners for q in self.corners]
             apart = ~np.logical_or.reduce(common)
@@ -101,7 +101,7 @@ class BoxTree:
                 real = (a < len(self.order)) & (b < len(other.order))
                 yield a[real], b[real]
                 continue
-            # The tree with more levels left is halved, or both, so that they come to their leaves together.
+            # The tree with more levels left is halved, or both are, so that they reach their leaves together.
             ahead = len(self.levels) - p - len(other.levels) + q
             a, b = _halved(a, b, ahead >= 0, ahead <= 0)
             p, q = p + (ahead >= 0), q + (ahead <= 0)
@@ -133,13 +133,13 @@ def contact_window(gaps: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _padded(upper: FloatArray) -> FloatArray:
-    """Boxes with an empty one added if their number is odd, so that they merge two by two."""
+    """Boxes with an empty one added if their number is odd, so that they merge in pairs."""
     if upper.shape[2] % 2 == 0:
         return upper
     return np.concatenate([upper, np.full((*upper.shape[:2], 1), _NOWHERE)], axis=2)
 
 
-_HALVES = {  # numbers of the halves of the first and of the second box, if either is halved
+_HALVES = {  # numbers of the halves of the first and of the second box, if they are halved
     (halved, also): np.array([(k, j) for k in range(1 + halved) for j in range(1 + also)]).T[:, :, None]
     for halved in (False, True)
     for also in (False, True)
@@ -168,7 +168,7 @@ class StillTriangles:
 
 @lru_cache(maxsize=8)
 def still_triangles(obstacles: tuple[Obstacle, ...], exponent: int) -> StillTriangles:
-    """The triangles of some obstacles, coordinates of which are at most two to the power of ``exponent``."""
+    """The triangles of some obstacles, whose coordinates are at most two to the power of ``exponent``."""
     vertices = np.concatenate([each.vertices for each in obstacles])
     first = np.cumsum([0, *(len(each.vertices) for each in obstacles)])
     numbered = zip(obstacles, first[:-1], strict=True)

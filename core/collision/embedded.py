@@ -1,4 +1,4 @@
-"""Refuse curves that touch themselves or obstacles, and say where; whether they survive being rounded."""
+"""Refuse curves that touch themselves or obstacles, and say where; and check that they survive rounding."""
 
 from collections.abc import Iterator, Sequence
 
@@ -15,7 +15,7 @@ from .exact_triangle import EDGES, crossing
 from .gap import MIN_GAP, folds, minimal_gap, near_edges, scaled_points, squared_gaps, squared_segment_distances
 from .planes import ROUNDING, doubtful
 
-MIN_SPACING = 2.0**-48  # of neighbours, relative to the curve's size; nearer ones are the same up to rounding
+MIN_SPACING = 2.0**-48  # of neighbours, relative to the curve's size; nearer ones coincide up to rounding
 
 TOUCHING = Message("{edge} and {other} touch or cross near {place}; move the strands apart")
 DOUBTFUL = Message(
@@ -81,7 +81,7 @@ def _check_doubled_back(curve: Curve, points: FloatArray) -> None:
 
 
 def _touching_pairs(curve: Curve, points: FloatArray) -> Iterator[tuple[int, int]]:
-    """Pairs of edges that touch, decided exactly; raises a CurveError where more pairs are doubtful than can be."""
+    """Pairs of edges that touch, decided exactly; raises a CurveError if too many pairs are doubtful."""
     for count, (i, j) in enumerate(_doubtful_pairs(curve.mesh, points)):
         ends = curve.vertices[corners(curve.mesh, i, j)]  # as given: scaling may cost the smallest digits
         if first_contact(ends, ends) is not None:
@@ -100,7 +100,7 @@ def _coinciding_pairs(curve: Curve, points: FloatArray) -> Iterator[tuple[int, i
 def _doubtful_pairs(mesh: Mesh, points: FloatArray) -> Iterator[tuple[int, int]]:
     """Pairs of edges that no plane separates certainly in floating-point numbers, sorted batch by batch.
 
-    Never all at once: where thousands of edges coincide they are millions, and the first is enough. No comparison of
+    Never all at once: where thousands of edges coincide there are millions, and the first is enough. No comparison of
     boxes is rounded: a gap has the sign of the exact difference.
     """
     tree = BoxTree.build(mesh, points, points)
@@ -115,7 +115,7 @@ def _doubtful_pairs(mesh: Mesh, points: FloatArray) -> Iterator[tuple[int, int]]
 
 
 def meeting_point(ends: FloatArray) -> FloatArray:
-    """Return a point of the first edge near the second, to be named in a message; ``ends`` has shape (4, m)."""
+    """Return a point of the first edge near the second, for a message; ``ends`` has shape (4, m)."""
     x0, x1, y0, y1 = ends
     x = x0 + np.linspace(0.0, 1.0, 257)[:, None] * (x1 - x0)
     f = y1 - y0
@@ -124,13 +124,13 @@ def meeting_point(ends: FloatArray) -> FloatArray:
 
 
 def edge_name(mesh: Mesh, edge: int) -> Message:
-    """What messages call an edge."""
+    """An edge's name in messages."""
     c = int(mesh.edge_component[edge])
     return _part(Message(EDGE, number=edge - int(mesh.edge_offsets[c]) + 1), c)
 
 
 def vertex_name(mesh: Mesh, vertex: int) -> Message:
-    """What messages call a vertex."""
+    """A vertex's name in messages."""
     c = int(mesh.component[vertex])
     return _part(Message(VERTEX, number=vertex - int(mesh.offsets[c]) + 1), c)
 
@@ -147,14 +147,14 @@ def _refusal(template: str, curve: Curve, i: int, j: int) -> CurveError:
 
 
 def written(position: FloatArray) -> str:
-    """A point as messages have it."""
+    """A point as messages write it."""
     return "(" + ", ".join(f"{x:.6g}" for x in position) + ")"
 
 
 def check_clear(curve: Curve, obstacles: Sequence[Obstacle]) -> None:
     """Refuse a curve that touches obstacles or comes too near to them to compute with; inside a closed one it may be.
 
-    A CurveError says so, naming edge, obstacle and place, and also if there are obstacles and the curve is not in
+    A CurveError says so, naming edge, obstacle and place; another if there are obstacles and the curve is not in
     space.
     """
     if not obstacles:
@@ -171,14 +171,14 @@ def check_clear(curve: Curve, obstacles: Sequence[Obstacle]) -> None:
 
 
 def clears(curve: Curve, obstacles: Sequence[Obstacle], distance: float) -> bool:
-    """Whether a curve that is clear of obstacles certainly is further from them than a distance."""
+    """Whether a curve that is clear of obstacles is certainly further from them than a distance."""
     return not obstacles or next(_near(curve, obstacles, distance), None) is None
 
 
 def _near(curve: Curve, obstacles: Sequence[Obstacle], distance: float) -> Iterator[tuple[int, FloatArray, Obstacle]]:
     """Edges and obstacles not certainly further apart than a distance, with the pairs' vertices, shape (5, 3).
 
-    Certainly but for the rounding of distances, a few units of the last place: what counts on it leaves more.
+    Certainly except for the rounding of distances, a few units of the last place: whatever relies on it leaves more.
     """
     exponent = int(np.frexp(max(np.abs(curve.vertices).max(), *(each.size for each in obstacles)))[1])
     still = still_triangles(tuple(obstacles), exponent)
@@ -198,7 +198,7 @@ def _near(curve: Curve, obstacles: Sequence[Obstacle], distance: float) -> Itera
 
 
 def _meeting(corners: FloatArray) -> tuple[str, FloatArray]:
-    """What an edge does to a triangle near it, and where; ``corners`` has shape (5, 3)."""
+    """What an edge does to a nearby triangle, and where; ``corners`` has shape (5, 3)."""
     s = crossing(corners[0], corners[1], corners[2:])
     if s is not None:
         return (PIERCES if 0 < s < 1 else TOUCHES), corners[0] + s * (corners[1] - corners[0])
@@ -209,7 +209,7 @@ def _meeting(corners: FloatArray) -> tuple[str, FloatArray]:
 
 
 def survives_rounding(curve: Curve, obstacles: Sequence[Obstacle] = ()) -> bool:
-    """Whether vertices that lie on edges but for rounding can move onto these without any contact.
+    """Whether vertices that lie on edges up to rounding can move onto these without any contact.
 
     Then the curve with them and the curve without them are isotopic: no point moves by more than r, the rounding, and
     what must not meet, edges that are no neighbours and `folds`, is more than 2 r apart, and obstacles, which the curve

@@ -5,7 +5,7 @@ det(D, e, f) ≠ 0, D = x₀ − y₀, or if a plane that moves along separates 
 i, j. The directions tried are those from the closest point on one of the edges' lines to an end of the other edge, and
 from end to end: wherever such a pair of points is the closest one, its direction works, however small the gap. All of
 these are polynomials in t, positive if their Bernstein coefficients are. An interval without such a proof is narrowed
-down to the time when the lines are coplanar, if there is one such time, or else halved.
+down to the time when the lines are coplanar, if there is one such time, and halved otherwise.
 
 Coordinates are floating-point numbers, hence integers after scaling, and nothing that matters is ever rounded.
 """
@@ -24,11 +24,11 @@ Polynomial = Sequence[int]
 Vector = tuple[Polynomial, ...]
 Motion = tuple[Vector, Vector, Vector]  # D, e, f, each linear
 
-_MIN_LENGTH = Fraction(1, 2**60)  # length of an interval that is given up,
+_MIN_LENGTH = Fraction(1, 2**60)  # length at which an interval is given up,
 _MIN_RATIO = Fraction(1, 2**52)  # or its length relative to its end
 _SURE = Fraction(1, 2**10)  # relative length below which a plain crossing needs no sharper time
-_INSIDE = 10**6  # one part in this many from the ends of both edges is plainly inside
-_BITS = 40  # a single time of coplanarity is narrowed down by 2^-40 at once
+_INSIDE = 10**6  # one part in this many from the ends of both edges counts as plainly inside
+_BITS = 40  # a single time of coplanarity is narrowed down by a factor of 2^-40 at a time
 _MAX_INTERVALS = 600  # a bound for pathological motions that touch all the time
 
 

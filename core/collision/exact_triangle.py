@@ -1,10 +1,10 @@
-"""Decide one stubborn pair of a moving segment and a triangle that stands still, in exact arithmetic.
+"""Decide one stubborn pair of a moving segment and a triangle at rest, in exact arithmetic.
 
 If the two are apart at first, then at their first contact an end of the segment is in the triangle, or the segment
 meets one of the triangle's edges: a segment that pierces it with both ends outside would have done so shortly before.
-So there are three pairs of segments, as for the curve itself, and the ways of the two ends, which are segments too:
-whether one of these crosses the triangle is decided by signs of determinants. Of those in its plane only the beginning
-matters, for into the triangle they lead over its edges; a triangle without area is nothing but its edges.
+So there are three pairs of segments, as for the curve itself, and the paths of the two ends, which are segments too:
+whether one of these crosses the triangle is decided by signs of determinants. Of paths in its plane only the beginning
+matters, because they enter the triangle through its edges; a triangle without area consists of its edges alone.
 """
 
 from collections.abc import Sequence
@@ -37,7 +37,7 @@ def first_contact_with_triangle(start: FloatArray, end: FloatArray, after: float
 def crossing(p: FloatArray, q: FloatArray, triangle: FloatArray) -> float | None:
     """Return the parameter of the point at which the segment from p to q meets a triangle, shape (3, 3), rounded down.
 
-    None if there is no such point. Of a segment in the triangle's plane only its first end is looked at: where that is
+    None if there is no such point. For a segment in the triangle's plane only its first end is examined: if that is
     not in the triangle, the segment may still meet its edges.
     """
     first, last, *corners = whole_numbers(np.concatenate([[p, q], triangle]))

@@ -1,4 +1,4 @@
-"""Distances between edges that are not neighbours, folds of neighbours, and the thickness that follows from both."""
+"""Distances between edges that are not neighbours, folds of neighbours, and the resulting thickness."""
 
 from collections.abc import Callable, Iterator
 
@@ -13,7 +13,7 @@ from .boxes import BoxTree, Level, corners
 from .planes import closest_chord, relative_motion
 
 MIN_GAP = 1e-11  # relative to the curve's length; at half of that, energies are wrong by percents
-ENDS_ONLY = 1e-3  # of the longer edge: midpoints further apart than that don't feel that the edges are near
+ENDS_ONLY = 1e-3  # of the longer edge: midpoints further apart than that are not affected by edges being near
 
 
 def minimal_gap(curve: Curve) -> tuple[float, tuple[int, int] | None]:
@@ -24,7 +24,7 @@ def minimal_gap(curve: Curve) -> tuple[float, tuple[int, int] | None]:
     """
     points, unit = scaled_points(curve)
     best, pair = _some_gap(curve, points)
-    farthest = 4.0 * len(points)  # of coordinates within ±1; finite, since the boxes' padding is infinitely far
+    farthest = 4.0 * len(points)  # for coordinates within ±1; finite, since the boxes' padding is infinitely far
 
     def bound() -> float:
         return min(best, farthest)
@@ -37,7 +37,7 @@ def minimal_gap(curve: Curve) -> tuple[float, tuple[int, int] | None]:
 
 
 def check_gap(curve: Curve) -> None:
-    """Refuse strands so near that the energy of their edges is nothing but rounding errors.
+    """Refuse strands so near that the energy of their edges consists of rounding errors.
 
     The CurveError says where.  Edges of which only the ends are near, with a short edge between them or a vertex that
     nearly lies on an edge, do no harm.
@@ -70,7 +70,7 @@ def thickness(curve: Curve) -> float:
     bend = float(bending_radii(curve).min())
     points, unit = scaled_points(curve)
     best = float(np.ldexp(2.0 * bend, -unit)) ** 2 if np.isfinite(bend) else np.inf
-    best = min(best, 4.0 * len(points))  # of coordinates within ±1
+    best = min(best, 4.0 * len(points))  # for coordinates within ±1
 
     def bound() -> float:
         return best

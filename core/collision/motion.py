@@ -1,4 +1,4 @@
-"""How far all vertices can move along straight lines before two edges meet, or an edge and an obstacle; the answer."""
+"""How far all vertices can move along straight lines before two edges meet, or an edge and an obstacle."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -17,9 +17,9 @@ from .exact_triangle import first_contact_with_triangle
 from .gap import folds
 from .planes import march
 
-_BATCH = 1 << 13  # pairs marched together, so that their arrays stay in the cache
-_SHARPNESS = 0.985  # a time proved up to this part of a known contact time is near enough to it
-_EARLY_START = 0.875  # part of the time at which boxes meet where marching begins: the pair is clearly apart there
+_BATCH = 1 << 13  # pairs processed together, so that their arrays stay in the cache
+_SHARPNESS = 0.985  # a time proved up to this fraction of a known contact time is near enough to it
+_EARLY_START = 0.875  # fraction of the time at which boxes meet where marching begins: the pair is clearly apart there
 
 
 class Limit(Enum):
@@ -34,14 +34,14 @@ class Limit(Enum):
 
 @dataclass(frozen=True)
 class Contact:
-    """What is in the way of a motion."""
+    """An obstruction of a motion."""
 
     edges: tuple[int, ...]  # the two edges that meet, or the one that meets an obstacle
-    obstacle: str | None = None  # what sentences call it; None if edges meet
+    obstacle: str | None = None  # its name in sentences; None if edges meet
 
     @property
     def message(self) -> Message:
-        """The two, as sentences call them."""
+        """The two things that meet, as sentences name them."""
         edge, *other = (Message(EDGE, number=edge + 1) for edge in self.edges)
         return Message("{edge} and {other}", edge=edge, other=self.obstacle or other[0])
 
@@ -103,7 +103,7 @@ def _search(
 
 
 class _Candidates(NamedTuple):
-    """Pairs of edges, or of edges and still triangles, that can meet before the limit."""
+    """Pairs of edges, or of edges and triangles at rest, that can meet before the limit."""
 
     vertices: IntArray  # x₀, x₁, y₀, y₁, and y₂ of triangles; shape (4 or 5, pairs)
     names: IntArray  # numbers of the edges, or of edge and triangle; shape (2, pairs)
@@ -111,20 +111,20 @@ class _Candidates(NamedTuple):
 
 
 class _Search:
-    """The earliest contact so far, and what remains to be looked at; an obstacle is one more list of pairs."""
+    """The earliest contact so far, and what remains to be examined; an obstacle is one more list of pairs."""
 
     def __init__(
         self, mesh: Mesh, given: tuple[FloatArray, FloatArray], obstacles: tuple[Obstacle, ...], size: float
     ) -> None:
-        # A power of two keeps products away from overflow and underflow. It changes no digit, but of the smallest
-        # numbers, by less than the planes' margins: exact decisions are about the numbers as they were given.
+        # A power of two keeps products away from overflow and underflow. It changes no digits but those of the
+        # smallest numbers, by less than the planes' margins: exact decisions are about the numbers as they were given.
         exponent = int(np.frexp(size)[1])
         self.mesh = mesh
         self.still = still_triangles(obstacles, exponent) if obstacles else None
         # the vertices of obstacles come after those of the curve
         self.given = given if self.still is None else tuple(np.concatenate([p, self.still.vertices]) for p in given)
         self.start, self.end = (np.ldexp(points.T, -exponent, order="C") for points in self.given)
-        self.limit = 1.0  # proved free up to here, as far as pairs have been looked at
+        self.limit = 1.0  # proved free up to here, as far as pairs have been examined
         self.contact = np.inf  # the earliest contact found by an exact decision
         self.met: Contact | None = None
 
@@ -134,7 +134,7 @@ class _Search:
         return FreeMotion(self.limit, self.met, Limit.CONTACT if self.limit > 0 else Limit.TOUCHING_START)
 
     def batches(self) -> Iterator[_Candidates]:
-        """Yield all pairs that can meet before the limit, those that can do so soon first.
+        """Yield all pairs that can meet before the limit, starting with those that can do so soon.
 
         No pair is lost between the two searches: boxes above it never meet later than its own (`contact_window`), so
         where these meet soon no box above is dropped by the first, and the second leaves out only what that one found.

@@ -1,4 +1,4 @@
-"""Moving segments, and the proof by separating planes that one does not meet another, or a triangle, for a while.
+"""Moving segments, and a proof by separating planes that one does not meet another, or a triangle, for some time.
 
 A segment x₀ + s e and a segment y₀ + r f, or a triangle y₀ + r f + q g, D = x₀ − y₀, whose vertices move linearly in
 time. For a *fixed* direction n the numbers ⟨n, x_i(t) − y_j(t)⟩ at the four, or six, pairs of vertices are linear in t;
@@ -17,7 +17,7 @@ UNDERFLOW = 1e-300  # products below 2^-1022 lose absolute, not relative accurac
 _TINY = np.finfo(np.float64).tiny
 _PARALLEL = 1e-14  # sin² of the angle below which a cross product is mostly rounding
 _ROUNDS = 20
-_PATIENCE = 1 / 3  # so many pairs per round done are not worth another round: the exact decision is as quick
+_PATIENCE = 1 / 3  # so few pairs per round done are not worth another round: the exact decision is as quick
 _SHORT = 0.01  # a step that adds less than this part of the time reached calls for the exact decision
 _SHARE = 1 - 2.0**-6  # part of the way to the plane's own contact that a step goes, to stay apart for the next plane
 
@@ -102,7 +102,7 @@ def closest_chord(motion: FloatArray) -> FloatArray:
     """Return the vector from the closest point of y to the closest point of x: the normal of a plane that may separate.
 
     ``motion`` holds D, e, f, and g for triangles, at one time, shape (3 or 4, m, pairs); the result has shape
-    (m, pairs). It is 0 where segments in the plane cross, and of no use where a segment pierces a triangle. No proof
+    (m, pairs). It is 0 where segments in the plane cross, and useless where a segment pierces a triangle. No proof
     depends on its accuracy.
     """
     if len(motion) == 3:

@@ -1,9 +1,9 @@
-"""Where a shape lies upon another best: over rotations, starting points, directions and orders of components.
+"""Best ways to lay one shape on another: over rotations, starting points, directions and orders of components.
 
 Strands are compared at samples that are evenly spread over each component.  For a given rotation the best starting
 points of all pairs of components are maxima of cross-correlations, which an FFT gives for all of them; for given
-starting points the best rotation is Kabsch's (Acta Cryst. A 32, 1976).  By turns they climb to a maximum from each of
-many rotations.
+starting points the best rotation is Kabsch's (Acta Cryst. A 32, 1976).  Alternating between the two climbs to a
+maximum from each of many rotations.
 """
 
 from dataclasses import dataclass
@@ -17,19 +17,19 @@ from .curve import Curve
 from .smooth import evenly
 
 SAMPLES = 256  # of a component: half a spacing is some 0.01 radii of gyration
-STARTS, AROUND = 400, 64  # rotations to climb from, and those about a single axis
-TURNS = 12  # of a climb, at most
+STARTS, AROUND = 400, 64  # rotations to climb from, about any axis and about a single one
+TURNS = 12  # at most, in a climb
 AS_GIVEN = 0.03  # radii of gyration by which one may lie worse that keeps directions and order of components,
 STILL = 0.01  # or needs no rotation, where π is the largest
-NEVER = -1e300  # score of what is not allowed
-DISTINCT = 0.3  # difference of rotation matrices, from which they are looked at both
+NEVER = -1e300  # score of anything that is not allowed
+DISTINCT = 0.3  # difference of rotation matrices beyond which both are examined
 
 
 @dataclass(frozen=True, eq=False)
 class Freedom:
     """The similarities that are allowed: rotations about any axis, or about one; and shifts and scalings, or none."""
 
-    axis: FloatArray | None = None  # the only one, of length 1, or 0 for no rotations; shape (3,)
+    axis: FloatArray | None = None  # the only axis, of length 1, or 0 for no rotations; shape (3,)
     fixed: FloatArray | None = None  # a point that neither shifts nor scalings may move; shape (3,)
 
     def best(self, covariances: FloatArray) -> FloatArray:
@@ -56,11 +56,11 @@ def _about(axis: FloatArray, angles: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class Alignment:
-    """The similarity x ↦ target + scale · R (x − source) that takes a curve to about where another one is.
+    """The similarity x ↦ target + scale · R (x − source) that takes a curve approximately to another one.
 
-    ``order`` has for each of its components that of the other one, ``backwards`` whether that is run through in its
-    opposite direction, ``begins`` the share of its length, so run through, at which the curve's first vertex is;
-    ``distance`` is what is left, root mean square, in radii of gyration.
+    ``order`` has, for each of its components, the matching one of the other, ``backwards`` whether that is traversed
+    in its opposite direction, ``begins`` the share of its length, so traversed, at which the curve's first vertex lies;
+    ``distance`` is the remaining distance, root mean square, in radii of gyration.
     """
 
     rotation: FloatArray  # R, shape (3, 3)
@@ -79,7 +79,7 @@ class Alignment:
 
     @property
     def cost(self) -> float:
-        """What is to be least: the distance, and a bit for what had rather be avoided."""
+        """The quantity to minimise: the distance, and a bit for changes of order or direction and for rotations."""
         return self.distance + AS_GIVEN * (not self.as_given) + STILL * self.angle / np.pi
 
     @property
@@ -87,7 +87,7 @@ class Alignment:
         return float(Rotation.from_matrix(self.rotation).magnitude())
 
     def moved(self, vertices: FloatArray, share: float) -> FloatArray:
-        """Vertices, shape (n, m), after a share of the way there."""
+        """Vertices, shape (n, m), after a share of the motion."""
         rotation = Rotation.from_rotvec(share * Rotation.from_matrix(self.rotation).as_rotvec()).as_matrix()
         m = vertices.shape[1]
         place = (self.source + share * (self.target - self.source))[:m]
@@ -125,7 +125,7 @@ def alignments(curve: Curve, other: Curve, freedom: Freedom) -> list[Alignment]:
 class _Pairs:
     """Cross-correlations Σ_k y_{k+s} x_kᵀ of the samples of all pairs of components, in both directions, at all s.
 
-    Open components are held at their ends: each is compared with that of its number alone, as both are.
+    Open components are held at their ends: each is compared only with the one of the same number, as both are.
     """
 
     def __init__(self, x: FloatArray, y: FloatArray, closed: BoolArray, other_closed: BoolArray) -> None:
@@ -152,7 +152,7 @@ class _Pairs:
 
 
 def _samples(curve: Curve) -> FloatArray:
-    """Points evenly along each component, in space; shape (components, samples, 3)."""
+    """Points evenly spread along each component, in space; shape (components, samples, 3)."""
     found = np.zeros((len(curve.components), SAMPLES, 3))
     for k, (part, closed) in enumerate(zip(curve.components, curve.mesh.closed, strict=True)):
         found[k, :, : curve.dimension] = evenly(part, closed, SAMPLES)

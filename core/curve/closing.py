@@ -10,10 +10,10 @@ _TURN = np.pi / 8  # between vertices far away: their edges do not come near the
 
 
 def closed_far_away(curve: Curve) -> Curve:
-    """Join the ends of open components: they go straight away from the centre of the vertices, then round it far out.
+    """Join the ends of open components: they go straight away from the centre of the vertices, then around it far out.
 
-    What is closed stays.  The knot type is that of the closed curve; for arcs whose ends are deep inside it hangs on
-    where they leave, as that of every closure does.
+    Closed components stay.  The knot type is the closed curve's; for arcs whose ends are deep inside, it depends on
+    where they leave, as with every closure.
     """
     center = curve.vertices.mean(axis=0)
     radius = float(np.linalg.norm(curve.vertices - center, axis=1).max())
@@ -24,7 +24,7 @@ def closed_far_away(curve: Curve) -> Curve:
             continue
         first, last = ((p - center) / (np.linalg.norm(p - center) or 1.0) for p in (part[0], part[-1]))
         across = first - (first @ last) * last
-        if np.linalg.norm(across) < 1e-6:  # any way round will do
+        if np.linalg.norm(across) < 1e-6:  # either way round will do
             across = np.eye(curve.dimension)[np.abs(last).argmin()]
             across -= (across @ last) * last
         across /= np.linalg.norm(across)

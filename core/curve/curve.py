@@ -68,7 +68,7 @@ class Curve:
 
     @classmethod
     def of(cls, other: object) -> "Curve":
-        """A curve from what other programs have: a link of SnapPy or spherogram, or arrays of vertices.
+        """A curve from objects of other programs: a link of SnapPy or spherogram, or arrays of vertices.
 
         Links, and whatever else has a ``PD_code()``, are drawn from above as `mobius_flow.core.knots.diagram_knot`
         draws them.  Raises CurveError for objects that are none of these.
@@ -144,7 +144,7 @@ class Curve:
 
 
 def check_closed(curve: Curve, what: str) -> None:
-    """Raise a CurveError, which says what is for closed components alone, if one is open."""
+    """Raise a CurveError, naming the feature that needs closed components, if one is open."""
     if not curve.mesh.all_closed:
         number = curve.mesh.closed.index(False) + 1
         raise CurveError(f"component {number} is open; {what} are for closed components")

@@ -8,7 +8,7 @@ from .curve import Curve
 
 STRAND_RATIO = 2.0  # points are on different strands if their distance along the curve is this many times their gap
 CLOSING_IN = 0.6  # ratio below which strands close in on each other: four times nearer to a corner its sides do
-TINY = float(np.finfo(np.float64).tiny)  # against division by 0: far from the origin sample points may coincide
+TINY = float(np.finfo(np.float64).tiny)  # avoids division by 0: far from the origin sample points may coincide
 
 
 def points_at(curve: Curve, t: float) -> FloatArray:
@@ -142,7 +142,7 @@ def _distances(curve: Curve, i: IntArray, j: IntArray) -> FloatArray:
 
 
 def _sides_of_corners(curve: Curve, i: IntArray, j: IntArray) -> BoolArray:
-    """Whether the curve between vertices ``i`` and the strands that pass them at vertices ``j`` is but a corner.
+    """Whether the curve between vertices ``i`` and the strands that pass them at vertices ``j`` is merely a corner.
 
     A corner, however sharp, looks the same at every scale: shorter edges do not bring neighbours nearer than its sides.
     """
@@ -151,7 +151,7 @@ def _sides_of_corners(curve: Curve, i: IntArray, j: IntArray) -> BoolArray:
     closed, length = np.asarray(curve.mesh.closed)[component], curve.component_lengths[component]
 
     def apart(arc: FloatArray, fraction: float) -> FloatArray:
-        """The distance of the ends of the arc's middle part."""
+        """The distance between the ends of the arc's middle part."""
         ends = [points_along(curve, component, start + 0.5 * (1.0 + s * fraction) * arc) for s in (-1, 1)]
         return np.asarray(np.linalg.norm(ends[1] - ends[0], axis=1))
 

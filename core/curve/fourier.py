@@ -9,7 +9,7 @@ from scipy.interpolate import CubicSpline
 from ..types import ComplexArray, FloatArray
 from .curve import Curve
 
-_PER_MODE, _LEAST = 10, 64  # vertices of a component for each of its modes, and altogether
+_PER_MODE, _LEAST = 10, 64  # vertices of a component for each of its modes, and in total
 _SAMPLES = 16  # of a polygon's spline for each mode
 
 
@@ -24,7 +24,7 @@ class FourierCurve:
 
     @classmethod
     def of(cls, curve: Curve, at: Sequence[FloatArray], modes: Sequence[int]) -> "FourierCurve":
-        """The first modes of the components' splines, which visit closed polygons' vertices at parameters ``at``."""
+        """The first modes of the components' splines, which pass closed polygons' vertices at parameters ``at``."""
         return cls(tuple(map(_fitted, curve.components, at, modes)))
 
     @property
@@ -39,7 +39,7 @@ class FourierCurve:
 
     @classmethod
     def of_lists(cls, lists: Sequence[Sequence[Sequence[Sequence[float]]]]) -> "FourierCurve":
-        """The curve of what `as_lists` gives."""
+        """The curve that `as_lists` describes."""
         return cls(tuple(np.array(part) @ [1.0, 1j] for part in lists))
 
     @property
@@ -56,7 +56,7 @@ class FourierCurve:
         return Curve.from_components(parts)
 
     def with_modes(self, modes: Sequence[int]) -> "FourierCurve":
-        """The same with higher frequencies, whose coefficients are 0, or without those above."""
+        """The same with higher frequencies, whose coefficients are 0, or without the highest ones."""
         parts = []
         for c, k in zip(self.coefficients, modes, strict=True):
             parts.append(np.concatenate([c[: k + 1], np.zeros((max(k + 1 - len(c), 0), 3))]))
@@ -64,7 +64,7 @@ class FourierCurve:
 
     @classmethod
     def through(cls, curve: Curve, modes: Sequence[int]) -> "FourierCurve":
-        """The first modes of components that visit the vertices of closed polygons at equal steps of t."""
+        """The first modes of components that pass through the vertices of closed polygons at equal steps of t."""
         return cls(tuple(map(_spectrum, curve.components, modes)))
 
     @property
@@ -73,7 +73,7 @@ class FourierCurve:
         return FourierCurve(tuple(c * [1.0, 1.0, -1.0] for c in self.coefficients))
 
     def rounded(self, quantum: float) -> "FourierCurve":
-        """With coefficients that are multiples of a number."""
+        """The same with coefficients rounded to multiples of a number."""
         return FourierCurve(tuple(quantum * np.round(c / quantum) for c in self.coefficients))
 
 

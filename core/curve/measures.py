@@ -6,8 +6,8 @@ from ..errors import CurveError
 from ..types import FloatArray
 from .curve import Curve
 
-_ROWS = 64  # of edge pairs looked at together
-_TINY = 1e-20  # against division by 0 where edges double back
+_ROWS = 64  # of edge pairs processed together
+_TINY = 1e-20  # avoids division by 0 where edges double back
 
 
 def bending(curve: Curve) -> float:

@@ -75,7 +75,7 @@ class Mesh:
 
     @cached_property
     def edges(self) -> int:
-        """Number of edges: that of vertices less that of open components."""
+        """Number of edges: the number of vertices less that of open components."""
         return int(self.edge_counts.sum())
 
     @cached_property
@@ -131,34 +131,34 @@ class Mesh:
 
     @cached_property
     def cycle(self) -> IntArray:
-        """The vertex after each vertex, after the last one of a component its first, closed or not; shape (n,)."""
+        """The vertex after each vertex; after the last of a component its first, closed or not; shape (n,)."""
         after = np.arange(1, self.size + 1)
         after[self.offsets[1:] - 1] = self.offsets[:-1]
         return frozen(after)
 
     @cached_property
     def anticycle(self) -> IntArray:
-        """The vertex before each vertex, before the first one of a component its last, closed or not; shape (n,)."""
+        """The vertex before each vertex; before the first of a component its last, closed or not; shape (n,)."""
         return frozen(_with(np.empty(self.size, dtype=np.intp), self.cycle))
 
     @cached_property
     def outgoing(self) -> IntArray:
-        """The edge that begins at each vertex; where an arc ends, the one that ends there.  Shape (n,)."""
+        """The edge that begins at each vertex; at the end of an arc, the one that ends there.  Shape (n,)."""
         return frozen(_with(_with(np.empty(self.size, dtype=np.intp), self.heads), self.tails))
 
     @cached_property
     def incoming(self) -> IntArray:
-        """The edge that ends at each vertex; where an arc begins, the one that begins there.  Shape (n,)."""
+        """The edge that ends at each vertex; at the beginning of an arc, the one that begins there.  Shape (n,)."""
         return frozen(_with(_with(np.empty(self.size, dtype=np.intp), self.tails), self.heads))
 
     @cached_property
     def next(self) -> IntArray:
-        """The edge after each edge; the last one of an arc itself.  Shape (edges,)."""
+        """The edge after each edge; for the last edge of an arc the edge itself.  Shape (edges,)."""
         return frozen(self.outgoing[self.heads])
 
     @cached_property
     def previous(self) -> IntArray:
-        """The edge before each edge; the first one of an arc itself.  Shape (edges,)."""
+        """The edge before each edge; for the first edge of an arc the edge itself.  Shape (edges,)."""
         return frozen(self.incoming[self.tails])
 
     @cached_property
@@ -205,7 +205,7 @@ class Mesh:
 
     @cached_property
     def _periods(self) -> IntArray:
-        """Edges once round each component; twice the mesh's size where there is no way round."""
+        """Edges once round each component; twice the mesh's size for open components."""
         return np.where(self.closed, self.edge_counts, 2 * self.size)
 
     def disjoint(self, i: IntArray, j: IntArray) -> BoolArray:
@@ -217,7 +217,7 @@ class Mesh:
         return u.take(self.heads, axis=0) - (u if self.all_closed else u.take(self.tails, axis=0))
 
     def scatter(self, at_tails: FloatArray, at_heads: FloatArray) -> FloatArray:
-        """Add values given at the tail and the head of each edge up at the vertices; (edges, …) to (n, …)."""
+        """At each vertex, add up the values given at the tails and the heads of its edges; (edges, …) to (n, …)."""
         total = self.at_tails(at_tails)
         if self.all_closed:
             total += at_heads.take(self.previous, axis=0)
@@ -258,7 +258,7 @@ def z_order(points: FloatArray) -> IntArray:
 
 
 def _flags(closed: Any, components: int) -> tuple[bool, ...]:
-    """Whether each component is closed, all of them where nothing is said."""
+    """Whether each component is closed; by default all are."""
     flags = tuple(closed) if is_list(closed) else None
     if flags == ():
         return (True,) * components
@@ -272,6 +272,6 @@ def _slices(offsets: IntArray) -> tuple[slice, ...]:
 
 
 def _with(edge_at: IntArray, vertices: IntArray) -> IntArray:
-    """Enter each edge, or vertex, at a vertex of its own."""
+    """Assign each edge, or vertex, to a vertex of its own."""
     edge_at[vertices] = np.arange(len(vertices))
     return edge_at

@@ -18,7 +18,7 @@ NOWHERE: IntArray = frozen(np.empty(0, dtype=np.intp))
 
 @dataclass(frozen=True, eq=False)
 class Pins:
-    """Vertices, ascending, held at their very coordinates, (k, m), in the user's units; so any mesh finds them."""
+    """Vertices, ascending, held at exactly their positions, (k, m), in the user's units; so any mesh finds them."""
 
     vertices: IntArray = field(default_factory=lambda: NOWHERE)
     positions: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
@@ -28,14 +28,14 @@ class Pins:
 
     @classmethod
     def of(cls, curve: Curve, vertices: IntArray) -> "Pins":
-        """Some vertices of a curve, and those of taut arcs between them, to which no motion is left either."""
+        """Some vertices of a curve, along with those of taut arcs between them, which cannot move either."""
         taut = [ends_of(curve.mesh, span.edges) for span in spans(curve, vertices) if span.taut]
         held = np.unique(np.concatenate([vertices, *taut]))
         return cls(frozen(held), frozen(curve.vertices[held]))
 
     @classmethod
     def at(cls, curve: Curve, positions: FloatArray) -> "Pins":
-        """The vertices of a curve at positions, shape (k, m), each of which is that of a vertex."""
+        """The vertices of a curve at positions, shape (k, m), each of which is the position of a vertex."""
         place = {tuple(vertex): k for k, vertex in enumerate(curve.vertices.tolist())}
         return cls.of(curve, np.array([place[tuple(position)] for position in positions.tolist()], dtype=np.intp))
 
@@ -44,13 +44,13 @@ class Pins:
         return Pins.at(curve, self.positions) if len(self) else self
 
     def with_neighbours(self, curve: Curve) -> "Pins":
-        """With the neighbours of each: the edges in between have lengths that are kept, and so the tangents are."""
+        """The pins and their neighbours: the edges in between have fixed lengths, and so fixed tangents."""
         mesh, here = curve.mesh, holds(curve.mesh, self.vertices)
         after, before = mesh.heads[here[mesh.tails]], mesh.tails[here[mesh.heads]]
         return Pins.of(curve, np.unique(np.concatenate([self.vertices, after, before])))
 
     def put_back(self, vertices: FloatArray, positions: FloatArray) -> FloatArray:
-        """The vertices, shape (n, m), with those that are pinned at positions, shape (k, m); read-only."""
+        """The vertices, shape (n, m), with the pinned ones at positions, shape (k, m); read-only."""
         placed = np.array(vertices)
         placed[self.vertices] = positions
         return frozen(placed)
@@ -67,7 +67,7 @@ def holds(mesh: Mesh, vertices: IntArray) -> BoolArray:
 
 
 def free_edges(mesh: Mesh, pins: IntArray) -> IntArray:
-    """The edges of which not both ends are pinned."""
+    """The edges whose ends are not both pinned."""
     held = holds(mesh, pins)
     return np.flatnonzero(~(held[mesh.tails] & held[mesh.heads]))
 
@@ -75,7 +75,7 @@ def free_edges(mesh: Mesh, pins: IntArray) -> IntArray:
 def arcs(mesh: Mesh, pins: IntArray) -> list[IntArray]:
     """The edges, ascending, of each arc from pin to pin or to an end of the curve, and of each component without pins.
 
-    Edges are on the same arc if they meet in a vertex that is no pin: connected components of the graph with edges and
+    Edges are on the same arc if they meet in an unpinned vertex: connected components of the graph with edges and
     free vertices as its nodes.
     """
     edges, free = np.arange(len(mesh.tails)), ~holds(mesh, pins)

@@ -23,18 +23,18 @@ DEFAULT_VERTICES = 200  # per component: enough for energies to a tenth of a per
 # to begin with: where gaps ask for more, the barrier's exact energies do, and hard unknots become circles in a sixth of
 # the time; strands that are as near in the end get more then
 MAX_PER_COMPONENT = 1000  # unless the curve has half as many
-MAX_ALTOGETHER = 5000  # unless the curve has more
-COMPONENTS = 10  # that get so many each; more share what ten would have
+MAX_ALTOGETHER = 5000  # unless the curve has more already
+COMPONENTS = 10  # that get so many each; more of them share what ten would have
 SAMPLES_PER_SPACING = 4.0  # sample points per default edge length when gaps are measured
-TOGETHER = 0.3  # mean edges that vertices of the two may be apart to be one
+TOGETHER = 0.3  # mean edges that vertices of the two curves may be apart and still become one
 
 
 @dataclass(frozen=True)
 class Resolution:
-    """How long edges may be."""
+    """The edge lengths allowed."""
 
-    vertices: int | None = None  # how many there would be if no strands were near; None for 200 per component
-    edges_per_gap: float = 1.0  # how many edges fit in between near strands
+    vertices: int | None = None  # the number if no strands were near; None for 200 per component
+    edges_per_gap: float = 1.0  # number of edges that fit in between near strands
     clearance: Callable[[Curve], FloatArray | float] = lambda _: np.inf  # of obstacles from each edge, (edges,) or inf
 
 
@@ -71,9 +71,9 @@ def subdivide(curve: Curve, pieces: IntArray) -> Curve:
 
 
 def target_spacing(curve: Curve, resolution: Resolution) -> FloatArray:
-    """Largest edge length wanted on every edge: that of the count, or what gaps to other strands allow; shape (edges,).
+    """Largest edge length wanted on every edge: by the count, or by gaps to other strands; shape (edges,).
 
-    Gaps that allow edges longer than that, or than the longest there is, do not matter and are not looked for.
+    Gaps that allow edges longer than that, or than the longest there is, do not matter and are not searched for.
     """
     sharers = min(COMPONENTS, len(curve.mesh.component_sizes))
     base = curve.length / (resolution.vertices or DEFAULT_VERTICES * sharers)
@@ -93,7 +93,7 @@ def affordable_pieces(curve: Curve, spacing: FloatArray, most: int) -> IntArray:
     """Pieces per edge for a spacing, or for the finest with at most so many vertices; 1 each if there are as many."""
     most, floor = max(len(curve), most) - len(curve.mesh.ends), 0.0
     while True:
-        # a little slack, so that a curve that already has the requested spacing stays as it is
+        # a little slack, so that a curve that already has the wanted spacing stays as it is
         pieces = np.maximum(1.0, np.ceil(curve.edge_lengths / np.maximum(spacing, floor) - 0.1))
         if pieces.sum() <= most:
             return np.asarray(pieces.astype(np.intp))
@@ -115,7 +115,7 @@ def apportion(wanted: FloatArray, total: int) -> IntArray:
 def refined_alike(x: Curve, y: Curve, begins: tuple[float, ...]) -> tuple[Curve, Curve]:
     """Two curves with the same components on one mesh, vertices at equal shares of length.
 
-    ``begins``: the share of the length of each component of ``y`` at which that of ``x`` has its first vertex.
+    ``begins``: the share of the length of each component of ``y`` at which the first vertex of ``x`` lies.
     """
     parts = [_alike(x, y, k, begin) for k, begin in enumerate(begins)]
     mesh = Mesh(tuple(len(points) for points, _ in parts), x.mesh.closed)
@@ -127,9 +127,9 @@ def _alike(x: Curve, y: Curve, component: int, begin: float) -> tuple[FloatArray
     shares = [arc_lengths(each.components[component]) / each.component_lengths[component] for each in (x, y)]
     near = TOGETHER / max(map(len, shares))
     if closed:
-        shares[0] = (shares[0] + begin + near) % 1.0 - near  # so that the first of all has whom to be one with
+        shares[0] = (shares[0] + begin + near) % 1.0 - near  # so that the first of all has a partner to merge with
     events = sorted((share, which, k) for which in (0, 1) for k, share in enumerate(shares[which].tolist()))
-    nodes: list[dict[int, int]] = []  # the vertex of each curve that there is at one
+    nodes: list[dict[int, int]] = []  # the vertex of each curve, if any, at each node
     places: list[float] = []
     for share, which, k in events:
         if nodes and which not in nodes[-1] and len(nodes[-1]) == 1 and share - places[-1] < near:

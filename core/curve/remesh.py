@@ -15,17 +15,17 @@ from .pins import NO_PINS, NOWHERE, Pins, arcs, holds
 from .refine import Resolution, subdivide, target_spacing
 
 SPLIT = 1.5  # edges longer than this many times the spacing wanted are split
-COLLAPSE = 0.5  # two edges are joined if they are shorter than this many times the spacing, each
+COLLAPSE = 0.5  # two edges are joined if each is shorter than this many times the spacing
 GRADING = 1.3  # ratio of the spacings wanted on neighbouring edges, at most
-EDGES_PER_CLEARANCE = 2.0  # of obstacles: a curve bends as narrowly as it is near to them
-MIN_VERTICES = 16  # edges that a component, or an arc between pins, keeps, if it had as many
+EDGES_PER_CLEARANCE = 2.0  # of obstacles: a curve bends as tightly as it is near to them
+MIN_VERTICES = 16  # edges that a component, or an arc between pins, keeps if it had as many
 
 
 def graded_spacing(curve: Curve, resolution: Resolution) -> FloatArray:
     """Edge length wanted on every edge, varying by a bounded ratio from edge to edge; shape (edges,)."""
     spacing = np.minimum(target_spacing(curve, resolution), resolution.clearance(curve) / EDGES_PER_CLEARANCE)
     for part, closed in zip(curve.mesh.edge_slices, curve.mesh.closed, strict=True):
-        # one sweep each way, twice round where there is a way round, spreads every minimum as far as it reaches
+        # one sweep each way, twice round where the component is closed, spreads every minimum as far as it reaches
         for direction in (1, -1):
             local = np.tile(spacing[part][::direction], 2 if closed else 1)
             steps = np.log(GRADING) * np.arange(len(local))
@@ -35,7 +35,7 @@ def graded_spacing(curve: Curve, resolution: Resolution) -> FloatArray:
 
 
 def superfluous(curve: Curve, spacing: FloatArray, kept: IntArray = NOWHERE) -> IntArray:
-    """Vertices that may be removed, no two of them neighbours or next to them, and no ends or those to be kept."""
+    """Vertices that may be removed, no two of them neighbours or next but one, and no ends or vertices to be kept."""
     mesh, before, after = curve.mesh, curve.mesh.incoming, curve.mesh.outgoing
     joined = curve.edge_lengths < COLLAPSE * spacing
     short = joined[before] & joined[after] & (before != after) & ~holds(mesh, kept)

@@ -12,11 +12,11 @@ SAMPLES = 8  # points of a spline, for each vertex of its polygon, at which its 
 
 
 def smoothed(curve: Curve, mesh: Mesh, pins: IntArray = NOWHERE, places: IntArray = NOWHERE) -> Curve:
-    """The polygon with vertices at equal distances along the cubic splines through those of each component.
+    """The polygon with vertices at equal distances along the cubic splines through the vertices of each component.
 
     ``mesh`` has its numbers of vertices.  Some vertices of the curve, ``pins``, ascending, become those at ``places``;
-    distances are equal from one of them to the next.  A closed component without any has its first vertex at the same
-    place, arcs their ends.
+    distances are equal between consecutive ones.  A closed component without any keeps the place of its first vertex,
+    arcs the places of their ends.
     """
     pieces = []
     for old, new, closed in zip(curve.mesh.slices, mesh.slices, mesh.closed, strict=True):
@@ -43,7 +43,7 @@ def _resampled(points: FloatArray, closed: bool, size: int, pins: IntArray, plac
 
 
 def halved(curve: Curve) -> Curve:
-    """Closed polygons with a vertex more for each edge, on the splines through their vertices."""
+    """Closed polygons with an additional vertex for each edge, on the splines through their vertices."""
     splines = [cubic_spline(points) for points in curve.components]
     places = [np.interp(np.arange(0.0, len(each.x) - 1.0, 0.5), np.arange(len(each.x)), each.x) for each in splines]
     return Curve.from_components([spline(at) for spline, at in zip(splines, places, strict=True)])
@@ -56,7 +56,7 @@ def cubic_spline(points: FloatArray, closed: bool = True) -> CubicSpline:
 
 
 def sample_parameters(spline: CubicSpline) -> FloatArray:
-    """Parameters from the first to the last, so many to each piece that chords between them are as good as arcs."""
+    """Parameters from the first to the last, so many in each piece that chords between them are as good as arcs."""
     pieces = len(spline.x) - 1
     places = np.linspace(0.0, pieces, SAMPLES * pieces + 1)
     return np.asarray(np.interp(places, np.arange(pieces + 1), spline.x))
@@ -75,5 +75,5 @@ def at_shares(points: FloatArray, closed: bool, shares: FloatArray) -> FloatArra
 
 
 def evenly(points: FloatArray, closed: bool, count: int) -> FloatArray:
-    """So many points of a polygon at equal distances along it, the first one included; shape (count, m)."""
+    """A number of points of a polygon at equal distances along it, the first one included; shape (count, m)."""
     return at_shares(points, closed, np.linspace(0.0, 1.0, count, endpoint=not closed))

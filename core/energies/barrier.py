@@ -1,4 +1,4 @@
-"""The barrier that a one-point rule lacks: near pairs of edges get their exact energy instead.
+"""The barrier that a one-point rule lacks: near pairs of edges get their exact energy.
 
     B = Σ χ(q_IJ) (W_exact − W_mid),   q = |Δ|²/(ℓ_I + ℓ_J)²,
 
@@ -22,9 +22,9 @@ from .edge_pairs import DELTA, E, EdgePairIndices, EdgePairs, F, Jet, change, sc
 from .inverse_square import inverse_square
 
 NEAR = 1.0  # of q, up to which only the exact energy of a pair counts,
-FAR = 2.25  # and from where on only its midpoint energy does
+FAR = 2.25  # and from which only its midpoint energy does
 MIN_INDEX_DISTANCE = 4
-BLOCK = 4096  # pairs at once, for the processor's cache
+BLOCK = 4096  # pairs processed together, for the processor's cache
 
 
 @checked_fields
@@ -33,8 +33,8 @@ class Barrier:
     """B, the difference between exact and midpoint energy over near pairs of edges.
 
     Midpoint contributions are subtracted for the default energy, which contains them; for others the barrier is
-    Σ χ W_exact, on top of their own contributions.  If the energy has left the pairs with χ = 1 out (`replaced_pairs`),
-    theirs is W_exact alone: the same sum, but nothing is added that is subtracted again, which at a distance g would
+    Σ χ W_exact, on top of their own contributions.  If the energy has left out the pairs with χ = 1 (`replaced_pairs`),
+    these contribute W_exact alone: the same sum, but nothing is added and then subtracted, which at a distance g would
     cost some 1/g² times the rounding error of g, all digits from 10⁻⁸ of an edge on.
     """
 
@@ -78,7 +78,7 @@ class Barrier:
         return 2.0 * total, 2.0 * scatter_first(curve.mesh, *near_pairs(curve), np.concatenate(first))
 
     def _contributions(self, pairs: EdgePairs, replaced: BoolArray) -> Jet:
-        """χ (W_exact − W_mid) of pairs of edges, those ``replaced`` that have χ = 1."""
+        """χ (W_exact − W_mid) of pairs of edges; ``replaced`` marks those that have χ = 1."""
         q, excess = closeness(pairs), exact(pairs)
         if self.replaces_midpoint:
             excess = excess - (midpoint(pairs).where(~replaced) if self.left_out else midpoint(pairs))
@@ -131,7 +131,7 @@ def _area(pairs: EdgePairs) -> Jet:
 
 
 def replaced_pairs(curve: Curve) -> EdgePairIndices:
-    """Those of the near pairs that count with their exact energy alone."""
+    """The near pairs that contribute their exact energy alone."""
     i, j = near_pairs(curve)
     replaced = is_replaced(curve, i, j)
     return i[replaced], j[replaced]

@@ -18,7 +18,7 @@ from .edge_pairs import change, stepped
 
 
 def energy_scale(mesh: Mesh, energy: float) -> float:
-    """What errors and gradients are compared with: |E|, and for each arc, whose energy may be 0, the circle's."""
+    """The scale for errors and gradients: |E|, and for each arc, whose energy may be 0, the circle's."""
     return abs(energy) + 4.0 * len(mesh.ends)
 
 
@@ -37,7 +37,7 @@ class ComponentShares:
 
     def derivative(self) -> FloatArray:
         """Its derivative with respect to the vertices; shape (n, m)."""
-        if self.curve.mesh.all_closed:  # as most are: not worth a dozen operations
+        if self.curve.mesh.all_closed:  # as in most curves: not worth a dozen operations
             return np.zeros_like(self.curve.vertices)
         return self._derivative(self.curve.vertices)
 
@@ -46,7 +46,7 @@ class ComponentShares:
         return change(self._derivative(stepped(self.curve.vertices.reshape(*v.shape[:2], *[1] * (v.ndim - 2)), v)))
 
     def hessian_columns(self) -> tuple[IntArray, FloatArray]:
-        """The columns of D² that are not 0, those of the arcs' coordinates in ``vertices.ravel()``, and D² there."""
+        """The non-zero columns of D², those of the arcs' coordinates in ``vertices.ravel()``, and D² there."""
         n, m = self.curve.vertices.shape
         on_arcs = ~np.asarray(self.curve.mesh.closed)[self.curve.mesh.component]
         columns = np.flatnonzero(np.repeat(on_arcs, m))

@@ -65,8 +65,8 @@ class ArcDerivative:
         self._arcs = arcs
         n = len(arcs.ell)
         self._at_edges = np.zeros(n)
-        self._steps = np.zeros(n + 1)  # differences, from edge to edge, of what all edges of an arc get
-        self._around = np.zeros(len(arcs.total))  # what all edges of a component get
+        self._steps = np.zeros(n + 1)  # differences, from edge to edge, of the amounts that all edges of an arc get
+        self._around = np.zeros(len(arcs.total))  # the amounts that all edges of a component get
 
     def add(self, tile: Tile, t_row: float, t_column: float, weights: FloatArray) -> None:
         """Add the pairs of a tile; ``weights`` has shape (rows, columns), and every row index I < J."""
@@ -158,7 +158,7 @@ class Density(Protocol):
 
     @property
     def constant(self) -> float:
-        """What the energy has besides the integral, per closed component; arcs have shares of it (`components`)."""
+        """The energy besides the integral, per closed component; arcs have shares of it (`components`)."""
 
     @property
     def scale_exponent(self) -> float:

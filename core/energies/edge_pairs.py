@@ -50,7 +50,7 @@ class Jet:
         return Jet(factor * self.value, factor * self.first)
 
     def where(self, kept: BoolArray) -> "Jet":
-        """The quantity for some pairs, shape (k,), and 0 for the others, even if it is infinite there."""
+        """The quantity for some pairs, shape (k,), and 0 for the others, even where it is infinite."""
         return Jet(np.where(kept, self.value, 0.0), np.where(kept[:, None], self.first, 0.0))
 
     def compose(self, value: FloatArray, slope: FloatArray) -> "Jet":
@@ -126,7 +126,7 @@ class Tile(NamedTuple):
 
     rows: slice
     columns: slice
-    excluded: BoolArray  # pairs that do not count: edges with a common vertex, and what is in another tile or place
+    excluded: BoolArray  # pairs that do not count: edges with a common vertex, and those in another tile or place
 
 
 class RowTile(NamedTuple):
@@ -142,7 +142,7 @@ EdgePairIndices = tuple[IntArray, IntArray]
 
 
 def pair_tiles(mesh: Mesh, without: EdgePairIndices | None = None, size: int = ROWS_TIMES_COLUMNS) -> Iterator[Tile]:
-    """Cover every unordered pair of edges with disjoint closures exactly once, but for some that are left out."""
+    """Cover every unordered pair of edges with disjoint closures exactly once, except some that are left out."""
     n = mesh.edges
     touching = np.stack([np.arange(n), mesh.next])
     left_out = np.sort(touching if without is None else np.hstack([touching, np.stack(without)]), axis=0)
@@ -160,7 +160,7 @@ def pair_tiles(mesh: Mesh, without: EdgePairIndices | None = None, size: int = R
 
 
 def row_tiles(mesh: Mesh, rows: IntArray, without: EdgePairIndices | None = None) -> Iterator[RowTile]:
-    """Cover the pairs of some edges with all others, each edge's in one row, but for pairs that are left out."""
+    """Cover the pairs of some edges with all others, each edge's in one row, except pairs that are left out."""
     height = max(1, ROWS_TIMES_COLUMNS // mesh.edges)
     for first in range(0, len(rows), height):
         own = rows[first : first + height]

@@ -1,4 +1,4 @@
-"""What the program asks of an energy."""
+"""The interfaces that the program requires of an energy."""
 
 from typing import Protocol, runtime_checkable
 
@@ -12,11 +12,11 @@ from .edge_pairs import EdgePairIndices
 
 @runtime_checkable
 class Term(Protocol):
-    """A differentiable function of the vertices: an energy, or what an objective has beside it."""
+    """A differentiable function of the vertices: an energy, or another term of an objective."""
 
     @property
     def name(self) -> str:
-        """What it is called."""
+        """Its name."""
 
     def value(self, curve: Curve) -> float:
         """The term at the curve."""
@@ -38,7 +38,7 @@ class LocalTerm(Term, Protocol):
 
 @runtime_checkable
 class Stiff(Term, Protocol):
-    """A term that the metric of the energy does not see, so that steps would be too long for it."""
+    """A term that the energy's metric does not account for, so that steps would be too long for it."""
 
     def stiffness(self, curve: Curve) -> sp.sparray:
         """A quadratic form on functions along the curve, of about the size of the second derivative; shape (n, n)."""
@@ -46,20 +46,20 @@ class Stiff(Term, Protocol):
 
 @runtime_checkable
 class Confining(Term, Protocol):
-    """A term of what stands around the curve."""
+    """A term that comes from the curve's surroundings."""
 
     def clearance(self, curve: Curve) -> FloatArray:
-        """How far from each edge a wall would be that acts on it as strongly; shape (edges,)."""
+        """The distance from each edge of a wall that would act on it as strongly; shape (edges,)."""
 
 
 def scale_exponent(term: object) -> float | None:
-    """s of E(λ P) = λˢ E(P), 0 for terms that do not see size; None where a term does not say."""
+    """s of E(λ P) = λˢ E(P), 0 for terms that do not depend on size; None for a term that does not say."""
     exponent = getattr(term, "scale_exponent", None)
     return None if exponent is None else float(exponent)
 
 
 def is_moebius_invariant(term: object) -> bool:
-    """Whether a term says that Möbius maps change nothing of it, but for what the mesh makes of that."""
+    """Whether a term declares itself invariant under Möbius maps, up to the effects of the mesh."""
     return bool(getattr(term, "moebius_invariant", False))
 
 
@@ -73,19 +73,19 @@ class Energy(Term, Protocol):
 
     @property
     def rule(self) -> Rule:
-        """Where on the edges it looks; J_C looks at the same places unless told otherwise."""
+        """Where on the edges it is evaluated; J_C uses the same places unless told otherwise."""
 
     @property
     def scale_exponent(self) -> float:
-        """s of E(λ P) = λˢ E(P); 0 for energies that do not see size."""
+        """s of E(λ P) = λˢ E(P); 0 for energies that do not depend on size."""
 
     @property
     def contains_midpoint_pairs(self) -> bool:
-        """Whether the midpoint energies that the barrier replaces are part of it; then it has `leaving_out`."""
+        """Whether it contains the midpoint energies that the barrier replaces; then it has `leaving_out`."""
 
 
 class WithMidpointPairs(Energy, Protocol):
-    """An energy part of which the barrier replaces."""
+    """An energy that the barrier replaces in part."""
 
     def leaving_out(self, pairs: EdgePairIndices) -> Energy:
         """The same without some pairs of edges."""
@@ -93,10 +93,10 @@ class WithMidpointPairs(Energy, Protocol):
 
 @runtime_checkable
 class Approximate(Term, Protocol):
-    """A term that is approximated in a way that depends on the curve, and is smooth only as long as that is kept."""
+    """A term approximated in a way that depends on the curve, and smooth only while that way is kept."""
 
     def frozen_at(self, curve: Curve) -> Term:
-        """The smooth function that the way for one curve makes of it."""
+        """The smooth function given by the approximation for one curve."""
 
 
 class TwiceDifferentiable(Energy, Protocol):

@@ -5,7 +5,7 @@ The integral along the second edge is in closed form and without cancellation: b
     L(n, k) = ∫_a^b wᵏ/(h² + w²)ⁿ dw,   n = 1, 2,
 
 h the distance of a point from the edge's line and w the position along it from the point's foot.  The one along the
-first edge is by graded panels.  Derivatives are those of the exact integral, at the same points; second ones come of
+first edge is by graded panels.  Derivatives are those of the exact integral, at the same points; second ones are by
 complex steps.
 """
 

@@ -52,7 +52,7 @@ class KPointEnergy:
 
     @property
     def moebius_invariant(self) -> bool:
-        """Whether the density is."""
+        """Whether the density is Möbius invariant."""
         return is_moebius_invariant(self.density)
 
     def value(self, curve: Curve) -> float:

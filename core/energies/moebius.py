@@ -38,7 +38,7 @@ CONSTANT = 4.0  # of a closed component
 @checked_fields
 @dataclass(frozen=True, eq=False)
 class MoebiusEnergy:
-    """The plain midpoint sum, reported as ``moebius``, without pairs of edges that something else stands for."""
+    """The plain midpoint sum, reported as ``moebius``, without pairs of edges that another term replaces."""
 
     without: EdgePairIndices | None = field(default=None, repr=False)
     name = "moebius"

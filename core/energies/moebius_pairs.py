@@ -11,9 +11,9 @@ from .edge_pairs import RowTile, Tile, stepped
 
 
 class Vectors(NamedTuple):
-    """What the derivative is linear in: edge vectors e with lengths ℓ, midpoints m from their mean with ones."""
+    """The vectors in which the derivative is linear: edges e with lengths ℓ, midpoints m from their mean with ones."""
 
-    e_ell: FloatArray  # (edges, m + 1), as the other
+    e_ell: FloatArray  # (edges, m + 1), like the other
     m_one: FloatArray
 
     @property
@@ -38,13 +38,13 @@ class Edges(NamedTuple):
 
     @classmethod
     def of(cls, curve: Curve, v: FloatArray | None = None) -> "Edges":
-        """Those of a curve, after a complex step along v, shape (n, m), if there is one."""
+        """The edges of a curve, after a complex step along v, shape (n, m), if there is one."""
         e, ell, m = curve.edge_vectors, curve.edge_lengths, curve.midpoints
         if v is not None:
             tails, heads = v[curve.mesh.tails], v[curve.mesh.heads]
             e, m = stepped(e, heads - tails), stepped(m, 0.5 * (heads + tails))
             ell = np.sqrt(np.einsum("ij,ij->i", e, e))
-        # products of coordinates lose digits far from the origin, so the origin comes to the curve
+        # products of coordinates lose digits far from the origin, so the curve is moved to the origin
         vectors = Vectors(np.column_stack([e, ell]), np.column_stack([m - m.mean(axis=0), np.ones(len(m))]))
         foot = np.column_stack([-e, np.einsum("ij,ij->i", vectors.m, e)])
         return cls(vectors, e / ell[:, None], foot)
@@ -69,7 +69,7 @@ class Pairs(NamedTuple):
     def of(cls, edges: Edges, tile: Tile | RowTile) -> "Pairs":
         (e_ell, m_one), foot = edges.vectors, edges.foot
         rows, columns = tile.rows, tile.columns
-        # distances from differences: strands may be close
+        # distances are computed from differences: strands may be close
         r2 = cdist(edges.vectors.m[rows].real, edges.vectors.m[columns].real, "sqeuclidean")
         r2[tile.excluded] = np.inf
         s = np.divide(1.0, r2, out=r2)
@@ -114,7 +114,7 @@ class Coefficients(NamedTuple):
 
 
 class PartnerSums(NamedTuple):
-    """Sums over the partners J of each edge I, of which the derivative is made in the end."""
+    """Sums over the partners J of each edge I, from which the derivative is assembled in the end."""
 
     a: FloatArray  # Σ a (m_J, 1), shape (edges, m + 1)
     b: FloatArray  # Σ b (m_J, 1); if the edges change places Δ changes its sign, and b and c change places and signs
@@ -156,7 +156,7 @@ class DerivativeSums(NamedTuple):
         return cls(np.zeros(shape), np.zeros(shape), np.zeros(shape[0]))
 
     def row_energies(self, vectors: Vectors) -> FloatArray:
-        """Σ_J W_IJ for each edge I, shape (edges,): the derivative itself tells, W_IJ being linear in (e_I, ℓ_I)."""
+        """Σ_J W_IJ for each edge I, shape (edges,): it follows from the derivative, W_IJ being linear in (e_I, ℓ_I)."""
         return np.asarray(np.einsum("ij,ij->i", self.by_edge, vectors.e) + self.by_length * vectors.ell)
 
     def at_vertices(self, mesh: Mesh, tau: FloatArray) -> FloatArray:

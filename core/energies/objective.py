@@ -33,7 +33,7 @@ _Term = TypeVar("_Term", bound=Term)
 
 
 class Weighted(NamedTuple):
-    """A term and the factor that it has in an objective."""
+    """A term and its weight in an objective."""
 
     term: Term
     weight: float = 1.0
@@ -44,8 +44,8 @@ class Weighted(NamedTuple):
 class Objective:
     """A sum of terms: a C² function of the vertices, infinite where edges touch each other or an obstacle.
 
-    A term has a name, a value and a derivative (`Term`). What else can be done with the objective follows from what its
-    terms can do: a second derivative (`LocalTerm`), stiffness for the metric (`Stiff`), a clearance (`Confining`), an
+    A term has a name, a value and a derivative (`Term`). Other features of the objective depend on the abilities of its
+    terms: a second derivative (`LocalTerm`), stiffness for the metric (`Stiff`), a clearance (`Confining`), an
     attribute ``scale_exponent`` or ``moebius_invariant``.
 
     Parameters
@@ -53,7 +53,7 @@ class Objective:
     energy
         The energy of the curve alone, by default `MoebiusEnergy`.
     barrier
-        What makes it infinite where edges touch.
+        The term that makes it infinite where edges touch.
     further
         All other terms with their weights, such as the repulsion of obstacles.
     """
@@ -69,7 +69,7 @@ class Objective:
     def of(
         cls, energy: Energy, obstacles: Iterable[Obstacle] = (), further: Iterable[Weighted] = (), weight: float = 1.0
     ) -> "Objective":
-        """An energy among obstacles, in the units of curves; the barrier replaces what the energy has of it."""
+        """An energy among obstacles, in the units of curves; the barrier replaces what the energy contains of it."""
         walls = (Weighted(each, weight) for each in Repulsion.of(obstacles))
         return cls(energy, Barrier(replaces_midpoint=energy.contains_midpoint_pairs), (*walls, *further))
 
@@ -80,7 +80,7 @@ class Objective:
 
     @property
     def pull(self) -> Pull | None:
-        """That of a hand, if one holds the curve."""
+        """The pull of a hand, if one holds the curve."""
         return next((term for term, _ in self.further if isinstance(term, Pull)), None)
 
     def pulled(self, pull: Pull | None) -> "Objective":
@@ -105,7 +105,7 @@ class Objective:
         return next(local, None) if hasattr(self.energy, "hessian_product") else self.energy
 
     def frozen_at(self, curve: Curve) -> "Objective":
-        """What a search from a curve should see: approximations that stay the same for all that is near."""
+        """The objective for a search from a curve: approximations stay the same for everything near it."""
         if not any(isinstance(term, Approximate) for term in self.terms):
             return self
         energy = _frozen(self.energy, curve)
@@ -143,18 +143,18 @@ class Objective:
         return np.asarray(sum(parts, np.zeros_like(v)))
 
     def stiffness(self, curve: Curve) -> sp.sparray | None:
-        """What the metric is to have beside its own, that steps do not go too far for some term; shape (n, n)."""
+        """The form that the metric needs in addition, so that steps are not too long for some term; shape (n, n)."""
         forms = [weight * term.stiffness(curve) for term, weight in self.further if isinstance(term, Stiff)]
         return sp.csr_array(sum(forms[1:], forms[0])) if forms else None
 
     def clearance(self, curve: Curve) -> FloatArray:
-        """How far from each edge a wall would be that acts as the nearest obstacle does; shape (edges,)."""
+        """The distance from each edge of a wall that would act as the nearest obstacle does; shape (edges,)."""
         nowhere = np.full(curve.mesh.edges, np.inf)
         walls = (term.clearance(curve) for term in self.terms if isinstance(term, Confining))
         return np.asarray(np.min([nowhere, *walls], axis=0))
 
     def _summands(self, curve: Curve) -> tuple[Weighted, ...]:
-        """The terms, the energy first; what the barrier takes away is never added: rounding would grow like 1/g²."""
+        """The terms, energy first; energy that the barrier takes away is never added: rounding would grow like 1/g²."""
         energy, barrier = self.energy, self.barrier
         if barrier.replaces_midpoint:
             energy = cast(WithMidpointPairs, energy).leaving_out(replaced_pairs(curve))

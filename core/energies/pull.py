@@ -1,4 +1,4 @@
-"""Terms beside the energy: bending, and the pull of a hand, a spring from a short stretch of a curve to a point."""
+"""Terms besides the energy: bending, and the pull of a hand, a spring from a short stretch of a curve to a point."""
 
 from dataclasses import dataclass
 
@@ -31,7 +31,7 @@ class Pull:
 
     @classmethod
     def at(cls, curve: Curve, component: int, share: float, strength: float) -> "Pull":
-        """One that is at rest, around the point at a share of a component's length."""
+        """A pull at rest, around the point at a share of a component's length."""
         length, vertices = curve.component_lengths[component], curve.mesh.slices[component]
         gap = np.abs(vertex_positions(curve)[vertices] - share * length)
         gap = np.minimum(gap, np.abs(periods(curve)[component] - gap))
@@ -77,7 +77,7 @@ class Pull:
 
 
 def share_of(curve: Curve, component: int, point: FloatArray) -> float:
-    """The share of a component's length at which it is nearest to a point, shape (m,)."""
+    """The share of a component's length at which the component is nearest to a point, shape (m,)."""
     edges = curve.mesh.edge_slices[component]
     along, ell = curve.edge_vectors[edges], curve.edge_lengths[edges]
     way = point - curve.vertices[curve.mesh.tails[edges]]

@@ -1,4 +1,4 @@
-"""Clusters of edges, and the block list: all pairs of edges as pairs of distant clusters, or one by one if near."""
+"""Clusters of edges, and the block list: all pairs of edges, distant ones by pairs of clusters, near ones singly."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,7 +15,7 @@ from ..types import BoolArray, FloatArray, IntArray
 ClusterPairs = tuple[IntArray, IntArray]
 
 CHUNK = 1 << 14  # pairs of leaves whose edges are listed at once, to bound the memory
-MOSTLY_NEAR = 1.0 / 8.0  # share of near pairs from which all pairs in tiles are faster than near ones in a list
+MOSTLY_NEAR = 1.0 / 8.0  # share of near pairs from which all pairs in tiles are faster than near ones from a list
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,11 +31,11 @@ class BlockList:
     tree: ClusterTree  # the clusters; all ranges are of positions in tree.order
     first: IntArray  # the two clusters of each block; shape (blocks,)
     second: IntArray
-    leaves: ClusterPairs  # the pairs of leaves that are no blocks, two arrays; a leaf and itself are such a pair
+    leaves: ClusterPairs  # the pairs of leaves that are not blocks, two arrays; a leaf and itself are such a pair
 
     @classmethod
     def of(cls, curve: Curve, theta: float, leaf: int) -> "BlockList":
-        """The list of a curve: separation parameter 0 < θ < 1, and the largest number of edges in a leaf."""
+        """The block list of a curve, for a separation parameter 0 < θ < 1 and a largest number of edges in a leaf."""
         tree = edge_clusters(curve, leaf)
         blocks, near = _traverse(tree, *balls(tree, curve), theta)
         return cls(curve.mesh, tree, *blocks, near)
@@ -53,18 +53,18 @@ class BlockList:
 
     @property
     def near_share(self) -> float:
-        """How many of all pairs of edges are near ones, neighbours among them; they are not listed for that."""
+        """The share of near pairs, neighbours among them, in all pairs of edges; computed without listing them."""
         first, second = ((self.tree.stop - self.tree.start)[side] for side in self.leaves)
         count = float(np.where(self.leaves[0] == self.leaves[1], 0.5, 1.0) @ (first * second))
         return count / (0.5 * self.mesh.edges**2)
 
     @property
     def mostly_near(self) -> bool:
-        """Whether all pairs are summed, one by one, because that is faster than the near ones from a list."""
+        """Whether all pairs are summed one by one, because that is faster than near ones from a list."""
         return self.near_share > MOSTLY_NEAR
 
     def near_pairs(self, without: EdgePairIndices | None = None) -> EdgePairIndices:
-        """The near pairs but for some that are left out; OptionError if one of these is not a near pair."""
+        """The near pairs except some that are left out; OptionError if one of these is not a near pair."""
         if without is None or not without[0].size:
             return self.near
         (i, j), n = self.near, self.mesh.edges

@@ -21,9 +21,9 @@ from ..types import FloatArray
 from .blocks import BlockList
 from .fields import FarField, NearField
 
-MAX_ORDER = 8  # each two orders make errors some forty times smaller, and half of the work twice as much
+MAX_ORDER = 8  # every two orders make errors some forty times smaller, and half of the work twice as much
 KEPT = 1.05  # times θ: separation up to which a list is as good as a new one
-OUTDATED = 1.0 / 3.0  # less separated blocks make a new list; up to 1/3 all replaced pairs are near pairs
+OUTDATED = 1.0 / 3.0  # blocks with less separation make a new list; up to 1/3 all replaced pairs are near pairs
 STRETCH, SHIFT = 1e-4, 1e-2  # of each edge, and of the shortest one: how far vertices move for a difference
 
 
@@ -32,17 +32,17 @@ STRETCH, SHIFT = 1e-4, 1e-2  # of each edge, and of the shortest one: how far ve
 class HierarchicalMoebiusEnergy:
     """The midpoint sum `MoebiusEnergy` for curves of many vertices.
 
-    Every curve has a block list of its own, at whose change the value jumps by its error.  `frozen_at` keeps one list,
-    which makes a smooth function as long as it fits: what a line search should see.  Where strands are so dense that
+    Every curve has its own block list, and where the list changes the value jumps by its error.  `frozen_at` keeps one,
+    which gives a smooth function as long as it fits, as a line search needs.  Where strands are so dense that
     much of the list would be near pairs, it is the midpoint sum itself.
 
-    At order 4, and even orders are worth more because errors of the next odd one nearly cancel, the default θ leaves
-    errors below 10⁻⁶ of a knot's energy, of 10⁻⁵ of the derivative in J_C's dual norm.  OptionError if one of the
+    At order 4 (even orders are better value because the errors of the next odd one nearly cancel), the default θ leaves
+    errors below 10⁻⁶ of a knot's energy, and 10⁻⁵ of the derivative in J_C's dual norm.  OptionError if one of the
     numbers is out of range.
     """
 
-    blocks: BlockList | None = None  # to be used as long as its blocks stay well separated; None for that of each curve
-    without: EdgePairIndices | None = None  # near pairs of edges that are left out, because something stands for them
+    blocks: BlockList | None = None  # used as long as its blocks stay well separated; None for each curve's own
+    without: EdgePairIndices | None = None  # near pairs of edges that are left out, because another term replaces them
     order: int = number(4, most=MAX_ORDER)  # of the expansions
     theta: float = number(0.19, most=OUTDATED)  # separation parameter of blocks
     leaf: int = number(16)  # edges up to which clusters are not halved; halving leaves 8 to 16
@@ -64,7 +64,7 @@ class HierarchicalMoebiusEnergy:
         return cls(without=energy.without)
 
     def frozen_at(self, curve: Curve) -> "HierarchicalMoebiusEnergy":
-        """The smooth function that the block list of ``curve`` makes of it, or that its own list does if it fits."""
+        """The smooth function given by the block list of ``curve``, or by this energy's own list if it fits."""
         if self.blocks is not None and self.blocks.is_separated(curve, KEPT * self.theta):
             return self
         return replace(self, blocks=_block_list(curve, self.theta, self.leaf))
@@ -80,7 +80,7 @@ class HierarchicalMoebiusEnergy:
 
     @property
     def tightened(self) -> "HierarchicalMoebiusEnergy | None":
-        """The same with expansions of higher order; None if there are none."""
+        """The same with expansions two orders higher; None if there are none."""
         return replace(self, order=self.order + 2) if self.order < MAX_ORDER else None
 
     def value(self, curve: Curve) -> float:
@@ -126,7 +126,7 @@ class HierarchicalMoebiusEnergy:
         return NearField(edges, blocks.near_pairs(self.without)), FarField(blocks, edges.vectors, self.order)
 
     def block_list(self, curve: Curve) -> BlockList:
-        """The list that counts at a curve: its own, or that of the curve."""
+        """The list in use at a curve: this energy's own, or the curve's."""
         if self.blocks is not None and self.blocks.is_separated(curve, OUTDATED):
             return self.blocks
         return _block_list(curve, self.theta, self.leaf)
@@ -147,6 +147,6 @@ def _value_and_sums(near: NearField, far: FarField) -> tuple[float, DerivativeSu
 
 
 def _unit_sized(curve: Curve) -> tuple[Curve, int]:
-    """The curve divided by a power of two so that it has about size 1, whatever its units, and the exponent."""
+    """The curve divided by a power of two, so that its size is about 1 whatever its units, and the exponent."""
     exponent = int(np.frexp(np.ptp(curve.vertices, axis=0).max())[1])
     return curve.with_vertices(np.ldexp(curve.vertices, -exponent)), exponent

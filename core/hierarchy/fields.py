@@ -20,7 +20,7 @@ from .blocks import BlockList
 from .moments import Expansion, MomentTree, polynomial_rows
 from .polynomials import kernel_derivatives
 
-BLOCKS, PAIRS = 1024, 8192  # handled at once, for the processor's cache
+BLOCKS, PAIRS = 1024, 8192  # processed together, for the processor's cache
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +89,7 @@ class _Kernel(NamedTuple):
     def by_center(self) -> FloatArray:
         """Its derivative with respect to the first center, the edges at rest; minus the second's; shape (m, k).
 
-        Only terms of the highest order are left: any other change of d is undone by that of the moments.
+        Only terms of the highest order remain: any other change of d is undone by that of the moments.
         """
         degrees = range(self.lowest + 1, self.lowest + self.expansion.order + 2)
         totals = range(self.lowest + degrees[-1], self.lowest + degrees[-1] + 1)
@@ -102,7 +102,7 @@ class FarField:
     """Σ W_IJ over all blocks of a list, unordered pairs."""
 
     blocks: BlockList  # the list, made at this curve or at one nearby
-    vectors: Vectors  # the curve's edges; of size 1, for high powers of lengths are in use
+    vectors: Vectors  # the curve's edges; of size 1, because high powers of lengths occur
     order: int  # p, the order of the expansions in distances from the centers
 
     @cached_property
@@ -132,7 +132,7 @@ class FarField:
         return value, self._clusters.derivative_sums(by_second)
 
     def _chunks(self) -> Iterator[tuple[IntArray, IntArray, _Kernel, _Kernel]]:
-        """The two clusters and the kernels 1/|Δ|² and log|Δ| of some blocks at a time."""
+        """The two clusters, and the kernels 1/|Δ|² and log|Δ|, of some blocks at a time."""
         moments, centers, x = self._clusters.moments(), self._clusters.centers, self._expansion
         signed = moments * x.signs[: x.edges.stop]
         for start in range(0, len(self.blocks.first), BLOCKS):
@@ -145,7 +145,7 @@ class FarField:
 
 
 def _add_rows(total: FloatArray, clusters: IntArray, values: FloatArray) -> None:
-    """Add values, shape (rows, k), to some clusters, a few of which come several times; total (clusters, rows)."""
+    """Add values, shape (rows, k), to some clusters, a few of which occur several times; total (clusters, rows)."""
     order = np.argsort(clusters, kind="stable")
     ordered = clusters[order]
     starts = np.flatnonzero(np.diff(ordered, prepend=-1))

@@ -1,7 +1,7 @@
-"""Inner products of order 3/2 by products in O(N log N), and what is solved with them by conjugate gradients.
+"""Inner products of order 3/2 by products in O(N log N), and solutions with them by conjugate gradients.
 
 A metric has to be one symmetric and positive definite operator in gradients, projections and norms, but it moves no
-minimiser: on a block its kernel may as well be a single number, the value at the middle edges.  Relative to the exact
+minimiser: so on a block its kernel may be a single number, the value at the middle edges.  Relative to the exact
 J_C the eigenvalues are between 0.85 and 1.2, on smooth curves and on tangles, and with many short arcs between 0.7 and
 1.5.
 """
@@ -43,12 +43,12 @@ MAX_ITERATIONS = 1000
 class CompressedInnerProduct:
     """A = S + Σ Bᵀ Q B + V Vᵀ, and S + Σ Bᵀ Q B on functions constant on each component, or near it: the coupling."""
 
-    curve: Curve  # on which functions are
+    curve: Curve  # the domain of the functions
     local: sp.csr_array  # S, sparse, shape (n, n)
     far: tuple[FarForm, ...]  # each B, running sums, and its Q, sparse, shape (edges + 1, edges + 1)
     vectors: FloatArray  # V, shape (n, r) for a small r
     coupling: sp.csr_array  # shape (components, components)
-    tolerances: Tolerances  # of all that is solved with it
+    tolerances: Tolerances  # for everything that is solved with it
 
     def apply(self, u: FloatArray) -> FloatArray:
         product = self.local @ u
@@ -146,7 +146,7 @@ class CompressedMetric:
     """A nonlocal metric by products in O(N log N), midpoint rule; OptionError if θ or the leaves are out of range."""
 
     metric: Metric  # the dense one
-    tolerances: Tolerances = field(default_factory=Tolerances)  # of what is solved with it
+    tolerances: Tolerances = field(default_factory=Tolerances)  # for what is solved with it
     theta: float = number(0.5, most=1)  # separation parameter of blocks
     leaf: int = number(4)  # edges up to which clusters are not halved
     most_vertices = MAX_VERTICES
@@ -168,7 +168,7 @@ class CompressedMetric:
         return self.metric.rule
 
     def with_rule(self, rule: Rule) -> "CompressedMetric":
-        """Itself; OptionError if another rule is asked for, for there is none."""
+        """The metric itself; OptionError if another rule is asked for: there is none."""
         if self.rule is not None and rule != MIDPOINT:
             raise OptionError("metrics for so many vertices use one Gauss point per edge; leave quadrature_points out")
         return self
@@ -178,7 +178,7 @@ class CompressedMetric:
 
 
 def compressed(metric: Metric, tolerances: Tolerances) -> Metric:
-    """A metric in the form for many vertices: local ones are sparse as they are."""
+    """A metric in its form for many vertices: local ones are already sparse."""
     return CompressedMetric(metric, tolerances) if type(metric) in _COMPRESSED else metric
 
 
@@ -188,6 +188,6 @@ def block_count(curve: Curve) -> int:
 
 
 def _indicators(curve: Curve) -> sp.csr_array:
-    """Which vertices are on which component, as 0 and 1; shape (n, components)."""
+    """Which vertices belong to which component, as 0 and 1; shape (n, components)."""
     n = len(curve)
     return sp.csr_array((np.ones(n), (np.arange(n), curve.mesh.component)))

@@ -1,6 +1,6 @@
 """The upward and the downward pass: moments of all clusters, and derivatives at the edges from those at the clusters.
 
-In the words of the fast multipole method they are P2M and M2M, and L2L and L2P; what is between is in `fields`.
+In the terms of the fast multipole method they are P2M and M2M, and L2L and L2P; the step between is in `fields`.
 """
 
 from collections.abc import Iterable, Iterator
@@ -15,23 +15,23 @@ from ..energies.moebius_pairs import DerivativeSums, Vectors
 from ..types import FloatArray, IntArray
 from .polynomials import Polynomials, polynomials
 
-CHUNK = 1024  # polynomials handled at once, for the processor's cache
+CHUNK = 1024  # polynomials processed together, for the processor's cache
 
 
 class Expansion(NamedTuple):
     """Taylor expansions of order p about the center of a cluster: two moments, one below the other in one array.
 
     With u_I = m_I − center they are Σ_I ℓ_I exp⟨u_I, ξ⟩ up to degree p and Σ_I ⟨e_I, ξ⟩ exp⟨u_I, ξ⟩ up to degree p + 1.
-    Arrays of derivatives with respect to these have rows for those with respect to the center besides.
+    Arrays of derivatives with respect to these have further rows for derivatives with respect to the center.
     """
 
-    dimension: int  # m, that of space
+    dimension: int  # m, the dimension of space
     order: int  # p
-    table: Polynomials  # of all degrees needed, those of the kernels' derivatives among them
+    table: Polynomials  # of all degrees needed, including those of the kernels' derivatives
     lengths: slice  # rows of the first moment
     edges: slice  # rows of the second moment
     by_center: slice  # rows of derivatives with respect to the center
-    signs: FloatArray  # that come with the second cluster of a block, seen from which d is −d; shape (rows,)
+    signs: FloatArray  # of the second cluster of a block relative to the first, since d becomes −d; shape (rows,)
 
     @classmethod
     def of(cls, dimension: int, order: int) -> "Expansion":
@@ -46,7 +46,7 @@ class _Leaves(NamedTuple):
     """Consecutive leaves and their edges."""
 
     clusters: IntArray
-    start: IntArray  # of each among the edges
+    start: IntArray  # first position of each leaf among the edges
     edges: IntArray
     leaf_of: IntArray  # the leaf of each edge
 
@@ -56,12 +56,12 @@ class MomentTree:
     """The clusters of a curve with their centers, the means of their edges' midpoints."""
 
     tree: ClusterTree
-    expansion: Expansion  # what their moments are
+    expansion: Expansion  # the expansions that define their moments
     vectors: Vectors  # edge vectors, lengths and midpoints
 
     @cached_property
     def centers(self) -> FloatArray:
-        """Shape (clusters, m)."""
+        """The clusters' centers; shape (clusters, m)."""
         total = self.tree.reduced(np.add, self.vectors.m[self.tree.order])
         return np.asarray(total / (self.tree.stop - self.tree.start)[:, None])
 
@@ -145,5 +145,5 @@ class MomentTree:
 
 
 def polynomial_rows(array: FloatArray, clusters: IntArray) -> FloatArray:
-    """What an array of shape (clusters, rows) has for some of them, contiguous by rows; shape (rows, k)."""
+    """The entries for some clusters of an array of shape (clusters, rows), contiguous by rows; shape (rows, k)."""
     return np.ascontiguousarray(np.take(array, clusters, axis=0).T)

@@ -1,7 +1,7 @@
-"""Truncated polynomials in m variables ξ, many at once: the algebra of Taylor expansions, and those of the kernels.
+"""Truncated polynomials in m variables ξ, many at once: the algebra of Taylor expansions, and the kernels' expansions.
 
 A polynomial is an array of coefficients of the monomials ξ^α sorted by degree; k polynomials have shape (monomials, k),
-and how many monomials there are says up to which degree.  With ξ for ∇, p(∇) applied to a function of d makes sums of
+and the number of monomials gives the degree.  With ξ for ∇, p(∇) applied to a function of d makes sums of
 its values out of its derivatives: Σ_I w_I φ(d + u_I) is p(∇) φ with p = Σ_I w_I exp⟨u_I, ξ⟩, the *moments* of w.
 """
 
@@ -16,7 +16,7 @@ from ..types import FloatArray, IntArray
 
 @dataclass(frozen=True)
 class Polynomials:
-    """Polynomials in ``dimension`` variables of degree at most ``degree``; `polynomials` makes each but once."""
+    """Polynomials in ``dimension`` variables of degree at most ``degree``; `polynomials` makes each only once."""
 
     dimension: int
     degree: int
@@ -40,7 +40,7 @@ class Polynomials:
 
     @cached_property
     def signs(self) -> FloatArray:
-        """(−1)^|α|, which makes p(−ξ) of p(ξ); shape (monomials, 1)."""
+        """(−1)^|α|, which turns p(ξ) into p(−ξ); shape (monomials, 1)."""
         return np.where(self.exponents.sum(axis=1) % 2 == 0, 1.0, -1.0)[:, None]
 
     @cached_property
@@ -54,7 +54,7 @@ class Polynomials:
         return self._places(self.exponents - np.eye(self.dimension, dtype=np.intp)[:, None])
 
     def _places(self, exponents: IntArray) -> IntArray:
-        """Places of multi-indices, shape (..., m); −1 for what is none of ours."""
+        """Places of multi-indices, shape (..., m); −1 for those that are not among ours."""
         place = {tuple(alpha): k for k, alpha in enumerate(self.exponents.tolist())}
         flat = [place.get(tuple(alpha), -1) for alpha in exponents.reshape(-1, self.dimension).tolist()]
         return np.array(flat, dtype=np.intp).reshape(exponents.shape[:-1])
@@ -78,7 +78,7 @@ class Polynomials:
         return product
 
     def multiply_linear(self, a: FloatArray, q: FloatArray) -> FloatArray:
-        """⟨a, ξ⟩ q, of one degree more than q; shape (monomials, k) from a of shape (m, k)."""
+        """⟨a, ξ⟩ q, one degree higher than q; shape (monomials, k) from a of shape (m, k)."""
         size = self.size(int(self.exponents[len(q) - 1].sum()) + 1)
         padded = np.concatenate([q, np.zeros((size + 1 - len(q), q.shape[1]))])
         return np.asarray(np.einsum("ik,iak->ak", a, padded[self.lower[:, :size]]))

@@ -1,9 +1,9 @@
-"""How far the compressed energy is off, from edges whose pairs are summed one by one.
+"""How far off the compressed energy is, from edges whose pairs are summed one by one.
 
 The error is Σ_I δ_I, δ_I that of Σ_J W_IJ over the partners of edge I: its mean over a sample, one edge from each of as
-many equal stretches of the curve, tells it up to a standard error.  That of the derivative along a field u is told by
-differences of δ_I between two curves P ± t u: forces on single edges would tell nothing, because their errors, of the
-sign of whichever side of its cluster's center an edge is on, all but cancel, the more so the finer the mesh.
+many equal stretches of the curve, estimates it up to a standard error.  The derivative's error along a field u follows
+from differences of δ_I between two curves P ± t u: forces on single edges would not help, because their errors, whose
+sign depends on the side of its cluster's center that an edge is on, all but cancel, the more so the finer the mesh.
 """
 
 from dataclasses import dataclass
@@ -30,19 +30,19 @@ NORM_SHARE = 0.5  # of an accuracy, which the derivative's error may have in the
 class Estimate:
     """An estimate of an error, with its sign, from a sample."""
 
-    mean: float  # what is expected
-    standard_error: float  # of that; 0 where all has been looked at
+    mean: float  # the expected value
+    standard_error: float  # of the mean; 0 where everything has been examined
 
     @classmethod
     def of_sum(cls, sample: FloatArray, size: int, rest: float = 0.0) -> "Estimate":
-        """Of a number that is known, and the sum of ``size`` numbers of which there is a sample, shape (k,)."""
+        """An estimate of a known number plus a sum of ``size`` numbers, from a sample of these, shape (k,)."""
         k = len(sample)
         spread = float(np.std(sample, ddof=1)) if k < size else 0.0
         return cls(rest + size * float(np.mean(sample)), size * spread * float(np.sqrt((1.0 - k / size) / k)))
 
     @property
     def bound(self) -> float:
-        """What the error's modulus is at most, with 95 % probability."""
+        """A bound of the error's modulus that holds with 95 % probability."""
         return abs(self.mean) + CONFIDENCE * self.standard_error
 
     def relative(self, scale: float) -> "Estimate":
@@ -50,17 +50,17 @@ class Estimate:
 
 
 def energy_error(energy: HierarchicalMoebiusEnergy, curve: Curve, count: int = EDGES) -> Estimate:
-    """The error of the energy, from so many edges."""
+    """The error of the energy, from a number of edges."""
     energy, sample = energy.frozen_at(curve), sampled_edges(curve, count)
     rows = energy.row_energies(curve)
     off = rows[sample] - energy.exact.row_energies(curve, sample)
-    # the value is computed without the sums of single edges
+    # the value is not computed from the sums of single edges
     rest = energy.value(curve) - energy_of_pairs(curve, 0.5 * float(rows.sum()))
     return Estimate.of_sum(off, curve.mesh.edges, rest)
 
 
 def slope_error(energy: HierarchicalMoebiusEnergy, curve: Curve, u: FloatArray, count: int = EDGES_ALONG) -> Estimate:
-    """The error of the derivative's product with a field u, shape (n, m), from so many edges."""
+    """The error of the derivative's product with a field u, shape (n, m), from a number of edges."""
     energy, sample = energy.frozen_at(curve), sampled_edges(curve, count)
     change = _relative_change(energy, curve, u)
     if change == 0.0:
@@ -75,7 +75,7 @@ def slope_error(energy: HierarchicalMoebiusEnergy, curve: Curve, u: FloatArray, 
 
 
 def _relative_change(energy: HierarchicalMoebiusEnergy, curve: Curve, u: FloatArray) -> float:
-    """The largest rate, relative to it, at which the distance of two near edges or two clusters can change along u."""
+    """The largest relative rate at which the distance of two near edges or two clusters can change along u."""
     blocks = energy.block_list(curve)
     i, j = np.concatenate([blocks.near, blocks.middles], axis=1)
     motion = 0.5 * (u[curve.mesh.tails] + u[curve.mesh.heads])
@@ -84,7 +84,7 @@ def _relative_change(energy: HierarchicalMoebiusEnergy, curve: Curve, u: FloatAr
 
 
 def sampled_edges(curve: Curve, count: int) -> IntArray:
-    """One edge of each of so many stretches with equal numbers of edges, at random but always the same; all if few."""
+    """One edge of each of several stretches with equal numbers of edges, at random but always the same; all if few."""
     n = curve.mesh.edges
     if n <= count:
         return np.arange(n)
@@ -104,14 +104,14 @@ class SampledErrors:
     def at(
         cls, energy: HierarchicalMoebiusEnergy, curve: Curve, value: float, u: FloatArray, norm: float
     ) -> "SampledErrors":
-        """Those of E and of the projected gradient u, (n, m), whose norm an error δ changes by δ·u/|u|."""
+        """Errors of E and of the projected gradient u, (n, m), whose norm an error δ changes by δ·u/|u|."""
         along = slope_error(energy, curve, u).relative(norm) if norm > 0.0 else Estimate(0.0, 0.0)
         scale = energy_scale(curve.mesh, value)
         unit = max(norm, float(np.sqrt(scale)))
         return cls(energy_error(energy, curve).relative(scale), along.relative(unit), energy.order)
 
     def within(self, accuracy: float) -> bool:
-        """Whether the bounds are: for the norm, to whose error that of the solution is added, half of it."""
+        """Whether both bounds are within their shares of it: for the norm half, as the solution's error is added."""
         energy, norm = ENERGY_SHARE * accuracy, NORM_SHARE * accuracy
         return self.energy.bound <= energy and self.gradient_norm.bound <= norm
 

@@ -1,6 +1,6 @@
 """Check that a trajectory is an isotopy: no two non-neighbour edges ever meet, nor any obstacle, and stages fit.
 
-Vertices that are pinned must not move, besides.
+Pinned vertices must not move, either.
 
 Why this is enough: if two neighbour edges fold onto each other, or an edge shrinks to a point, then an edge meets the
 one after its neighbour at the same moment, in every closed polygon of 4 or more vertices. A triangle, which has no such
@@ -37,15 +37,15 @@ _WORD = 64  # bits of the numbers of a plain decision; more bits take more than 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What was found; numbers of what failed count from 0, and are None if that is not the reason."""
+    """The findings; numbers of what failed count from 0, and are None if that is not the reason."""
 
     accepted: bool  #: whether every leg and every change of stage is proved free of contact
     stages: int  #: how many were checked, including the one that failed
     legs: int
     reason: str = ""  #: why the trajectory is not accepted; empty if it is
-    stage: int | None = None  #: that of the failure
-    frame: int | None = None  #: with which the leg begins that failed
-    edges: tuple[int, ...] | None = None  #: those that meet, or the one that meets an obstacle
+    stage: int | None = None  #: the stage of the failure
+    frame: int | None = None  #: the frame with which the failed leg begins
+    edges: tuple[int, ...] | None = None  #: the edges that meet, or the one that meets an obstacle
     obstacles: int = 0  #: how many there are
     obstacle: int | None = None  #: the one that an edge meets
     pins: int = 0  #: how many vertices are held, in every frame
@@ -61,7 +61,7 @@ class Verdict:
 
 
 class ContactError(Exception):
-    """Edges meet, or one of them an obstacle; the message says so."""
+    """Two edges meet, or an edge and an obstacle; the message says which."""
 
     def __init__(self, message: str, edges: tuple[int, ...], obstacle: int | None = None) -> None:
         super().__init__(message)
@@ -103,7 +103,7 @@ class _Progress:
     decided: float = 0.0
 
     def decide(self, points: Sequence[Point]) -> None:
-        """Count an exact decision about some points; raise when there are more than this program takes on."""
+        """Count an exact decision about some points; raise if there are more than this program takes on."""
         numbers = [x for point in points for x in point]
         bits = max(x.denominator for x in numbers).bit_length() + max(int(abs(x)) for x in numbers).bit_length()
         self.decided += (bits / _WORD) ** 1.5
@@ -121,7 +121,7 @@ def verify(path: Path | str, callback: Callable[[int, int], None] | None = None)
     """Check a trajectory file; damaged files and failed checks give a verdict that is not accepted.
 
     ``callback`` is called after every leg with the number of legs checked and, by its headers, of those in the file.
-    Raises MobiusFlowError if ``path`` is no path or ``callback`` no function.
+    Raises MobiusFlowError if ``path`` is not a path or ``callback`` not a function.
     """
     if not isinstance(path, str | os.PathLike):
         raise MobiusFlowError(f"path is of type {type(path).__name__}; give the name of a trajectory file")
@@ -224,7 +224,7 @@ def _decide(
     last: Callable[[int], Point],
     clearance: float = 0.0,
 ) -> None:
-    """Decide exactly what is doubtful on a way, whose ends are wrong by the clearance; raise at the first contact."""
+    """Decide exactly the doubtful pairs of a leg whose ends are wrong by the clearance; raise at the first contact."""
     for corners in chain.from_iterable(batch.T.tolist() for batch in doubtful_pairs(*way, heads, clearance)):
         start, end = [first(k) for k in corners], [last(k) for k in corners]
         progress.decide(start + end)

@@ -1,6 +1,6 @@
-"""Sort out what certainly does not meet during a leg, in floating-point numbers with error bounds.
+"""Sort out pairs that certainly do not meet during a leg, in floating-point numbers with error bounds.
 
-Pairs are those of edges here, and those of an edge and a triangle that stands still in `obstacles`.
+The pairs here are pairs of edges; those of an edge and a triangle at rest are in `obstacles`.
 """
 
 from collections.abc import Callable, Iterator
@@ -21,7 +21,7 @@ _HALVINGS = 5
 def doubtful_pairs(start: FloatArray, end: FloatArray, heads: IntArray, clearance: float = 0.0) -> Iterator[IntArray]:
     """Yield the pairs of edges that are not proved apart while vertices go from start to end.
 
-    Edges that are no neighbours; in triangles, which have none of these, each vertex, as an edge of no length, with the
+    Non-neighbour edges; in triangles, which have none of these, each vertex, as an edge of no length, with the
     opposite edge; and each end of an open polygon with the edge after its neighbour.  Start and end are vertices, shape
     (n, m) with m = 2 or 3; ``heads``, shape (n,), is the vertex that the edge from each vertex leads to: the vertex
     itself where an open polygon ends.  Pairs stay apart even if every coordinate of every vertex is wrong by the
@@ -32,7 +32,7 @@ def doubtful_pairs(start: FloatArray, end: FloatArray, heads: IntArray, clearanc
     start, end, clearance = scaled(start, end, clearance)
     for vertices in chain([_triangles(heads), _ends(heads)], _overlapping(start, end, heads, clearance)):
         leg = Leg(start, end, vertices, clearance)
-        # Cheap things first; each looks at what is left over by the one before.
+        # Cheap tests first; each looks only at what the one before has left over.
         leg.drop(leg.apart_along_axis)
         leg.drop(leg.apart_by_planes)
         if clearance == 0.0:
@@ -70,10 +70,10 @@ def _ends(heads: IntArray) -> IntArray:
 
 
 def _overlapping(start: FloatArray, end: FloatArray, heads: IntArray, clearance: float) -> Iterator[IntArray]:
-    """Edges that are no neighbours and whose ranges of coordinates during the leg overlap; shapes (4, pairs).
+    """Non-neighbour edges whose ranges of coordinates during the leg overlap; shapes (4, pairs).
 
-    Ranges are compared and never divided, and rounding keeps the order of what is scaled or lowered: none that overlap
-    are taken for apart.
+    Ranges are compared and never divided, and rounding keeps the order of values scaled or lowered: no overlapping pair
+    is taken to be apart.
     """
     tails = np.flatnonzero(heads != np.arange(len(heads)))
     ends = np.stack([start[tails], end[tails], start[heads[tails]], end[heads[tails]]])

@@ -1,6 +1,6 @@
-"""Triangles that stand still, which the curve must not touch either, and those that an edge may touch during a leg.
+"""Triangles at rest, which the curve must not touch either, and the ones that an edge may touch during a leg.
 
-A segment is a triangle two of whose vertices are one.
+A segment is a triangle two of whose vertices coincide.
 """
 
 from collections.abc import Iterator, Sequence
@@ -23,7 +23,7 @@ Boxes = tuple[FloatArray, FloatArray]  # least and largest coordinates, each (k,
 class Obstacles:
     """All obstacles of a trajectory, together."""
 
-    vertices: FloatArray  # of all of them, shape (k, 3)
+    vertices: FloatArray  # of all obstacles, shape (k, 3)
     triangles: IntArray  # indices of the triangles' vertices, shape (f, 3)
     ends: tuple[int, ...]  # number of vertices up to the end of each obstacle
 

@@ -31,7 +31,7 @@ class Root:
         """Sign of the polynomial ``q`` at the root, exactly.
 
         It is 0 if and only if both have a common divisor with a root in the interval, for ours is the only root there.
-        Otherwise ``q`` has a neighbourhood of the root without roots, which the interval comes to lie in, but for its
+        Otherwise the root has a neighbourhood without roots of ``q``. The interval comes to lie in it, except for its
         open lower end; so ``q`` has at the upper end the sign it has at the root.
         """
         if not q:

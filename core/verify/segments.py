@@ -1,4 +1,4 @@
-"""Whether a moving segment meets another one, or a triangle that stands still: decided exactly, for rational points.
+"""Whether a moving segment meets another one, or a triangle at rest: decided exactly, for rational points.
 
 Two segments
 ------------
@@ -15,14 +15,14 @@ many times, among which is the first contact t* if there is one:
       shortly before. So p is at an end of y at t*, a root of |p − y_j|² (which is not zero, as then t* = 0).
    So t* is 0 or a root of one of the polynomials of a and b that are not zero.
 
-A common point itself is found so: if e × f ≠ 0, there is at most one pair (s, r) of Cramer's rule, a common point if
+A common point is found as follows: if e × f ≠ 0, Cramer's rule gives at most one pair (s, r), a common point if
 ⟨D, e × f⟩ = 0 and s and r are in [0, 1]. If e × f = 0, an end of one must lie on the other, as in 2.
 
 A segment and a triangle
 ------------------------
 If they are apart at first, then at their first contact the segment meets an edge of the triangle, or one of its ends is
-in the triangle: were it to pierce the triangle with both ends outside, it would have done so shortly before. The way of
-an end is a segment too, and so it remains to see whether three segments (the one that moves, at first, and the ways of
+in the triangle: if it pierced the triangle with both ends outside, it would have done so shortly before. The path of
+an end is a segment too, so it remains to see whether three segments (the moving one, at first, and the paths of
 its ends) meet the triangle. If one of them is in its plane, it meets an edge, or begins in the triangle, or not at all.
 A triangle without area is nothing but its edges.
 """
@@ -139,7 +139,7 @@ def _cross(u: Vector, v: Vector) -> Vector:
 
 
 def meet_triangle(start: Sequence[Point], end: Sequence[Point]) -> bool:
-    """Whether a moving segment meets a still triangle in [0, 1]; points x₀, x₁, y₀, y₁, y₂ at times 0 and 1."""
+    """Whether a moving segment meets a triangle at rest in [0, 1]; points x₀, x₁, y₀, y₁, y₂ at times 0 and 1."""
     x, triangle = list(start[:2]), list(start[2:])
     if any(pierced_at(p, q, triangle) is not None for p, q in [x, (start[0], end[0]), (start[1], end[1])]):
         return True
@@ -150,7 +150,7 @@ def pierced_at(p: Point, q: Point, triangle: Sequence[Point]) -> Fraction | None
     """The parameter at which the segment from p to q meets a triangle; None if it does not.
 
     By Cramer's rule for p + s (q − p) = y₀ + r f + t g. If they are in one plane it is 0, or None if p is not in the
-    triangle: that the segment meets its edges must be seen elsewhere.
+    triangle: whether the segment meets its edges must be decided elsewhere.
     """
     y0, y1, y2 = triangle
     f, g, d, D = _difference(y1, y0), _difference(y2, y0), _difference(p, q), _difference(p, y0)

@@ -30,13 +30,13 @@ _MAX_HEADER = 1000
 _MAX_FRAME = 1 << 25  # bytes: over a million vertices in space
 _MAX_FORTRAN = 1 << 28  # bytes of a whole stage in Fortran order, whose frames are scattered over it
 _MAX_SIZES = 1 << 24  # bytes
-_MAX_TABLE = 1 << 28  # bytes of an array of an obstacle, or of pins
+_MAX_TABLE = 1 << 28  # bytes of one array of an obstacle, or of pins
 _PACKED = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)  # what NumPy writes
 _DAMAGE = (OSError, EOFError, zipfile.BadZipFile, zlib.error, struct.error, NotImplementedError, RuntimeError)
 
 
 class TrajectoryError(ValueError):
-    """A file that is no trajectory; the message says why."""
+    """A file that is not a trajectory; the message says why."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class Stage:
 
 
 def stages(path: Path | str) -> Iterator[Stage]:
-    """Yield the stages in order, frames to be read before the next; a TrajectoryError where the file is damaged."""
+    """Yield the stages in order, frames to be read before the next; a TrajectoryError if the file is damaged."""
     with _opened(path) as archive:
         for number in range(_count(archive)):
             components = _components(archive, number)
@@ -90,7 +90,7 @@ def pinned_points(path: Path | str) -> FloatArray:
 
 
 def count_legs(path: Path | str) -> int:
-    """Number of legs in a file by the headers of its stages, as far as these can be read."""
+    """Number of legs in a file according to the headers of its stages, as far as these can be read."""
     legs = 0
     with suppress(TrajectoryError), _opened(path) as archive:
         for number in range(_count(archive)):
@@ -101,7 +101,7 @@ def count_legs(path: Path | str) -> int:
 
 @contextmanager
 def _opened(path: Path | str) -> Iterator[zipfile.ZipFile]:
-    """The archive; whatever damage is met while it is read is a TrajectoryError."""
+    """The archive; any damage met while it is read is a TrajectoryError."""
     try:
         with zipfile.ZipFile(path) as archive:
             yield archive
@@ -202,7 +202,7 @@ def _member(archive: zipfile.ZipFile, name: str) -> Iterator["_Array"]:
 
 
 class _Array:
-    """An array whose header has been read, and of which nothing is believed: shape, type, and order of its entries."""
+    """An array whose header has been read, but not trusted: shape, type, and order of its entries."""
 
     def __init__(self, name: str, file: IO[bytes]) -> None:
         self.name, self._file = name, file

@@ -1,9 +1,9 @@
-"""Which vertices stay: those with pins, and where stages meet those of the same curve on another mesh.
+"""Which vertices stay: pinned ones, and those that a stage shares with the next, which has another mesh.
 
-A pin holds if a vertex has its very coordinates, in all frames of a stage the same vertex.
+A pin holds if a vertex has exactly its coordinates, the same vertex in all frames of a stage.
 
-Vertices that both have, with exactly the same coordinates and in the same cyclic order (in the same order, and with the
-ends among them, where the polygons are open), span a third polygon. Each
+Vertices that both polygons have, with exactly the same coordinates and in the same cyclic order (in the same order, and
+with the ends among them, where the polygons are open), span a third polygon. Each
 other vertex has to lie on the edge of that polygon between its neighbours, up to the rounding of its coordinates, and
 in the same order. Moving it exactly onto the edge must then be free of contact: this is checked like any other leg, in
 rational numbers where necessary. So each of the two is isotopic to the common polygon, hence to the other.
@@ -25,11 +25,11 @@ Point = Sequence[Fraction]
 
 
 class DifferentCurveError(Exception):
-    """Two polygons are not the same curve; the message says where."""
+    """Two polygons are not the same curve; the message says why."""
 
 
 def common_vertices(first: FloatArray, second: FloatArray, closed: bool) -> tuple[list[int], list[int]]:
-    """Indices in both polygons of vertices they share; a DifferentCurveError if these are few or not in order."""
+    """Indices in both polygons of the vertices they share; a DifferentCurveError if these are few or not in order."""
     places = {tuple(p): k for k, p in enumerate(second.tolist())}
     here = [k for k, p in enumerate(first.tolist()) if tuple(p) in places]
     there = [places[tuple(first[k].tolist())] for k in here]
@@ -45,11 +45,11 @@ def common_vertices(first: FloatArray, second: FloatArray, closed: bool) -> tupl
 
 
 def straightened(polygon: FloatArray, kept: Sequence[int], closed: bool = True) -> tuple[dict[int, Point], float]:
-    """Move the vertices of a polygon, shape (n, m), that are not kept onto the edges between those that are.
+    """Move vertices of a polygon, shape (n, m), onto the edges between the vertices that are kept.
 
     Those kept are given by their indices, in ascending order; the ends of an open polygon are among them.  Returns the
-    new places of the vertices that move, exact, and an upper bound for the change of any coordinate.  A
-    DifferentCurveError if one of them is further away than rounding, or they are not in order.
+    new places of the vertices that move, exact, and an upper bound for the change of any coordinate.  Raises a
+    DifferentCurveError if one of them is further away than rounding, or if they are not in order.
     """
     moved: dict[int, Point] = {}
     largest = Fraction(0)
@@ -67,7 +67,7 @@ def straightened(polygon: FloatArray, kept: Sequence[int], closed: bool = True) 
 
 
 def _rounded_up(x: Fraction) -> float:
-    """A double that is not less: of the smallest numbers too, which would become 0."""
+    """A double that is not less, even for the smallest numbers, which would become 0."""
     return float(x) if Fraction(float(x)) >= x else math.nextafter(float(x), math.inf)
 
 
@@ -92,7 +92,7 @@ def _allowed(points: FloatArray) -> float:
 
 
 class LostPinError(Exception):
-    """A pin is not, or no longer, where a vertex is; the message says which."""
+    """No vertex is at a pin, or none any more; the message says at which."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +104,7 @@ class HeldVertices:
 
     @classmethod
     def among(cls, frame: FloatArray, points: FloatArray) -> "HeldVertices":
-        """The vertices of a first frame, (n, m), at points, (k, m); a LostPinError if there is none at one of them."""
+        """The vertices of a first frame, (n, m), at points, (k, m); a LostPinError if a point has none."""
         places = {tuple(vertex): k for k, vertex in enumerate(frame.tolist())}
         found = [places.get(tuple(point), -1) for point in points.tolist()]
         if -1 in found:
@@ -112,7 +112,7 @@ class HeldVertices:
         return cls(np.array(found, dtype=np.intp), points)
 
     def check(self, frame: FloatArray) -> None:
-        """Raise a LostPinError if one of them is elsewhere in a later frame; so it stays on the straight way there."""
+        """Raise a LostPinError if one of them has moved in a later frame; if not, it stays on the way there."""
         moved = np.flatnonzero((frame[self.vertices] != self.points).any(axis=1)) if len(self.points) else self.vertices
         if moved.size:
             vertex = self.vertices[moved[0]] + 1

@@ -1,6 +1,6 @@
 """Codes of diagrams (.pd, .dt, .gauss, Knoodle's .tsv): read as a drawing of the diagram, written from a view.
 
-``#`` begins a comment.  What the codes may look like: :mod:`mobius_flow.core.diagrams.codes`.
+``#`` begins a comment.  For the forms of the codes see :mod:`mobius_flow.core.diagrams.codes`.
 """
 
 from collections.abc import Callable
@@ -51,7 +51,7 @@ def read_tsv(source: Source) -> list[Polygon]:
 def knoodle_diagrams(source: Source) -> list[Diagram]:
     """The diagrams in a file of Knoodle's; none if there are no crossings.  Raises CurveFileError.
 
-    Lines have a crossing's four edges, its sign if it is given, and colours, which are read over.  A line with ``k``
+    Lines have a crossing's four edges, its sign if it is given, and colours, which are ignored.  A line with ``k``
     begins a knot, and with ``s`` a summand of it; one without crossings is a circle.
     """
     knots: list[list[list[tuple[int, list[int]]]]] = []  # summands of crossings with their lines
@@ -79,7 +79,7 @@ def knoodle_diagrams(source: Source) -> list[Diagram]:
 
 
 def _crossings(source: Source, rows: list[tuple[int, list[int]]]) -> Diagram:
-    """The diagram of crossings with their lines; raises CurveError if there is none, or signs are not its own."""
+    """The diagram of crossings with their lines; raises CurveError if there is none, or given signs contradict it."""
     check_count(len(rows))
     diagram = diagram_of([edges[:_EDGES] for _, edges in rows])
     for (number, edges), sign, (a, b) in zip(rows, diagram.signs, diagram.joins(), strict=True):
@@ -89,12 +89,12 @@ def _crossings(source: Source, rows: list[tuple[int, list[int]]]) -> Diagram:
 
 
 def _polygons(curve: Curve) -> list[Polygon]:
-    """Those of a drawing, whose vertices are in no line of the code."""
+    """The polygons of a drawing, whose vertices are on no line of the code."""
     return [Polygon(part.tolist(), lambda _: None) for part in curve.components]
 
 
 def _written(text_of: Callable[[Diagram], str], curve: Curve, stream: TextIO) -> None:
-    """Write the code of a view of the curve; raises CurveError if there is no clear one, or none of open components."""
+    """Write the code of a view of the curve; raises CurveError if no view is clear, or a component is open."""
     check_closed(curve, "codes of diagrams")
     if curve.dimension != 3:
         raise CurveError(f"codes are of curves in space, not of dimension {curve.dimension}; use .json")

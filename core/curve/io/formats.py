@@ -1,4 +1,4 @@
-"""The table of curve formats, and the two functions that look into it."""
+"""The table of curve formats, and the two functions that use it."""
 
 import io
 import os
@@ -25,7 +25,7 @@ class Format:
     write: Callable[[Curve, TextIO], None] | None  # raises CurveError for what it cannot hold; None if only read
 
     def text(self, curve: Curve) -> str:
-        """What a file of the curve holds; raises CurveError if the format cannot hold it, or is only read."""
+        """The contents of a file of the curve; raises CurveError if the format cannot hold it, or is only read."""
         if self.write is None:
             raise CurveError("this format is only read; choose another one to write")
         stream = io.StringIO()
@@ -86,7 +86,7 @@ class CurveFile:
     @cached_property
     def _indices(self) -> dict[int, int]:
         sizes, starts = self.curve.mesh.component_sizes, self.curve.mesh.offsets[:-1].tolist()
-        indices: dict[int, int] = {}  # a last vertex that repeats the first is that
+        indices: dict[int, int] = {}  # a last vertex that repeats the first counts as the first
         for polygon, start, size in zip(self._polygons, starts, sizes, strict=True):
             numbers = range(start, start + size) if polygon.numbers is None else polygon.numbers
             indices |= {number: start + k % size for k, number in enumerate(numbers)}
@@ -99,7 +99,7 @@ class CurveFile:
 
 
 def load_curve(path: str | os.PathLike[str], form: Format | None = None, stream: BinaryIO | None = None) -> CurveFile:
-    """`read_curve`, keeping what later errors need; in a given format, or the suffix's, from a stream if given."""
+    """`read_curve`, keeping what later errors need; by a given format or the suffix's, from a stream if given."""
     path = Path(path)
     form = format_of(path) if form is None else form
     source = Source.load(path) if stream is None else Source.read(path, stream)

@@ -89,14 +89,14 @@ def _coordinate(source: Source, at: _Path, value: object) -> float:
 
 
 def _kind(value: object) -> str:
-    """Name what was found, in the words of JSON."""
+    """Name what was found, in JSON's terms."""
     kinds = {dict: "an object", list: "a list", str: "a string", int: "a number", float: "a number"}
     return kinds.get(type(value)) or json.dumps(value)
 
 
 def _line_of(text: str, path: _Path) -> int | None:
-    """The line (from 1) where the value at a path starts, which Python's parser forgets; None if there is none."""
-    here: list[str | int] = []  # the key or index of the value under way in each open object or list
+    """The line (from 1) where the value at a path starts, which Python's parser drops; None if there is none."""
+    here: list[str | int] = []  # the key or index of the current value in each open object or list
     for match in _TOKEN.finditer(text):
         token = match[0]
         if token == ",":

@@ -1,4 +1,4 @@
-"""Lists of knots as people download them: a name and a code in each row (KnotInfo, LinkInfo, SnapPy, KnotFolio)."""
+"""Lists of knots that can be downloaded: a name and a code in each row (KnotInfo, LinkInfo, SnapPy, KnotFolio)."""
 
 import csv
 import os
@@ -21,7 +21,7 @@ CODES: Mapping[str, str] = {
 }  # fmt: skip
 """Columns that are read, the first one that a list has, and what must stand before their codes."""
 _BRAID = re.compile(r"[\[({]\s*(?:(\d+)\s*,\s*[\[({])?([^\[\](){}]*)[\])}\s]*")
-_CODE = re.compile(r"[^\[({]*[\[({].*\d.*|[\d\s,;+-]+|[a-zA-Z]{4,}(\.[01]+)?", re.DOTALL)  # no title of a column
+_CODE = re.compile(r"[^\[({]*[\[({].*\d.*|[\d\s,;+-]+|[a-zA-Z]{4,}(\.[01]+)?", re.DOTALL)  # not a column's title
 _NAME = re.compile(r"(m?[KL]?\d+(?:\^\d)?(?:_|[an]_?)\d+)(?:\(0,0\))*")  # a knot's, and as SnapPy prints manifolds
 _DELIMITERS = ",\t|;"
 _MAX_BYTES = 256 << 20  # KnotInfo's own, with all invariants, has dozens of megabytes
@@ -80,7 +80,7 @@ def _plain(line: str) -> tuple[str, str]:
 
 
 def _known(name: str) -> str:
-    """What `knot` reads of a row that has its name alone."""
+    """The text that `knot` reads for a row with a name alone."""
     match = _NAME.fullmatch(name)
     return match[1] if match else ""
 
@@ -96,7 +96,7 @@ def _knoodle(source: Source) -> list[Diagram]:
 
 
 def _code(text: str, before: str) -> str:
-    """What `knot` reads, of a cell; empty for cells that hold no code."""
+    """The text that `knot` reads for a cell; empty for cells that hold no code."""
     if before != "braid":
         return before + text if _CODE.fullmatch(text) else ""
     match = _BRAID.fullmatch(text)

@@ -2,8 +2,8 @@
 
 A polyline may run over many indices, also negative ones (counted back from the last vertex read), and
 pieces in any order are joined where they share a vertex. Polylines that do not come back to their first vertex are open
-polygons. Vertices on no line are dropped. A file with vertices alone is one closed polygon. Everything else that OBJ
-knows is ignored, and so are faces ``f``, but where an obstacle is read.
+polygons. Vertices on no line are dropped. A file with vertices alone is one closed polygon. Everything else in OBJ
+is ignored, including faces ``f`` unless an obstacle is read.
 """
 
 import logging
@@ -41,7 +41,7 @@ class Face(NamedTuple):
 
 @dataclass
 class Content:
-    """What an OBJ file says: vertices, the line of each, edges of polylines, and faces; indices count from 0."""
+    """The contents of an OBJ file: vertices, the line of each, edges of polylines, and faces; indices count from 0."""
 
     points: list[tuple[float, ...]] = field(default_factory=list)
     lines: list[int] = field(default_factory=list)

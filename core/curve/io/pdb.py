@@ -1,9 +1,9 @@
 """Chains of proteins (.pdb, .cif): the alpha carbons of each, one after the other, as an open arc.
 
-Of several models the first is read, of several atoms at one place in the chain the first one, and chains are those that
-authors name.  Columns of .pdb files are those of the format's version 3.3, sections "ATOM" and "TER"; modified residues
-(HETATM) have alpha carbons too, and what comes after the end of a chain is no part of it.  Of .cif files (PDBx/mmCIF)
-the loop of ``_atom_site`` is read, an atom in a line.
+Of several models the first is read, of several atoms at one place in the chain the first, and chains are the
+authors' own.  Columns of .pdb files are those of the format's version 3.3, sections "ATOM" and "TER"; modified residues
+(HETATM) have alpha carbons too, and anything after the end of a chain is not part of it.  Of .cif files (PDBx/mmCIF)
+the loop of ``_atom_site`` is read, one atom per line.
 """
 
 import logging
@@ -16,7 +16,7 @@ from typing import NamedTuple
 from .source import Polygon, Source
 
 _ALPHA_CARBON = " CA "  # in columns 13 to 16; calcium begins one column before
-_APART = 4.5  # Å; neighbours are 3.8 apart, so that residues are missing in between
+_APART = 4.5  # Å; neighbours are 3.8 apart, so residues are missing in between
 _WORD = re.compile(r"""'(?:[^']|'(?=\S))*'|"(?:[^"]|"(?=\S))*"|\S+""")
 _log = logging.getLogger(__name__)
 
@@ -61,7 +61,7 @@ def read_cif(source: Source) -> list[Polygon]:
     for number, row in rows:
         is_carbon = row.get("label_atom_id") == "CA" and row.get("type_symbol", "C") == "C"
         if not is_carbon or row.get("label_seq_id") == "." or row.get("pdbx_PDB_model_num", "1") != models[0]:
-            continue  # residues of a chain have a number in the sequence, and other molecules have none
+            continue  # residues of a chain have a sequence number, and other molecules have none
         chain, place = (row.get(f"auth_{key}", row.get(f"label_{key}", "")) for key in ("asym_id", "seq_id"))
         residue = f"{row.get('label_comp_id', '')} {chain}{place}{row.get('pdbx_PDB_ins_code', '').strip('?.')}"
         point = tuple(source.number(row[f"Cartn_{axis}"], number) for axis in "xyz")

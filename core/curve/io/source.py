@@ -15,9 +15,9 @@ from ..curve import Curve
 
 MAX_BYTES = 16 << 20  # two hundred thousand vertices with all their digits
 MAX_LINES = 500_000
-MAX_DIMENSION = 16  # embeddedness is looked at in each of its planes
+MAX_DIMENSION = 16  # embeddedness is checked in each of its planes
 _INTEGER = re.compile(r"[+-]?[0-9]+", re.ASCII)
-_MAX_DIGITS = 18  # digits; beyond that it is no count or index of anything in memory
+_MAX_DIGITS = 18  # digits; any number beyond that is not a count or index of anything in memory
 _log = logging.getLogger(__name__)
 
 
@@ -66,7 +66,7 @@ class Source:
     def number(self, token: str, line: int) -> float:
         """Parse a coordinate; nan and inf are left for :func:`assemble`, which knows the vertex."""
         try:
-            if "_" in token:  # Python's own spelling, which no other program reads
+            if "_" in token:  # Python's own notation, which no other program reads
                 raise ValueError
             return float(token)
         except ValueError:
@@ -101,8 +101,8 @@ class Polygon:
 
     points: Sequence[Sequence[float]]
     line_of: Callable[[int], int | None]  # where the vertex of an index, from 0, was read
-    closed: bool = True  # it also is if the last vertex repeats the first
-    numbers: Sequence[int] | None = None  # that the file counts vertices by, from 0, if not in order along the curve
+    closed: bool = True  # also true if the last vertex repeats the first
+    numbers: Sequence[int] | None = None  # the file's own vertex numbers, from 0, if not in order along the curve
 
     @property
     def repeats_first(self) -> bool:
@@ -142,7 +142,7 @@ def _check_points(source: Source, number: int, polygon: Polygon, dimension: int)
 
 
 def _without_closing_point(source: Source, number: int, polygon: Polygon) -> Sequence[Sequence[float]]:
-    """Drop a last vertex that repeats the first, and refuse what is then no polygon."""
+    """Drop a last vertex that repeats the first, and refuse what is then not a polygon."""
     points = polygon.points
     if polygon.repeats_first:
         _log.warning(

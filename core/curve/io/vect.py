@@ -1,7 +1,7 @@
 """Geomview VECT (.vect), as ridgerunner and KnotPlot use it: polylines with their numbers of vertices ahead.
 
 ``VECT``, then the numbers of polylines, vertices and colours; the vertices of each polyline, negative where
-it is closed, else positive; the colours of each polyline; the points; the colours (which are read over). ``#`` begins a
+it is closed, else positive; the colours of each polyline; the points; the colours (which are ignored). ``#`` begins a
 comment.
 Source: the Geomview manual, section "VECT".
 """
@@ -31,7 +31,7 @@ class _Words:
         return self.source.error(reason, self.words[max(self.position, 1) - 1][1])
 
     def demand(self, count: int, what: str) -> None:
-        """Refuse a file that ends before ``count`` more words, before anything is reserved for them."""
+        """Refuse a file that ends before ``count`` more words, before any memory is reserved for them."""
         if self.left < count:
             last = self.words[-1][1]
             raise self.source.error(f"the file is truncated: {count} {what} announced, {self.left} found", last)

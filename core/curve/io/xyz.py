@@ -44,7 +44,7 @@ def read(source: Source) -> list[Polygon]:
 
 
 def _named(words: list[str]) -> list[int] | None:
-    """The columns that a line of names has for coordinates; None if it is no such line."""
+    """The columns that a line of names assigns to coordinates; None if it is not such a line."""
     names = [word.strip("\"'").lower() for word in words]
     return [names.index(axis) for axis in "xyz" if axis in names] if {"x", "y"} <= set(names) else None
 
@@ -63,7 +63,7 @@ def _point(
 
 
 def separated(separator: str, head: bool = False) -> Callable[[Curve, TextIO], None]:
-    """A writer of components between blank lines, under the axes' names or not; CurveError beyond three dimensions."""
+    """A writer of components separated by blank lines, with or without axes' names; CurveError beyond 3 dimensions."""
 
     def write(curve: Curve, stream: TextIO) -> None:
         if curve.dimension > 3:

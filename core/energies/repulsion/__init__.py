@@ -1,3 +1,3 @@
-"""The repulsive potential between a curve and still obstacles."""
+"""The repulsive potential between a curve and obstacles at rest."""
 
 from .repulsion import Repulsion

@@ -1,9 +1,9 @@
-"""The repulsion of still obstacles: their potential, integrated along a curve.
+"""The repulsion of obstacles at rest: their potential, integrated along a curve.
 
     R(P) = Σ_I ∫_I Φ ds,   Φ(x) = ∫_triangles dA(y)/|x − y|³ + 2 ∫_segments ds(y)/|x − y|²
 
-is scale-invariant, as the Möbius energy is, and each exponent is the least with which every contact, a transversal one
-too, has infinite energy.  Planes and straight lines alike have Φ = 2π/h at the distance h, which is the Möbius energy
+is scale-invariant, as the Möbius energy is, and each exponent is the least for which every contact, even a transversal
+one, has infinite energy.  Planes and straight lines alike have Φ = 2π/h at the distance h, which is the Möbius energy
 per length of two parallel strands.
 """
 
@@ -31,13 +31,13 @@ OUTDATED = 0.75  # slack up to which it is good enough for a line search
 class Repulsion:
     """R of simplices of one dimension, triangles or segments.
 
-    Every curve has a schedule of its own, at whose change the value jumps by its error.  `frozen_at` keeps one, which
-    makes a smooth function as long as it suits: what a line search should see.
+    Every curve has its own schedule, and where that changes the value jumps by its error.  `frozen_at` keeps one,
+    which gives a smooth function as long as it suits, as a line search needs.
     """
 
     clusters: Clusters  # the simplices, in the units of curves
     theta: float = THETA  # separation parameter of clusters; with 0 all simplices count one by one
-    schedule: Schedule | None = None  # to be used as long as it suits; None for that of each curve
+    schedule: Schedule | None = None  # used as long as it suits; None for a schedule of each curve's own
 
     name = "repulsion"
     scale_exponent = 0.0
@@ -45,14 +45,14 @@ class Repulsion:
 
     @classmethod
     def of(cls, obstacles: Iterable[Obstacle]) -> "tuple[Repulsion, ...]":
-        """One for all triangles, one for all segments, in the units of curves; those of no size repel nothing."""
+        """One for all triangles and one for all segments, in the units of curves; those of no size repel nothing."""
         kinds = zip(*((obstacle.triangles, obstacle.segments) for obstacle in obstacles), strict=True)
         corners = (np.concatenate(kind).transpose(1, 2, 0) for kind in kinds)
         solid = (each[:, :, Simplices(each).sizes > 0.0] for each in corners)
         return tuple(cls(Clusters.of(each)) for each in solid if each.size)
 
     def frozen_at(self, curve: Curve) -> "Repulsion":
-        """The smooth function that the schedule of ``curve`` makes of it, or that its own does if it suits."""
+        """The smooth function given by the schedule of ``curve``, or by this repulsion's own if it suits."""
         if self.schedule is not None and self.schedule.suits(curve, self.clusters, KEPT):
             return self
         return replace(self, schedule=_schedule(curve, self.clusters, self.theta))
@@ -88,11 +88,11 @@ class Repulsion:
         return np.asarray(2.0 * np.pi / self._means(curve))
 
     def _means(self, curve: Curve) -> FloatArray:
-        """Those of Φ on every edge, shape (edges,)."""
+        """The mean values of Φ on every edge, shape (edges,)."""
         return np.asarray(self._integrals(self._schedule(curve), *_ends(curve, curve.vertices))[0])
 
     def _schedule(self, curve: Curve) -> Schedule:
-        """The schedule that counts at a curve: its own, or that of the curve."""
+        """The schedule in use at a curve: this repulsion's own, or the curve's."""
         if self.schedule is not None and self.schedule.suits(curve, self.clusters, OUTDATED):
             return self.schedule
         return _schedule(curve, self.clusters, self.theta)
@@ -130,11 +130,11 @@ class Repulsion:
 
 @lru_cache(maxsize=2)
 def _schedule(curve: Curve, clusters: Clusters, theta: float) -> Schedule:
-    """That of a curve; the last ones are kept, for value, derivative and second derivative alike."""
+    """The schedule of a curve; the last ones are kept, for value, derivative and second derivative alike."""
     return Schedule.of(curve, clusters, theta)
 
 
 def _ends(curve: Curve, at_vertices: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """What there is at the tails and heads of edges; shape (3, edges) each."""
+    """The values at the tails and heads of edges; shape (3, edges) each."""
     columns = at_vertices.T
     return columns[:, curve.mesh.tails], columns[:, curve.mesh.heads]

@@ -1,7 +1,7 @@
 """Graded quadrature along edges: which panels see which simplices one by one, which clusters, by how many Gauss points.
 
 Panels, dyadic parts of edges, are halved until the potential is analytic so far around them that few points are enough.
-That follows all singularities wherever they are; the number of panels grows only like the logarithm of their distance.
+This follows all singularities wherever they are; the number of panels grows only like the logarithm of their distance.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -21,8 +21,8 @@ MAX_POINTS = 8
 # simplices, and of exp(−8) = 3e-4 for clusters, still less than what moments leave: k points have the error ρ⁻²ᵏ, and
 # the Bernstein ellipse lies within a disc of R half lengths if ρ + 1/ρ ≤ 2R.
 EXACT, CLUSTERED = (np.cosh(exponent / (2.0 * np.arange(1, MAX_POINTS + 1))) for exponent in (20.0, 8.0))
-SHORTEST = 2.0**-48  # of an edge: not even contact makes panels shorter
-EDGES = 1024  # looked at together, to bound the memory
+SHORTEST = 2.0**-48  # of an edge: panels are no shorter even at contact
+EDGES = 1024  # processed together, to bound the memory
 POINTS = 8192  # at which a potential is taken at once, for the processor's cache
 
 
@@ -87,7 +87,7 @@ class _View:
 class Schedule:
     """Each edge and simplex once, by panels, which see clusters if radius + half length < θ (distance of centers)."""
 
-    curve: Curve  # that it was made for
+    curve: Curve  # the curve that it was made for
     single: Groups  # panels that see simplices
     clustered: Groups  # panels that see clusters
     theta: float  # the separation parameter θ
@@ -106,7 +106,7 @@ class Schedule:
         )
 
     def suits(self, curve: Curve, clusters: Clusters, slack: float) -> bool:
-        """Whether another curve can be integrated by it, if radii and distances may be that factor ≤ 1 too small."""
+        """Whether another curve can be integrated by it, if radii and distances may be too small by that factor ≤ 1."""
         if curve.mesh != self.curve.mesh:
             return False
         if np.array_equal(curve.vertices, self.curve.vertices):

@@ -5,7 +5,7 @@
 
 with the solid angle Ω or the angle ψ that the simplex subtends at x, and the distance h from its plane or line.  By
 tan(Ω/2) = N/D (Van Oosterom and Strackee, 1983) and tan ψ = N/D, with N proportional to h, both are a constant times
-g(N², D) = atan2(N, D)/N, which is regular beside the simplex too, where x is in the plane or on the line.
+g(N², D) = atan2(N, D)/N, which is also regular beside the simplex, where x is in the plane or on the line.
 
 Points may be after complex steps.
 """
