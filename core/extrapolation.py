@@ -46,7 +46,7 @@ class Extrapolation:
 
         In the asymptotic range it is how much extrapolations of order 2 from the first and from the last two energies
         differ, sixteen times the latter's error where that is of fourth order, and a share of the last correction;
-        outside of it all of the last difference.
+        outside of it the sum of both differences of energies.
         """
         coarse, middle, fine = self.energies
         if not self._is_regular:

@@ -1,6 +1,6 @@
 """The curve to be relaxed, the obstacles and pins that stand still meanwhile, and units for all.
 
-The program's own units are similar to the user's: the curve is about 2π long in them.
+The program's own units are similar to the user's: components are about 2π long in them.
 """
 
 import logging

@@ -71,7 +71,7 @@ class Drawing:
         return replace(drawing, first_over=heights[:, 0] > heights[:, 1])
 
     def lifted(self, changed: Collection[int] = ()) -> Curve:
-        """Lift strands over and under by turns, but for crossings ``changed``, from 1; CurveError for other numbers."""
+        """Lift strands over and under as ``first_over`` says, but for crossings ``changed``, from 1; or CurveError."""
         count = len(self.crossings)
         for number in changed:
             if not 1 <= number <= count:
