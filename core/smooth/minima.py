@@ -16,8 +16,8 @@ from .basis import Basis
 from .energy import Pairs
 from .rest import Rest, energy_of
 
-SAME_ENERGY = 5e-6  # of the energy: how far energies of one curve differ beyond their errors, where it is soft
-SAME_SHAPE = 1e-2  # of eigenvalues up to 1: for one curve they differ by up to 3e-3, for two types by 3e-2
+SAME_ENERGY = 1e-6  # of the energy: ends at one curve differ by up to 4e-8
+SAME_SHAPE = 3e-4  # of eigenvalues up to 1: those of one curve differ by up to 1e-5, of two types by 6e-3 or more
 EIGENVALUES = 24
 _ROUNDING = 1e-13  # of the energy
 _GROWN = (1.0, 1.25, 1.5, 2.0, 2.5)  # times the modes that a Möbius image may need
