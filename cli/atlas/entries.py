@@ -68,7 +68,7 @@ def _described(name: str, runs: Sequence[Run]) -> Values:
         "energy": rest.energy,
         "error": rest.error,
         "upper_bound": bounds and bounds[1],
-        "index": index_of(runs[0].curve) if rest.index < 0 else rest.index,
+        "index": index_of(runs[0].curve),
         "symmetry": group.name,
         "met": len(runs),
         "kinds": dict(Counter(run.row.kind or "named" for run in runs).most_common()),

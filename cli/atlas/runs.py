@@ -32,10 +32,8 @@ class Run:
 
     @property
     def rest(self) -> Rest:
-        """The curve at rest; the index is the polygon's, -1 if it is not known."""
-        row = self.row
-        index = -1 if row.index is None else row.index
-        return Rest(self.curve, row.extrapolated_energy or 0.0, row.extrapolated_energy_error or 0.0, index)
+        """The curve at rest."""
+        return Rest(self.curve, self.row.extrapolated_energy or 0.0, self.row.extrapolated_energy_error or 0.0)
 
 
 @dataclass

@@ -26,13 +26,13 @@ MOST = 720  # modes of all components: some gigabytes and seconds a step
 _PER_MODE = 4  # points of the trapezoidal rule
 _FOLLOWS = 0.03  # of the energy: how far that of a first fit may be from the polygon's
 _RESOLVED = 1e-4  # of the energy: the error up to which more modes go on where fewer ended
+_LITTLE = 0.03  # of strands' distances: change by which directions at rest are tried
 _REACH = 0.3  # of their distance: how far a Newton step moves points towards each other, or away
 _ROUGHLY = 1e-8, 20  # gain of the next step, relative to the energy, and steps, after which more modes do better
 _FINALLY = 1e-11, 20  # the same in the end
 _STIFFNESS = 2.0  # against sliding
-_NEAR = 1e-10  # of the energy: gain of a step below which Newton's own is taken
+_NEAR = 1e-10  # of the energy: gain of a step that is not measured, but must make the next gain less
 _ROUNDING = 1e-13  # of the Hessian's norm, to which its eigenvalues are known
-_CONCAVE = 1e-9  # of the Hessian's norm: modes left out make the sign of smaller eigenvalues uncertain
 
 Placed = tuple[Curve, Sequence[FloatArray]]
 """A polygon and the parameters of its components' vertices."""
@@ -48,13 +48,13 @@ class Rest:
     curve: FourierCurve
     energy: float
     error: float  # how far its energy may be off: the change by more modes and points, and the gain of a next step
-    index: int  # independent directions in which the energy falls, 0 at a minimum
 
 
 @checked
 def at_rest(polygon: Curve) -> Rest | None:
     """The smooth curve that a relaxed polygon stands for; None if none with an inscribed polygon of its type is found.
 
+    Steps lead downhill, and therefore to a saddle only where its symmetry is the polygon's.
     Raises CurveError for arcs and for curves that are not in space.
     """
     check_closed(polygon, "smooth curves at rest")
@@ -87,9 +87,15 @@ def energy_of(curve: FourierCurve, per_mode: int = 2 * _PER_MODE) -> float:
 
 @checked
 def index_of(curve: FourierCurve) -> int:
-    """The number of independent directions in which the energy of a curve at rest falls, 0 at a minimum."""
+    """The number of independent directions in which the energy of a curve at rest falls, 0 at a minimum.
+
+    It has to fall where strands' distances change by some per cent: finest wiggles gain less than their modes resolve.
+    """
     basis = Basis.of(curve.modes, _PER_MODE)
-    return Model.of(basis, basis.unknowns(curve)).index
+    z = basis.unknowns(curve)
+    energy, _, hessian = _derivatives(basis, z)
+    _, directions = eigh(hessian, subset_by_value=(-np.inf, 0.0))
+    return sum(_least_beside(basis, z, each.reshape(z.shape)) < energy for each in directions.T)
 
 
 def _normalized(curve: Curve) -> Curve:
@@ -130,7 +136,7 @@ def _stationary(start: FourierCurve, energy: float, enough: tuple[float, int]) -
         z, model = better, there
         trail.append(basis.curve(z))
     found = Pairs.of(finer, z).energy
-    return Rest(trail[-1], found, model.gain + abs(found - model.energy), model.index), trail
+    return Rest(trail[-1], found, model.gain + abs(found - model.energy)), trail
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,34 +144,34 @@ class Model:
     """The quadratic model of the energy at unknowns, without the directions in which it does not change."""
 
     energy: float
-    index: int  # directions in which the energy is concave
-    step: FloatArray  # Newton's, but downhill where the energy is not convex, unless a saddle is near; shape (N, 3)
-    gain: float  # what the model says that the step gains
+    step: FloatArray  # Newton's, but downhill where the energy is concave; shape (N, 3)
+    gain: float  # the decrease that the model predicts for the step
 
     @classmethod
     def of(cls, basis: Basis, z: FloatArray) -> "Model":
         """The model at unknowns z."""
-        pairs, stiff = Pairs.of(basis, z), _STIFFNESS * sliding(basis, z)
-        slope, hessian = _free(pairs.gradient.ravel(), pairs.hessian + stiff, invariant(basis, z))
-        norm = float(np.linalg.norm(hessian, np.inf))
-        least = _ROUNDING * norm
+        energy, slope, hessian = _derivatives(basis, z)
+        least = _ROUNDING * float(np.linalg.norm(hessian, np.inf))
         shift = least * np.eye(len(hessian))
         try:  # most models are convex, which this finds out faster than eigenvalues do
             cho_factor(hessian + shift)
             step = -cho_solve(cho_factor(hessian + 2.0 * shift), slope)
-            index, gain = 0, -0.5 * float(slope @ step)
         except LinAlgError:
             values, vectors = eigh(hessian)
-            along, stiffness = vectors.T @ slope, np.maximum(np.abs(values), least)
-            index, gain = int(np.count_nonzero(values < -_CONCAVE * norm)), 0.5 * float(np.sum(along**2 / stiffness))
-            signs = np.sign(values) if gain < _NEAR * pairs.energy else 1.0
-            step = -vectors @ (signs * along / stiffness)
-        return cls(pairs.energy, index, step.reshape(-1, 3), gain)
+            step = -vectors @ ((vectors.T @ slope) / np.maximum(np.abs(values), least))
+        gain = -0.5 * float(slope @ step)
+        return cls(energy, step.reshape(-1, 3), gain)
 
     @property
     def is_near(self) -> bool:
-        """Whether so little is left to gain that the next point at rest is where Newton's step leads."""
+        """Whether so little is left to gain that rounding may hide it."""
         return self.gain < _NEAR * self.energy
+
+
+def _derivatives(basis: Basis, z: FloatArray) -> tuple[float, FloatArray, FloatArray]:
+    """The energy, its gradient and Hessian by the flattened unknowns, stiff where it does not change."""
+    pairs, stiff = Pairs.of(basis, z), _STIFFNESS * sliding(basis, z)
+    return pairs.energy, *_free(pairs.gradient.ravel(), pairs.hessian + stiff, invariant(basis, z))
 
 
 def _free(slope: FloatArray, hessian: FloatArray, fields: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -186,6 +192,12 @@ def _searched(basis: Basis, z: FloatArray, model: Model) -> FloatArray | None:
             return trial
         share *= 0.5
     return None
+
+
+def _least_beside(basis: Basis, z: FloatArray, step: FloatArray) -> float:
+    """The least energy a little forwards and backwards along a direction."""
+    little = _LITTLE / _strain(basis.values @ z, basis.values @ step) * step
+    return min(Pairs.of(basis, z + side * little).energy for side in (1.0, -1.0))
 
 
 def _strain(points: FloatArray, shifts: FloatArray) -> float:
