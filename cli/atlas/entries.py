@@ -25,6 +25,7 @@ from .folder import Folder
 from .runs import Run
 
 Values = dict[str, Any]
+_SYMMETRIC = 0.1  # radii of gyration: balanced curves miss their symmetries by up to .04, and others by .15 or more
 _FINER = 2  # times the vertices that represent a curve, when it is measured
 
 
@@ -58,7 +59,7 @@ def _described(name: str, runs: Sequence[Run]) -> Values:
     """Everything known about a curve, by the names of the tables' columns: the balanced end of the first run."""
     rest = balanced(runs[0].rest)
     curve, polygon = rest.curve, rest.curve.polygon(rest.curve.sizes)
-    group = symmetries(polygon)
+    group = symmetries(polygon, _SYMMETRIC)
     upright = FourierCurve(tuple(c @ standing(polygon, group).T for c in curve.coefficients))
     fine = upright.polygon([_FINER * size for size in upright.sizes])
     writhe, crossings = writhe_and_crossings(fine)
