@@ -55,7 +55,7 @@ def take_off(data: bpy.types.Curve) -> None:
 def blend(
     materials: Sequence[bpy.types.Material | None], slot: int, frames: FloatArray, timing: Timing
 ) -> bpy.types.Material:
-    """A material that equals one of some at each frame, ascending, (materials,); ``slot``: what `take_off` restores."""
+    """A material that is each of some at its own frame, ascending, (materials,); ``slot``: what `take_off` restores."""
     plain = bpy.data.materials.new("Default")
     chain = [each or plain for each in materials]
     for each in chain:

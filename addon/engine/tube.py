@@ -80,7 +80,7 @@ def between_edges(ends: FloatArray | float, lengths: FloatArray | float) -> Floa
 
 
 def _thinned(curve: Curve, distance: float) -> Curve:
-    """A curve with only as many vertices as such a distance needs, a few at least in each component; itself if all."""
+    """A curve with only as many vertices as such a distance needs, a few at least in each component, or itself."""
     stride = int(distance / (_FINE * curve.edge_lengths.max()))
     if stride <= 1:
         return curve

@@ -125,7 +125,7 @@ def alignments(curve: Curve, other: Curve, freedom: Freedom) -> list[Alignment]:
 class _Pairs:
     """Cross-correlations Σ_k y_{k+s} x_kᵀ of the samples of all pairs of components, in both directions, at all s.
 
-    Open components are held at their ends: each is compared only with the one of the same number, as both are.
+    Open components are held at their ends: each is compared only with the one of its number, in the same direction.
     """
 
     def __init__(self, x: FloatArray, y: FloatArray, closed: BoolArray, other_closed: BoolArray) -> None:

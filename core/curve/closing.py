@@ -24,7 +24,7 @@ def closed_far_away(curve: Curve) -> Curve:
             continue
         first, last = ((p - center) / (np.linalg.norm(p - center) or 1.0) for p in (part[0], part[-1]))
         across = first - (first @ last) * last
-        if np.linalg.norm(across) < 1e-6:  # either way round will do
+        if np.linalg.norm(across) < 1e-6:  # any way round will do
             across = np.eye(curve.dimension)[np.abs(last).argmin()]
             across -= (across @ last) * last
         across /= np.linalg.norm(across)

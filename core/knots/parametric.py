@@ -54,7 +54,7 @@ def overhand(vertices: int | None = None) -> Curve:
     """Make the overhand knot, a trefoil cut open, with straight ends and the given number of vertices, by default 120.
 
     It follows Shastri's polynomials (t³ − 3t, t⁴ − 4t², t⁵ − 10t), the last one scaled down.  Raises CurveError for
-    fewer than 40 vertices, with which it might be knotted differently.
+    fewer than 40 vertices, with which it might not be this knot.
     """
     count = 120 if vertices is None else vertices
     if count < _LEAST:

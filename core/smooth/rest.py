@@ -32,7 +32,7 @@ _ROUGHLY = 1e-8, 20  # gain of the next step, relative to the energy, and steps,
 _FINALLY = 1e-11, 20  # the same in the end
 _STIFFNESS = 2.0  # against sliding
 _NEAR = 1e-10  # of the energy: gain of a step that is not measured, but must make the next gain less
-_ROUNDING = 1e-13  # of the Hessian's norm, to which its eigenvalues are known
+_ROUNDING = 1e-13  # of energies, and of the Hessian's norm: how far they, and its eigenvalues, are known
 
 Placed = tuple[Curve, Sequence[FloatArray]]
 """A polygon and the parameters of its components' vertices."""
@@ -54,7 +54,7 @@ class Rest:
 def at_rest(polygon: Curve) -> Rest | None:
     """The smooth curve that a relaxed polygon stands for; None if none with an inscribed polygon of its type is found.
 
-    Steps lead downhill, and therefore to a saddle only where its symmetry is the polygon's.
+    Steps lead downhill, and so to saddles only from polygons that have their symmetry, or are there already.
     Raises CurveError for arcs and for curves that are not in space.
     """
     check_closed(polygon, "smooth curves at rest")
@@ -89,13 +89,13 @@ def energy_of(curve: FourierCurve, per_mode: int = 2 * _PER_MODE) -> float:
 def index_of(curve: FourierCurve) -> int:
     """The number of independent directions in which the energy of a curve at rest falls, 0 at a minimum.
 
-    It has to fall where strands' distances change by some per cent: finest wiggles gain less than their modes resolve.
+    It has to fall where strands' distances change by some per cent: the finest wiggles may gain less than is resolved.
     """
     basis = Basis.of(curve.modes, _PER_MODE)
     z = basis.unknowns(curve)
     energy, _, hessian = _derivatives(basis, z)
     _, directions = eigh(hessian, subset_by_value=(-np.inf, 0.0))
-    return sum(_least_beside(basis, z, each.reshape(z.shape)) < energy for each in directions.T)
+    return sum(_mean_beside(basis, z, each.reshape(z.shape)) < (1.0 - _ROUNDING) * energy for each in directions.T)
 
 
 def _normalized(curve: Curve) -> Curve:
@@ -194,10 +194,10 @@ def _searched(basis: Basis, z: FloatArray, model: Model) -> FloatArray | None:
     return None
 
 
-def _least_beside(basis: Basis, z: FloatArray, step: FloatArray) -> float:
-    """The least energy a little forwards and backwards along a direction."""
+def _mean_beside(basis: Basis, z: FloatArray, step: FloatArray) -> float:
+    """The mean of the energies a little forwards and backwards along a direction: slopes cancel."""
     little = _LITTLE / _strain(basis.values @ z, basis.values @ step) * step
-    return min(Pairs.of(basis, z + side * little).energy for side in (1.0, -1.0))
+    return 0.5 * (Pairs.of(basis, z + little).energy + Pairs.of(basis, z - little).energy)
 
 
 def _strain(points: FloatArray, shifts: FloatArray) -> float:
