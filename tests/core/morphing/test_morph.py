@@ -114,7 +114,7 @@ def test_shapes_that_do_not_meet_are_told_with_their_energies():
         morph(Task(curve=knot("3_1", 60), obstacles=(walls,)), moved(knot("3_1", 60), 0.1), stopped)
 
 
-@pytest.mark.parametrize("misses", [1, 2, 3, 4])
+@pytest.mark.parametrize("misses", [1, *(pytest.param(k, marks=pytest.mark.slow) for k in (2, 3)), 4])
 def test_where_shapes_do_not_meet_both_go_on_with_equal_meshes_and_then_hop(misses, tmp_path, monkeypatch):
     module, asked = sys.modules["mobius_flow.core.morphing.morph"], []
 
