@@ -239,6 +239,15 @@ def test_without_blender_there_are_no_pictures(monkeypatch: pytest.MonkeyPatch) 
         pictures.usable("STUDIO")
 
 
+def test_balanced_curves_may_miss_their_symmetries_by_little(trefoil: Rest, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(entries, "_proves", lambda: False)
+    monkeypatch.setattr(entries, "balanced", lambda rest: rest)
+    row = Row(name="3_1", start=1, seed=None, status="converged", message="", options="{}")
+    for width, name in ((0.92, "D3"), (0.5, "C2")):
+        curve = replace(trefoil.curve, coefficients=tuple(c * [1.0, width, 1.0] for c in trefoil.curve.coefficients))
+        assert entries._described("3_1", [runs.Run(row, curve, "")])["symmetry"] == name
+
+
 def test_bounds_are_rounded_outwards() -> None:
     known = {"upper_bound": 74.4120430000001, "lower_bound": 22.849556}
     assert data.bounds(known) == {"upper_bound": "74.412044", "lower_bound": "22.849555"}  # of doubles, not of decimals

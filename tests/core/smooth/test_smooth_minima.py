@@ -72,9 +72,10 @@ def test_round_circles_are_the_same() -> None:
     assert distinct(ends) == [[0, 1]]
 
 
-def test_other_shapes_of_equal_energy_are_others(trefoil: Rest) -> None:
-    wide = tuple(c * [1.0, 0.6, 1.0] for c in trefoil.curve.coefficients)
-    assert sorted(distinct([trefoil, replace(trefoil, curve=FourierCurve(wide))])) == [[0], [1]]
+@pytest.mark.parametrize(("width", "groups"), [(0.6, [[0], [1]]), (0.99, [[0], [1]]), (0.9999, [[0, 1]])])
+def test_other_shapes_of_equal_energy_are_others(trefoil: Rest, width: float, groups: list[list[int]]) -> None:
+    wide = tuple(c * [1.0, width, 1.0] for c in trefoil.curve.coefficients)
+    assert sorted(distinct([trefoil, replace(trefoil, curve=FourierCurve(wide))])) == groups
 
 
 def test_the_index_of_a_minimum(trefoil: Rest) -> None:

@@ -1,10 +1,12 @@
 """Smooth minimisers from relaxed polygons, against energies that are known otherwise."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError, RelaxOptions, minimize
+from mobius_flow.core.curve.fourier import FourierCurve
 from mobius_flow.core.extrapolation import extrapolated
 from mobius_flow.core.knots import knot, knot_type, overhand, torus_knot
 from mobius_flow.core.knots.shapes import least_energies
@@ -43,6 +45,44 @@ def test_symmetric_torus_knots_are_saddles(p: int, q: int, index: int) -> None:
     smooth = found(torus_knot(p, q, 300, minor=torus_knot_tube(p, q)))
     assert abs(smooth.energy - torus_knot_minimum(p, q)) < 1e-6 * smooth.energy
     assert index_of(smooth.curve) == index
+
+
+@pytest.mark.parametrize("least", [1.0, -1.0], ids=["convex", "concave"])
+def test_steps_are_newtons_in_soft_directions_beside_stiff_ones(monkeypatch: pytest.MonkeyPatch, least: float) -> None:
+    values = np.array([7e7, 1e-3, least])
+    monkeypatch.setattr(rest, "_derivatives", lambda *_: (1.0, np.ones(3), np.diag(values)))
+    np.testing.assert_allclose(rest.Model.of(None, None).step[0], -1.0 / np.abs(values), rtol=0.02)  # type: ignore[arg-type]
+
+
+def test_what_is_not_resolved_is_not_gone_on_from(monkeypatch: pytest.MonkeyPatch) -> None:
+    starts, stationary = [], rest._stationary
+
+    def unresolved_at_first(start: FourierCurve, *how: object) -> tuple[Rest | None, list[FourierCurve]]:
+        starts.append(start)
+        end, trail = stationary(start, *how)  # type: ignore[arg-type]
+        return (end and replace(end, error=end.energy) if len(starts) == 1 else end), trail
+
+    monkeypatch.setattr(rest, "_stationary", unresolved_at_first)
+    at_rest(relaxed("3_1", 90))
+    fitted = [bool(np.any(start.coefficients[0][-1])) for start in starts]
+    assert fitted[:3] == [True, True, False]
+
+
+def test_a_last_step_that_leaves_more_to_gain_is_not_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    smooth, model, gains = found(relaxed("3_1", 90)), rest.Model.of, iter([5e-11, 6e-11, 7e-11])
+    monkeypatch.setattr(rest.Model, "of", lambda *at: replace(model(*at), gain=smooth.energy * next(gains)))
+    assert len(rest._stationary(smooth.curve, smooth.energy, (1e-11, 2))[1]) == 1
+
+
+def test_concave_directions_in_which_the_energy_does_not_fall_do_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
+    smooth, derivatives = found(relaxed("3_1", 90)), rest._derivatives
+
+    def concave(*where: object) -> tuple[float, np.ndarray, np.ndarray]:
+        energy, slope, hessian = derivatives(*where)  # type: ignore[arg-type]
+        return energy, slope, hessian - 2.0 * np.diag(np.arange(len(hessian)) == 30) * hessian[30, 30]
+
+    monkeypatch.setattr(rest, "_derivatives", concave)
+    assert index_of(smooth.curve) == 0
 
 
 @pytest.mark.parametrize("name", ["8_19", "8_21"])
