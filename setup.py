@@ -9,7 +9,7 @@ setup(
         "mobius_flow",
         *(
             f"mobius_flow.{room}"
-            for room in find_namespace_packages(include=("core*", "cli*", "addon*"), exclude=("*__pycache__*",))
+            for room in find_namespace_packages(include=("core*", "cli*", "addon*", "lab*"), exclude=("*__pycache__*",))
         ),
     ],
 )

@@ -5,23 +5,23 @@ from types import ModuleType
 import bpy
 
 from . import settings, translations
-from .buttons import adding, drawing, film, mending, outputs, pinning, presets, relaxing, running, shape, stroke
+from .buttons import adding, drawing, film, mending, outputs, presets, relaxing, shape
 from .live import handlers, overlay
-from .sidebar import menus, panels, relax, tool
+from .sidebar import menus, panels, relax
 
 # presets go into the head of the panel; the sub-panels follow in the order they are shown
 _MODULES = (
-    *(relaxing, running, mending, pinning, shape, outputs, film, adding, drawing, stroke, presets),
+    *(relaxing, mending, shape, outputs, film, adding, drawing, presets),
     *(menus, relax, panels),
 )
 # everything else to register
-_PARTS = (translations, settings, presets, menus, handlers, overlay, tool)
+_PARTS = (translations, settings, presets, menus, handlers, overlay)
 
 
 def declared(module: ModuleType) -> list[type]:
-    """The classes for Blender that a module declares, in the order of their declaration."""
-    classes = (each for each in vars(module).values() if isinstance(each, type))
-    return [each for each in classes if issubclass(each, bpy.types.bpy_struct) and each.__module__ == module.__name__]
+    """The classes for Blender that a module declares, in the order of their declaration; tools are none of them."""
+    own = [each for each in vars(module).values() if isinstance(each, type) and each.__module__ == module.__name__]
+    return [each for each in own if issubclass(each, bpy.types.bpy_struct) and each.__base__ != bpy.types.WorkSpaceTool]
 
 
 CLASSES = (*settings.GROUPS_OF_SCENE.values(), *(cls for module in _MODULES for cls in declared(module)))

@@ -9,37 +9,25 @@ and with the Python package beside `bpy`::
     from mobius_flow import Relaxation
 """
 
-import numbers
 import os
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
-from ..core import Curve, Hand, Iterate, MobiusFlowError, OptionError
-from ..core.errors import choice, likeliest
-from .curves import bake
-from .curves.baked_keys import BakedKeys
+from ..core import Curve, Hand, Iterate, MobiusFlowError
+from ..core.keys.key_options import Pace
+from .curves import bake, bevel, sizes
 from .curves.pins import Held
+from .curves.recorded import BakedKeys
 from .curves.session import Report, Session
 from .curves.surroundings import Surroundings
-from .engine.key_options import Pace
-from .live.checks import BAKED, CLEARABLE, POLYGONS, READABLE, RELAXABLE, UNEDITED
-from .live.requirements import idle, require
+from .live.requirements import BAKED, CLEARABLE, POLYGONS, READABLE, RELAXABLE, UNEDITED, idle, require
 from .pictures import staging
 from .pictures.movie import Filming
-from .properties import key_options, relax_options, settings
-
-_DECLARED = {name: (each.function, each.keywords) for name, each in settings(set()).items()}
-_DEFAULTS = {name: keywords["default"] for name, (_, keywords) in _DECLARED.items()}
-_KINDS: dict[Any, tuple[type, str]] = {
-    BoolProperty: (bool, "True or False"),
-    IntProperty: (numbers.Integral, "a whole number"),
-    FloatProperty: (numbers.Real, "a number"),
-    EnumProperty: (str, "a name"),
-}
+from .properties import DEFAULTS, check, key_options, relax_options
 
 
 class Relaxation:
@@ -108,8 +96,8 @@ class Relaxation:
     def morph(self, *goals: bpy.types.Object, avoid: Iterable[bpy.types.Object] = (), **settings: Any) -> Report:
         """Become another curve, or one after the other, by a motion that is proved, and keep it as keyframes.
 
-        The goals are curve objects with splines of the same kinds, and stay as they are.  Raises MobiusFlowError if no
-        motion leads there, or none is found; otherwise as `relax`.
+        The goals are curve objects with splines of the same kinds, and are hidden once they are reached.  Raises
+        MobiusFlowError if no motion leads there, or none is found; otherwise as `relax`.
         """
         values = complete(settings) | {"avoid": avoid}
         return begin(self.objects, values, False, self.sample_splines, Relaxation(*goals).objects).run()
@@ -117,7 +105,8 @@ class Relaxation:
     def relax_further(self, avoid: Iterable[bpy.types.Object] = (), **settings: Any) -> Report:
         """Go on from the end of the animation, with new keys after the old ones; otherwise as `relax`.
 
-        With ``balance=True`` or ``escape_saddles=True`` this is what the buttons *Balance* and *Leave Saddle* do.
+        ``balance=True`` leads to the image of the same energy that bends least, ``escape_saddles=True`` downhill from a
+        saddle, and with ``stability=True`` the report says whether the curves rest at a minimum.
         """
         return begin(self.objects, complete(settings) | {"avoid": avoid}, True, self.sample_splines).run()
 
@@ -126,6 +115,7 @@ class Relaxation:
         require(idle() or CLEARABLE.of(self.objects) or UNEDITED.of(self.objects))
         for obj in self.objects:
             bake.clear(obj)
+            sizes.release(obj)
 
     @property
     def curves(self) -> list[Curve]:
@@ -134,15 +124,15 @@ class Relaxation:
         return BakedKeys(self.objects).curves
 
     def set_up_stage(
-        self, use_camera: bool = True, use_world: bool = True, look: str = "SCENE"
+        self, use_camera: bool = True, use_world: bool = True, look: str = "SCENE", hide_others: bool = True
     ) -> bpy.types.Collection:
         """Put a camera, lights and a floor around the curves for as long as they move; see `staging.set_up`.
 
         The scene is the open one; the look is one of those of `film`. Raises MobiusFlowError if splines cannot be read.
         """
-        _update()
+        bpy.context.view_layer.update()
         require(idle() or READABLE.of(self.objects))
-        return staging.set_up(bpy.context.scene, self.objects, use_camera, use_world, look)
+        return staging.set_up(bpy.context.scene, self.objects, use_camera, use_world, look, hide_others)
 
     def film(self, path: str | os.PathLike[str], look: str = "SCENE", overwrite: bool = False) -> Path:
         """Render the frames that the open scene plays to an MP4, and return where it is.
@@ -165,7 +155,7 @@ def begin(
     goals: Sequence[bpy.types.Object] = (),
 ) -> Session:
     """A session with the values of all settings, which becomes the goals if there are any; raises MobiusFlowError."""
-    _update()
+    bpy.context.view_layer.update()  # of where objects are that a script has just moved
     require(
         idle() or RELAXABLE.of(objects) or READABLE.of(goals),
         BAKED.of(objects) if continues else None,
@@ -174,24 +164,15 @@ def begin(
     )
     options = key_options(values)
     options = bake.continued(objects, options) if continues else options
-    surroundings = Surroundings.of(_objects(values["avoid"]), [*objects, *goals])
-    return Session(objects, relax_options(values), options, continues, surroundings, Held.of(values), goals)
-
-
-def _update() -> None:
-    """Update Blender's view of where objects are that a script has just moved."""
-    bpy.context.view_layer.update()
-
-
-def _objects(avoid: Iterable[bpy.types.Object]) -> list[bpy.types.Object]:
-    """The objects to avoid; raises MobiusFlowError if something is not an object."""
-    if not isinstance(avoid, Iterable):
-        raise MobiusFlowError(f"avoid is of type {type(avoid).__name__}; give a list of objects")
-    found = list(avoid)
-    wrong = [each for each in found if not isinstance(each, bpy.types.Object)]
-    if wrong:
+    constant = options.constant_radius or any(bevel.is_constant(obj.data) for obj in objects)
+    options = replace(options, constant_radius=constant)
+    if not isinstance(values["avoid"], Iterable):
+        raise MobiusFlowError(f"avoid is of type {type(values['avoid']).__name__}; give a list of objects")
+    avoid = list(values["avoid"])
+    if wrong := [each for each in avoid if not isinstance(each, bpy.types.Object)]:
         raise MobiusFlowError(f"avoid has {wrong[0]!r:.40}, which is not an object")
-    return found
+    surroundings = Surroundings.of(avoid, [*objects, *goals])
+    return Session(objects, relax_options(values), options, continues, surroundings, Held.of(values), goals)
 
 
 def implied(given: Collection[str]) -> dict[str, Any]:
@@ -204,18 +185,5 @@ def complete(given: Mapping[str, Any]) -> dict[str, Any]:
     """All settings, with defaults for those not given; raises OptionError for unknown settings and wrong values."""
     for name, value in given.items():
         if name not in ("any_bevel", "pins"):
-            _check(name, value)
-    return {**_DEFAULTS, **implied(given), **given}
-
-
-def _check(name: str, value: Any) -> None:
-    if name not in _DECLARED:
-        raise OptionError(f"there is no setting {name!r}; {likeliest(name, _DECLARED)}see curve.mobius_flow_relax")
-    function, keywords = _DECLARED[name]
-    kind, words = _KINDS[function]
-    if not isinstance(value, kind):
-        raise OptionError(f"{name} is {value!r}; it must be {words}")
-    if function is EnumProperty:
-        names = [item[0] for item in keywords["items"] if item[0]]
-        if value not in names:
-            raise OptionError(f"{name} is {value!r}; {choice(str(value), names)}")
+            check(name, value)
+    return {**DEFAULTS, **implied(given), **given}

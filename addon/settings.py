@@ -1,16 +1,23 @@
 """What scenes keep besides options: what the panel shows, what the film is, what is avoided, which knot is picked."""
 
+from collections.abc import Sequence
+from contextlib import suppress
+from functools import partial
 from typing import Any
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, PointerProperty, StringProperty
 
+from ..core import OptionError
+from .curves import bake
 from .engine.knot_list import GROUPS, group, labels
-from .engine.quality import QUALITIES, quality_of
+from .live import registry
 from .live.modal import redraw_views
+from .live.requirements import shown_curves
 from .pictures import icons, staging
+from .pictures.looks import LOOKS
 from .pictures.movie import CHOICES
-from .properties import MobiusFlowSettings
+from .properties import FURTHER, QUALITIES, Further, quality_of, settings, timing
 
 # since 5.0 Blender marks relative paths as wrong unless a property declares that it supports them
 _RELATIVE = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (5, 0) else set()
@@ -19,19 +26,60 @@ _LEVEL_ITEMS = [
     *((name, each.label, each.description, "NONE", k) for k, (name, each) in enumerate(QUALITIES.items())),
     ("CUSTOM", "Custom", "Options as they are set in Expert", "NONE", len(QUALITIES)),
 ]
-_TREFOIL = list(labels()).index("3_1")  # where items are made by a function, the default is a number
 _knot_items: dict[str, list[tuple[str, str, str, int, int]]] = {}  # Blender needs the strings to stay alive
 
 
 def _quality(panel: Any) -> int:
     """The level follows from the options: whatever sets them, it is never out of date."""
-    return _LEVELS.index(quality_of(panel.id_data.mobius_flow) or "CUSTOM")
+    try:
+        return _LEVELS.index(quality_of(panel.id_data.mobius_flow) or "CUSTOM")
+    except OptionError:  # what is written among the further options is wrong
+        return _LEVELS.index("CUSTOM")
 
 
 def _set_quality(panel: Any, number: int) -> None:
     quality = QUALITIES.get(_LEVELS[number])
-    for name, value in quality.values.items() if quality is not None else ():
-        setattr(panel.id_data.mobius_flow, name, value)
+    with suppress(OptionError):  # what is written among the further options is wrong: the panel says what
+        for name, value in quality.values.items() if quality is not None else ():
+            setattr(panel.id_data.mobius_flow, name, value)
+
+
+def _retime(changed: Any, context: bpy.types.Context) -> None:
+    """Let the selected curves' film follow the settings at once, with the stage and the frames that the scene plays.
+
+    Values that do not go together may be on the way to others: the film stays, and the panel says what is wrong.
+    """
+    scene, objects = changed.id_data, [obj for obj in shown_curves(context) if bake.is_baked(obj.data)]
+    if registry.current() is not None or scene != context.scene or not objects:
+        return
+    before = _played(objects)
+    with suppress(OptionError):
+        wanted = timing(partial(getattr, changed))
+        followed = [bake.retime(obj.data, wanted) for obj in objects]
+        if any(followed):
+            if (scene.frame_start, scene.frame_end) == before:
+                scene.frame_start, scene.frame_end = _played(objects)
+            staging.renew(scene)
+
+
+def _played(objects: Sequence[bpy.types.Object]) -> tuple[int, int]:
+    """First and last frame of baked objects' film that a scene can play, which are not negative."""
+    first, last = bake.scene_range(objects) or (0, 0)
+    return max(first, 0), max(last, 0)
+
+
+class MobiusFlowSettings(bpy.types.PropertyGroup):
+    __annotations__ = {name: each for name, each in settings(set(), _retime).items() if name not in FURTHER} | {
+        "options": StringProperty(
+            name="Further Options",
+            description="Options as scripts and the command line have them, such as method=flow-moebius "
+            "tolerance=1e-6; the manual lists them all",
+        )
+    }
+
+
+for _name in FURTHER:
+    setattr(MobiusFlowSettings, _name, Further(_name))
 
 
 class MobiusFlowPanelSettings(bpy.types.PropertyGroup):
@@ -44,7 +92,7 @@ class MobiusFlowPanelSettings(bpy.types.PropertyGroup):
     )
     show_plot: BoolProperty(
         name="Energy Plot",
-        description="Draw the energy against the iterations in the 3D view",
+        description="Draw the energy step by step in the 3D view",
         default=True,
         update=lambda _panel, context: redraw_views(context.window_manager),
     )
@@ -62,7 +110,7 @@ class MobiusFlowFilmSettings(bpy.types.PropertyGroup):
         name="Look",
         description="What the stage and the curves on it are made of, and how frames are rendered",
         items=[(name, *words) for name, words in CHOICES.items()],
-        update=lambda film, context: staging.restyle(context.scene, film.look),
+        update=lambda film, context: staging.renew(context.scene, film.look) if film.look in LOOKS else None,
     )
 
 
@@ -92,20 +140,21 @@ def _knots(settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> li
     return _knot_items[chosen]
 
 
-def _show_first(settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
-    """Pick the first knot of another group: the one that was picked is not shown there."""
-    settings.knot = next(name for name in labels() if group(name) == settings.group)
-
-
 class MobiusFlowKnots(bpy.types.PropertyGroup):
     group: EnumProperty(
         name="Group",
         description="Which knots are shown",
         items=[(key, title, description) for key, (title, description) in GROUPS.items()],
         default="FEW",
-        update=_show_first,
+        # the one that was picked is not shown there
+        update=lambda knots, _: setattr(knots, "knot", next(each for each in labels() if group(each) == knots.group)),
     )
-    knot: EnumProperty(name="Knot", description="Knot to add", items=_knots, default=_TREFOIL)
+    knot: EnumProperty(
+        name="Knot",
+        description="Knot to add",
+        items=_knots,
+        default=list(labels()).index("3_1"),  # where items are made by a function, the default is a number
+    )
 
 
 GROUPS_OF_SCENE = {

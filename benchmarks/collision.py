@@ -9,9 +9,9 @@ from time import process_time
 
 import numpy as np
 from mobius_flow.core import Curve
+from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.collision import check_embedded, free_motion, is_free, minimal_gap
-from mobius_flow.core.types import FloatArray
-from mobius_flow.core.verify.filter import doubtful_pairs
+from mobius_flow.core.proof.filter import doubtful_pairs
 from words import words
 
 

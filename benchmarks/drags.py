@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 from mobius_flow.core import Curve, Hand, Obstacle, RelaxOptions, Task, Trajectory, relax
 from mobius_flow.core.knots import knot, knot_type
-from mobius_flow.core.verify import verify
+from mobius_flow.core.proof import verify
 
 _OF_A_RUN = 10
 _MOVES = 12  # iterates of a drag

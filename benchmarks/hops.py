@@ -24,7 +24,7 @@ from hard_curves import lattice_unknot
 from mobius_flow.core import Curve, RelaxOptions, Result, Status, Trajectory, minimize
 from mobius_flow.core.curve.refine import subdivide
 from mobius_flow.core.knots import knot, scramble, smooth_knot, torus_knot
-from mobius_flow.core.verify import verify
+from mobius_flow.core.proof import verify
 
 PATIENT = RelaxOptions(max_iterations=1_000_000)  # a try may take as many as a run: time is the limit
 ESCAPING = replace(PATIENT, escape_saddles=True)

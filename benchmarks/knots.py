@@ -24,8 +24,8 @@ import numpy as np
 from hard_curves import hard_unknot, lattice_knot, lattice_unknot, rope, spiral, uneven
 from mobius_flow.cli import options as relax_options
 from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, Status, minimize
-from mobius_flow.core.diagrams import quick_invariants
 from mobius_flow.core.knots import HARD_UNKNOTS, KNOTS, knot, scramble, torus_knot
+from mobius_flow.core.knots.diagrams import quick_invariants
 from step_costs import Machine
 
 CIRCLE = 4.02  # energy below which an unknot counts as a circle

@@ -15,10 +15,9 @@ from time import process_time
 
 import numpy as np
 from mobius_flow.core import Curve, Obstacle, read_obstacle
+from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.collision import check_clear, free_motion, is_free
-from mobius_flow.core.types import FloatArray
-from mobius_flow.core.verify.filter import doubtful_pairs
-from mobius_flow.core.verify.obstacles import Obstacles
+from mobius_flow.core.proof.filter import FloatingSieve, doubtful_pairs
 
 REPETITIONS = 5
 SHARES = (0.3, 0.6, 0.9)  # of the largest curve that fits
@@ -74,7 +73,7 @@ def timings(obstacle: Obstacle, n: int) -> None:
         step = field(start)
         time = free_motion(mesh, start, start + step, (obstacle,)).time
         end = start + 2 / 3 * time * step
-        own = Obstacles.of([(obstacle.vertices, obstacle.faces)])
+        own = FloatingSieve(obstacle.vertices[obstacle.faces].tolist())
         tasks: tuple[Callable[[], object], ...] = (
             lambda: free_motion(mesh, start, start + step),  # noqa: B023 (called at once)
             lambda: free_motion(mesh, start, start + step, (obstacle,)),  # noqa: B023
@@ -82,7 +81,7 @@ def timings(obstacle: Obstacle, n: int) -> None:
             lambda: is_free(mesh, start, end, (obstacle,)),  # noqa: B023
             lambda: check_clear(curve, (obstacle,)),  # noqa: B023
             lambda: list(doubtful_pairs(start, end, mesh.heads)),  # noqa: B023
-            lambda: list(own.doubtful(start, end, mesh.heads)),  # noqa: B023
+            lambda: list(own.doubtful_triangles(start, end, mesh.heads)),  # noqa: B023
         )
         print(f"{share:13.1f}{time:13.4f}" + "".join(f"{best(task):13.2f}" for task in tasks), flush=True)
 

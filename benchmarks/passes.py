@@ -2,8 +2,8 @@
 
     python benchmarks/passes.py [NAME or FILE …]
 
-Without names: the famous unknots of the table, the codes in ../shared/hard_unknots, closures of random braids that are
-unknots, and scrambled knots.
+Without names: the famous unknots of the table, closures of random braids that are unknots, and scrambled knots.  Codes
+of diagrams that others have published are given as files.
 """
 
 import tempfile
@@ -14,13 +14,12 @@ from pathlib import Path
 import numpy as np
 from hard_curves import hard_unknot
 from mobius_flow.core import Curve, Iterate, Obstacle, Trajectory, read_curve
-from mobius_flow.core.diagrams import views
 from mobius_flow.core.knots import HARD_UNKNOTS, knot, knot_type, scramble
-from mobius_flow.core.passes import Stage, untangled
-from mobius_flow.core.verify import Verdict, verify
+from mobius_flow.core.knots.diagrams import views
+from mobius_flow.core.proof import Verdict, verify
+from mobius_flow.core.untangle import Stage, untangled
 from words import words
 
-SHARED = Path(__file__).parents[2] / "shared/hard_unknots"
 SCRAMBLED = ("5_2", "7_4", "8_19", "L6a4")
 
 
@@ -45,8 +44,6 @@ def curves(names: Sequence[str]) -> Iterator[tuple[str, Curve]]:
         return
     for name in HARD_UNKNOTS:
         yield name, knot(name)
-    for path in sorted(SHARED.glob("*.pd")):
-        yield path.stem, read_curve(path)
     for crossings in (100, 200, 300):
         yield f"random {crossings}", hard_unknot(crossings, seed=1)
     for name in SCRAMBLED:

@@ -11,10 +11,10 @@ import argparse
 import numpy as np
 from collision import best, torus_knot
 from mobius_flow.core import Curve
+from mobius_flow.core.curve.obstacle import Obstacle
 from mobius_flow.core.energies.repulsion import Repulsion
 from mobius_flow.core.energies.repulsion.repulsion import KEPT
 from mobius_flow.core.energies.repulsion.schedule import Schedule
-from mobius_flow.core.obstacle import Obstacle
 
 MOST_DENSE = 1_000
 

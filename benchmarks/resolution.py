@@ -9,8 +9,8 @@ halved, and halved again: the ratio of the two differences is 4 where the error 
 
 from hard_curves import lattice_knot
 from mobius_flow.core import RelaxOptions, minimize
-from mobius_flow.core.extrapolation import extrapolated
 from mobius_flow.core.knots import KNOTS
+from mobius_flow.lab.extrapolation import extrapolated
 from words import words
 
 CROSSINGS = range(3, 8)

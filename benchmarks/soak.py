@@ -17,11 +17,11 @@ import numpy as np
 from hard_curves import hard_unknot
 from mobius_flow.core import METHODS, Curve, Iterate, MobiusFlowError, Obstacle, RelaxOptions, Task, Trajectory, relax
 from mobius_flow.core.collision.embedded import clears
-from mobius_flow.core.diagrams import quick_invariants
 from mobius_flow.core.driver.options import EDGE_LENGTHS, MESHES
 from mobius_flow.core.energies import ENERGIES
 from mobius_flow.core.knots import KNOTS, braid_closure, knot, scramble
-from mobius_flow.core.verify import verify
+from mobius_flow.core.knots.diagrams import quick_invariants
+from mobius_flow.core.proof import verify
 
 # slow kinds, and those that change the mesh, come up less often
 COMMON = ("lbfgs", "cg", "flow-moebius", "flow-h1", "flow-l2", "flow-h2", "penalty-lbfgs", "penalty-nesterov")

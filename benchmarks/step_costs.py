@@ -13,14 +13,14 @@ from statistics import fmean, median
 import numpy as np
 from hard_curves import bent_trefoil
 from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, Task
+from mobius_flow.core.base.threads import BLAS
 from mobius_flow.core.descent import NoStep, Point, Step
 from mobius_flow.core.descent.methods import METRIC_STEPS
 from mobius_flow.core.descent.step import leg
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.driver.run import Run
 from mobius_flow.core.energies.barrier import near_pairs
-from mobius_flow.core.hierarchy import HierarchicalMoebiusEnergy
-from mobius_flow.core.threads import BLAS
+from mobius_flow.core.energies.hierarchy import HierarchicalMoebiusEnergy
 
 MAX_COMPARED = 3000  # vertices up to which the hierarchical solver is compared with the dense one
 ASYMPTOTIC = 2000  # vertices from which times are expected to follow a power law

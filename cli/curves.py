@@ -8,8 +8,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ..core import Curve, CurveError, CurveFileError, MobiusFlowError, write_curve
-from ..core.curve.io import FORMATS, CurveFile, Format, load_curve
-from ..core.errors import wrong_suffix
+from ..core.base.errors import wrong_suffix
+from ..core.io import FORMATS, CurveFile, Format, load_curve
 from .streams import OutputStreamError, emit
 
 STREAM, DEVICE = "-", "/dev/stdout"

@@ -2,17 +2,20 @@
 
 import argparse
 import json
+import sys
 from collections.abc import Iterator, Mapping
+from importlib.util import find_spec
 
 from ..core import CurveError
-from ..core.arguments import check_known
-from ..core.curve.closing import closed_far_away
+from ..core.base.arguments import check_known
+from ..core.base.errors import counted
+from ..core.curve.refine import closed_far_away
+from ..core.driver.info import Info, info, measure
 from ..core.energies import ENERGIES
-from ..core.errors import counted
-from ..core.info import Info, info, measure
 from ..core.knots.exterior import FLOER
 from . import curves
 from .streams import emit
+from .terminal import Item, command, report
 
 _MEASURES = ("length", "thickness", "ropelength", "writhe", "average_crossing_number")
 _ENERGY_EPILOG = """\
@@ -34,8 +37,9 @@ radius of curvature and half the least distance between strands; ropelength is l
 rest where the projected gradient is within the default tolerance of relax; pins and obstacles are not known here.  The
 index is the number of independent directions downhill, 0 at a minimum.  Of curves at rest the energy of the smooth
 curve is told that finer meshes lead to, beside the least known one of its type.  Symmetry, after Schoenflies, is that
-of the curve as it lies, within 0.02 radii of gyration; Möbius images of symmetric curves have it when they are balanced
-(see relax --balance).  Knots are numbered as in KnotInfo (see mobius-flow knot --help).
+of the curve as it lies, if it misses by at most 2 % of the curve's size, the root mean square distance of its points
+from their centre; Möbius images of symmetric curves have it when they are balanced (see relax --balance).  Knots are
+numbered as in KnotInfo (see mobius-flow knot --help).
 
 exit status: 0, or 2 on bad input or bad options
 """
@@ -79,8 +83,8 @@ def _info(options: argparse.Namespace) -> int:
         described = [_as_json(path, each) for path, each in found]
         emit(json.dumps(described if len(described) > 1 else described[0]))
     else:
-        rows = ((path, *(f"  {name:24}{value}" for name, value in _rows(each))) for path, each in found)
-        emit("\n\n".join(map("\n".join, rows)))
+        advised = (([*_rows(each), *_advice(path, each, options.close)], path) for path, each in found)
+        emit("\n\n".join(report((path, ""), rows, sys.stdout, 1) for rows, path in advised))
     return 0
 
 
@@ -147,9 +151,21 @@ def _rows(found: Info) -> Iterator[tuple[str, str]]:
         yield name.replace("_", " "), _number(getattr(found, name))
     longest, shortest = found.longest_edge, found.shortest_edge
     yield "edges", f"{shortest:.6g} to {longest:.6g}, ratio {longest / shortest:.4g}"
-    yield "gap between edges", _number(found.gap)
+    # 0.05 of the mean edge: gaps that vertices were not meant to resolve
+    near = found.gap < 0.05 * found.length / sum(found.components)
+    more = ": far below the edges, so that noise of this size may have changed the type" if near else ""
+    yield "gap between edges", _number(found.gap) + more
     if found.symmetry is not None and found.symmetry.name != "C1":
-        yield "symmetry", f"{found.symmetry.name} (within {found.symmetry.distance:.2g} radii of gyration)"
+        yield "symmetry", f"{found.symmetry.name} (misses by {100 * found.symmetry.distance:.2g} % of the curve's size)"
+
+
+def _advice(path: str, found: Info, closed: bool) -> Iterator[tuple[str, Item]]:
+    """What tells more about a curve."""
+    diagram = found.type.diagram
+    if found.open and found.dimension == 3 and not closed:
+        yield "next", [command("info", path, "--close")]
+    elif diagram is not None and not found.type.names and len(diagram.passes) == 1 and find_spec("snappy") is None:
+        yield "next", "pip install snappy (the extra knots), which names knots of up to 15 crossings"
 
 
 def _number(value: float | None) -> str:

@@ -3,14 +3,16 @@
 import argparse
 import os
 import re
+import sys
 from pathlib import Path
 
 from ..core import CurveError, MobiusFlowError, OptionError, knot_list
-from ..core.curve.io import WRITTEN_FORMATS
-from ..core.errors import counted
+from ..core.base.errors import counted
+from ..core.io import written_formats
 from ..core.knots import UnknownKnotError, knot, knot_names, smooth_knot
 from . import curves
-from .places import check_place
+from .places import check_directory, check_place
+from .terminal import quoted, report, say_written
 
 LISTS = (".csv", ".tsv", ".txt", ".xls", ".xlsx")
 _EPILOG = """\
@@ -27,7 +29,7 @@ examples:
   mobius-flow knot --list
 
 A list (.csv, .tsv, .txt: a table with a column such as pd_notation, dt_notation or braid_notation, a code or a name in
-each line, or Knoodle's knots) makes a file for each of its knots in the directory OUT.
+each line, or Knoodle's knots) makes a file for each of its knots in the directory OUT, which is made if need be.
 
 Knots are numbered as in KnotInfo: 10_162 to 10_165 are 10_163 to 10_166 in Rolfsen's book, where 10_161 stands twice
 (Perko's pair), and SnapPy has 10_83 and 10_86 the other way round.
@@ -38,13 +40,14 @@ exit status: 0, or 2 on bad input or bad options, or where OUT cannot be written
 
 def add_knot(parser: argparse.ArgumentParser) -> None:
     parser.description, parser.epilog = "Write a named knot as a curve.", _EPILOG
+    formats = written_formats()
     text = (
         'such as 3_1, goeritz, hopf, overhand, "T(3,5)", "braid(1,-2,1,-2)", a code, "DT: [4 6 2]", or, with the extra '
         "knots, K11n34"
     )
     parser.add_argument("name", metavar="NAME", help=text)
-    parser.add_argument("output", metavar="OUT", help=f"curve: {', '.join(WRITTEN_FORMATS)}, or - for standard output")
-    curves.add_format(parser, WRITTEN_FORMATS)
+    parser.add_argument("output", metavar="OUT", help=f"curve: {', '.join(formats)}, or - for standard output")
+    curves.add_format(parser, formats)
     default = "enough for edges to be shorter than the gaps between strands"
     text = f"number of vertices, at most {curves.MAX_VERTICES} (default: {default})"
     parser.add_argument("--vertices", type=int, metavar="N", help=text)
@@ -72,6 +75,8 @@ def _run(options: argparse.Namespace) -> int:
         told = f"{options.name[:60]} gets {len(curve)} vertices, and no command takes more than {most}"
         raise CurveError(f"{told}; give --vertices {most}")
     curves.write(options.output, curve, options.format)
+    if options.output != curves.STREAM:
+        say_written(options.output, "relax", options.output, "relaxed.obj")
     return 0
 
 
@@ -79,10 +84,10 @@ def _write_list(options: argparse.Namespace) -> int:
     """A file for each knot of a list; knots that cannot be drawn are left out, and named in the end."""
     if options.smooth:
         raise OptionError("--smooth is for names of the table, and lists have codes; leave it out")
-    if not os.path.isdir(options.output):
-        raise MobiusFlowError(f"{options.output}: is no directory; a list of knots makes a file for each in one")
+    check_directory(options.output)
     suffix, refused, written = options.format or "txt", [], set[str]()
     listed = knot_list(options.name)
+    os.makedirs(options.output, exist_ok=True)
     for number, (name, code) in enumerate(listed.items(), start=1):
         try:
             curve = knot(code, options.vertices)
@@ -95,4 +100,5 @@ def _write_list(options: argparse.Namespace) -> int:
         curves.write(os.path.join(options.output, f"{stem}.{suffix}"), curve)
     if refused:
         raise MobiusFlowError(f"{len(refused)} of {counted(len(listed), 'knot')} cannot be made: {refused[0]}")
+    print(report((f"✓ {counted(len(listed), 'knot')}", [quoted(options.output)]), [], sys.stderr), file=sys.stderr)
     return 0

@@ -7,7 +7,7 @@ import sys
 import warnings
 from collections.abc import Sequence
 
-from . import signals, streams
+from . import signals, streams, terminal
 
 FAILED, BAD_INPUT = 1, 2
 
@@ -27,7 +27,20 @@ def process() -> int:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run ``mobius-flow`` with the arguments (by default the process's) and return the exit status."""
     try:
-        return _run(arguments)
+        from .parser import parse
+
+        with streams.Notes() as notes:
+            try:
+                options = parse(arguments)
+            except SystemExit:
+                notes.show()  # of packages that cannot join
+                raise
+            with signals.raised():
+                options.notes = notes
+                status = int(options.run(options))
+                if not getattr(options, "quiet", False):
+                    notes.show()
+                return status
     except SystemExit as ended:
         return int(ended.code or 0)
     except KeyboardInterrupt as interrupt:
@@ -40,21 +53,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _end(*explained(error))
 
 
-def _run(arguments: Sequence[str] | None) -> int:
-    from .parser import parse
-
-    options = parse(arguments)
-    with streams.Notes() as notes, signals.raised():
-        options.notes = notes
-        status = int(options.run(options))
-        if not getattr(options, "quiet", False):
-            notes.show()
-        return status
-
-
 def _end(sentence: str, status: int) -> int:
     if sys.stderr is not None:
-        print(streams.one_line(f"mobius-flow: {sentence}"), file=sys.stderr)
+        print(terminal.sentence(f"mobius-flow: {sentence}", sys.stderr), file=sys.stderr)
     return status
 
 
@@ -66,7 +67,7 @@ def explained(error: Exception) -> tuple[str, int]:
     if isinstance(error, OSError):
         name = "" if error.filename is None else f"{error.filename}: "
         return f"{name}{error.strerror or error}", BAD_INPUT
-    from ..core.errors import MobiusFlowError
+    from ..core.base.errors import MobiusFlowError
 
     if isinstance(error, MobiusFlowError):
         return str(error), BAD_INPUT

@@ -4,16 +4,17 @@ import argparse
 import sys
 
 from ..core import CurveError, Iterate, RelaxOptions, Status, Task, read_obstacle
-from ..core.curve.io import FORMATS, CurveFile
+from ..core.base.errors import counted
 from ..core.driver import finish
-from ..core.errors import counted
-from ..core.morphing import DifferentError, NoMotionError, compare, morphing, moving
+from ..core.io import FORMATS, CurveFile
+from ..core.morph import DifferentError, NoMotionError, compare, morphing, moving
 from . import curves
 from . import options as relax_options
 from .places import admit, check_places, output_for
 from .relax import EXIT_STATUS, add_outputs, places, run_to_end, write_results
 from .signals import INTERRUPTED
-from .streams import emit, one_line
+from .streams import emit
+from .terminal import one_line
 
 NOT_FOUND = 1
 NAMES = ("A", "B")  # of the curves, on the command line and in sentences
@@ -95,7 +96,7 @@ def _run(options: argparse.Namespace) -> int:
     check_places(inputs(options), places(options))
     (file, task), (other, goal) = read_pair(options, wanted)
     admit(output, options.output, file.curve)
-    settings = vars(wanted) | {"avoid": [each.name for each in task.obstacles]}
+    settings = vars(wanted.resolved) | {"avoid": [each.name for each in task.obstacles]}
     origin = relax_options.provenance(settings, str(file.source.path), file.source.sha256)
     origin["to"] = {"name": str(other.source.path), "sha256": other.source.sha256}
     try:

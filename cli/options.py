@@ -9,33 +9,57 @@ import numpy
 import scipy
 
 from .. import __version__
+from ..addon.pictures.looks import DEFAULT as DEFAULT
 from ..addon.pictures.looks import LOOKS
 from ..core import RelaxOptions, Task, read_obstacle
-from ..core.arguments import Option, declared
-from ..core.curve.io import CurveFile
-from ..core.errors import OptionError, choice
-from ..core.threads import THREADS
+from ..core.base.arguments import Option, declared
+from ..core.base.errors import OptionError, choice
+from ..core.base.threads import THREADS
+from ..core.io import CurveFile
+from .parser import further
 
+COMMON = "relaxation"
+GROUPS = {  # of options, by the title that the help gives them
+    COMMON: ("vertices", "max_iterations", "time_limit", "tolerance", "method", "untangle"),
+    "what is minimised": ("energy", "barrier", "terms", "penalty", "accuracy", "solver"),
+    "gradients": ("metric", "quadrature_points"),
+    "mesh and lengths": ("mesh", "edge_lengths", "grow"),
+    "at rest, and beyond": ("balance", "stability", "escape_saddles", "hops", "seed", "symmetry"),
+}
 _OFFERED = "offered"  # the options' names, in a namespace
 
 
 def add_to(parser: argparse.ArgumentParser, *, without: Collection[str] = ()) -> None:
     """Add the options to a parser, except those that a subcommand declares in its own way."""
-    group = parser.add_argument_group("relaxation")
-    offered = [option for option in declared(RelaxOptions) if option.name not in without]
-    for option in offered:
-        ways = group.add_mutually_exclusive_group() if option.shorthands else group
-        ways.add_argument(flag(option), **_declaration(option))
-        for word, value in option.shorthands.items():
-            text = f"the same as {flag(option)} {value}"
-            ways.add_argument(f"--{word}", dest=option.name, action="store_const", const=value, help=text)
-    parser.set_defaults(**{_OFFERED: [option.name for option in offered]})
+    offered = {option.name: option for option in declared(RelaxOptions) if option.name not in without}
+    named = {name for names in GROUPS.values() for name in names}
+    for title, names in {**GROUPS, "further options": [name for name in offered if name not in named]}.items():
+        if chosen := [offered[name] for name in names if name in offered]:
+            group = parser.add_argument_group(title) if title == COMMON else further(parser, title)
+            for option in chosen:
+                declared_as: dict[str, Any] = {"dest": option.name, "default": option.default}
+                text = option.phrase
+                if option.kind is bool:
+                    declared_as["action"] = "store_true"
+                elif option.repeated:
+                    text += "; may be given several times"
+                    declared_as |= {"metavar": option.metavar, "action": "append", "default": []}
+                else:
+                    text += f"; one of {', '.join(option.choices)}" if option.choices else ""
+                    text += f" (default: {option.automatic or option.default})"
+                    declared_as |= {"metavar": option.metavar, "type": option.kind}
+                group.add_argument(flag(option), help=text, **declared_as)
+    parser.set_defaults(**{_OFFERED: list(offered)})
 
 
 def from_arguments(arguments: argparse.Namespace) -> RelaxOptions:
     """The options; raises OptionError if one is out of range."""
-    given = vars(arguments)
-    wanted = {each.name: _value(each, given) for each in declared(RelaxOptions) if each.name in given[_OFFERED]}
+    wanted: dict[str, Any] = {}
+    for option in declared(RelaxOptions):
+        if option.name in getattr(arguments, _OFFERED):
+            value = getattr(arguments, option.name)
+            words = (item for word in value for item in option.read(word)) if option.repeated else ()
+            wanted[option.name] = tuple(words) if option.repeated else value
     return RelaxOptions(**wanted)
 
 
@@ -88,27 +112,9 @@ def inputs(arguments: argparse.Namespace) -> dict[str, str]:
     return {"IN": arguments.input, **{f"--avoid {path}": path for path in arguments.avoid}}
 
 
-def _value(option: Option, given: Mapping[str, Any]) -> Any:
-    """The value given, with words turned into the items of a tuple."""
-    value = given[option.name]
-    return tuple(item for word in value for item in option.read(word)) if option.repeated else value
-
-
 def flag(option: Option) -> str:
     """The option's name on the command line."""
     return f"--{option.flag or option.name.replace('_', '-')}"
-
-
-def _declaration(option: Option) -> dict[str, Any]:
-    common = {"dest": option.name, "help": option.help, "default": option.default}
-    if option.kind is bool:
-        return common | {"action": "store_true"}
-    common |= {"metavar": option.metavar}
-    if option.repeated:
-        return common | {"help": f"{option.help}; may be given several times", "action": "append", "default": []}
-    choices = f"; one of {', '.join(option.choices)}" if option.choices else ""
-    default = f" (default: {option.automatic or option.default})"
-    return common | {"help": f"{option.help}{choices}{default}", "type": option.kind}
 
 
 def look(word: str, *others: str) -> str:

@@ -11,21 +11,21 @@ import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import partial
 from itertools import combinations, product
 from pathlib import Path
 
-from ..addon.engine.playing import Playing, check_dimension
 from ..addon.pictures import export
 from ..core import Curve, Iterate, MobiusFlowError, Result
+from ..core.base.errors import OptionError, OutputError, wrong_suffix
+from ..core.base.files import atomic_write, status_of
 from ..core.curve import check_closed
-from ..core.curve.io import FORMATS, WRITTEN_FORMATS, Format
-from ..core.errors import OptionError, OutputError, wrong_suffix
-from ..core.files import atomic_write, status_of
+from ..core.io import FORMATS, Format, written_formats
+from ..core.keys.motion import Playing, check_dimension
 from . import curves
 from .curves import DEVICE, OUTPUT, STREAM
-from .progress import show_frames
+from .progress import live
 
+VIEWED = (".html", ".stl", ".3mf", ".glb")  # what mobius-flow view makes
 Identity = tuple[int | str, ...]
 Write = Callable[[str], None]
 Writer = Callable[[str, Result, Sequence[Iterate], bool, Playing], object]
@@ -67,6 +67,17 @@ def check_place(path: str) -> None:
     except MobiusFlowError:
         raise
     except (OSError, ValueError) as error:  # a ValueError for a null character
+        raise OutputError(path, error) from error
+
+
+def check_directory(path: str) -> None:
+    """Raise an OutputError unless files can be made in a directory, or where it would be made."""
+    place = Path(path).absolute()
+    try:
+        while not place.exists():
+            place = place.parent
+        tempfile.NamedTemporaryFile(prefix=".", dir=place).close()
+    except (OSError, ValueError) as error:
         raise OutputError(path, error) from error
 
 
@@ -115,7 +126,20 @@ def kept(path: str, write: Write, rescue: Write | None = None, name: str | None 
     If interrupted, it is kept there too; the sentence is then the message of the KeyboardInterrupt, which is re-raised.
     ``rescue``, ``name``: another way to write it, and a file name, for that directory: a curve instead of a film.
     """
-    keep = partial(_elsewhere, rescue or write, os.path.basename(name or path))
+
+    def keep(reason: str) -> str:
+        """Write to a temporary directory; return the reason for that, and the place if it worked."""
+        try:
+            place = Path(tempfile.mkdtemp(prefix="mobius-flow-"), os.path.basename(name or path))
+        except OSError:
+            return reason
+        try:
+            (rescue or write)(str(place))
+        except (MobiusFlowError, OSError, MemoryError):
+            shutil.rmtree(place.parent, ignore_errors=True)
+            return reason
+        return f"{reason} (the result is kept as {place})"
+
     try:
         write(path)
     except KeyboardInterrupt as interrupt:
@@ -129,22 +153,8 @@ def kept(path: str, write: Write, rescue: Write | None = None, name: str | None 
     return []
 
 
-def _elsewhere(write: Write, name: str, reason: str) -> str:
-    """Write to a temporary directory; return the reason for that, and the place if it worked."""
-    try:
-        place = Path(tempfile.mkdtemp(prefix="mobius-flow-"), name)
-    except OSError:
-        return reason
-    try:
-        write(str(place))
-    except (MobiusFlowError, OSError, MemoryError):
-        shutil.rmtree(place.parent, ignore_errors=True)
-        return reason
-    return f"{reason} (the result is kept as {place})"
-
-
 @dataclass(frozen=True)
-class Output:
+class OutputKind:
     """One kind of output."""
 
     write: Writer  # the last arguments are whether progress may be shown, and how a scene looks and is played
@@ -153,35 +163,31 @@ class Output:
     is_played: bool = False  # as a motion
 
 
-def _curve_output(form: Format, name: str | None = None) -> Output:
-    return Output(lambda path, result, *_: curves.write(path, result.curve, name), form.text)
+def _curve_output(form: Format, name: str | None = None) -> OutputKind:
+    return OutputKind(lambda path, result, *_: curves.write(path, result.curve, name), form.text)
 
 
-def _scene_output(write: Callable[[str, Sequence[Iterate], bool, Playing], object], is_played: bool) -> Output:
+def _scene_output(write: Callable[[str, Sequence[Iterate], bool, Playing], object], is_played: bool) -> OutputKind:
     def admit(curve: Curve) -> None:
         check_dimension(curve)
         check_closed(curve, "scenes, films and pictures")
 
-    return Output(lambda path, _, iterates, *how: write(path, iterates, *how), admit, True, is_played)
+    return OutputKind(lambda path, _, iterates, *how: write(path, iterates, *how), admit, True, is_played)
 
 
 def _write_movie(path: str, iterates: Sequence[Iterate], shown: bool, playing: Playing) -> None:
-    try:
-        export.write_movie(path, iterates, show_frames if shown else None, playing)
-    except KeyboardInterrupt:
-        if shown:
-            print(file=sys.stderr)  # the line with the progress has not been ended
-        raise
+    with live(shown) as show:
+        export.write_movie(path, iterates, lambda done, total: show(f"frame {done} of {total} is drawn"), playing)
 
 
-OUTPUTS: Mapping[str, Output] = {suffix: _curve_output(FORMATS[suffix]) for suffix in WRITTEN_FORMATS} | {
+OUTPUTS: Mapping[str, OutputKind] = {suffix: _curve_output(FORMATS[suffix]) for suffix in written_formats()} | {
     ".blend": _scene_output(lambda path, iterates, _, playing: export.write_blend(path, iterates, playing), True),
     ".mp4": _scene_output(_write_movie, True),
     ".png": _scene_output(lambda path, iterates, _, playing: export.write_still(path, iterates, playing.look), False),
 }
 
 
-def output_for(path: str, name: str | None = None, look: str | None = None, played: bool = False) -> Output:
+def output_for(path: str, name: str | None = None, look: str | None = None, played: bool = False) -> OutputKind:
     """The kind of output that a path's suffix or ``--format`` asks for.
 
     Raises MobiusFlowError if the suffix is unknown and no format named, or Blender's module is needed and missing;
@@ -196,6 +202,7 @@ def output_for(path: str, name: str | None = None, look: str | None = None, play
     if suffix not in OUTPUTS:
         if name is None and path != curves.STREAM and suffix not in FORMATS:
             more = "; --trajectory writes motions" if suffix == ".npz" else curves.or_format(path)
+            more = f"; mobius-flow view makes {suffix} of one of those" if suffix in VIEWED else more
             raise MobiusFlowError(f"{path}: {wrong_suffix(path, OUTPUTS, 'outputs')}{more}")
         return _curve_output(curves.format_for(path, name), name)
     if OUTPUTS[suffix].is_scene:
@@ -203,7 +210,7 @@ def output_for(path: str, name: str | None = None, look: str | None = None, play
     return OUTPUTS[suffix]
 
 
-def admit(output: Output, path: str, curve: Curve) -> None:
+def admit(output: OutputKind, path: str, curve: Curve) -> None:
     """Raise a MobiusFlowError that names the output if it cannot hold the curve."""
     try:
         output.admit(curve)

@@ -1,71 +1,74 @@
-"""Progress on a terminal or in a notebook, with tqdm where it is installed."""
+"""What is going on: a line that is written over and over on a terminal, or in a notebook, and nowhere else."""
 
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from ..addon.engine.words import time_left
 from ..core import Iterate, RelaxOptions
 from ..core.driver import TimeLeft
+from ..core.driver.run import gradient_bound
+from ..core.driver.words import time_left
+from .terminal import is_dumb, power, width_of
+
+_PAUSE = 0.1  # seconds from one line to the next
 
 
 @contextmanager
-def bar(shown: bool, **options: Any) -> Iterator[Any]:
-    """A tqdm bar that vanishes in the end; None if it is not wanted, or tqdm is not installed."""
+def live(shown: bool = True) -> Iterator[Callable[[str], None]]:
+    """Give a function that shows a text in place of the one before.
+
+    On a terminal it vanishes in the end; a notebook keeps the last one, also as a page.
+    """
+    notebook: Any = None  # the place of an output there
+    interactive = sys.modules.get("IPython") if shown else None
+    if interactive is not None and hasattr(interactive.get_ipython(), "kernel"):
+        from IPython.display import display
+
+        notebook = display({"text/plain": ""}, raw=True, display_id=True)
+    on_terminal = shown and notebook is None and sys.stderr is not None and not is_dumb(sys.stderr)
+    shown_at, last = -_PAUSE, ""
+
+    def write(text: str) -> None:
+        if notebook is not None:
+            notebook.update({"text/plain": text}, raw=True)
+        elif on_terminal:
+            print(f"\r\x1b[K{text[: (width_of(sys.stderr) or 80) - 1]}", end="", file=sys.stderr, flush=True)
+
+    def show(text: str) -> None:
+        nonlocal shown_at, last
+        last = text
+        if time.monotonic() - shown_at >= _PAUSE:
+            shown_at = time.monotonic()
+            write(text)
+
     try:
-        from tqdm.auto import tqdm
-    except ImportError:
-        shown = False
-    if not shown:
-        yield None
-        return
-    with tqdm(leave=False, **options) as made:
-        yield made
-
-
-class Progress:
-    """Moves a bar from the first gradient norm down to the tolerance, on a logarithmic scale."""
-
-    def __init__(self, options: RelaxOptions) -> None:
-        self._left = TimeLeft(options)
-        self._start: float | None = None
-
-    def update(self, bar: Any, iterate: Iterate) -> None:
-        """Show an iterate, if there is a bar."""
-        if bar is None:
-            return
-        self._left.add(iterate)
-        distance, seconds = self._left.distances[-1], self._left.seconds
-        if self._start is None:
-            self._start = max(distance, 1e-9)
-        bar.n = max(bar.n, round(100 * (1 - distance / self._start)))
-        bar.set_postfix_str(
-            f"iteration {iterate.index}, objective {iterate.energy:.6g}, gradient {iterate.gradient_norm:.2g}"
-            f"{f', {time_left(seconds)}' if seconds else ''}"
-        )
+        yield show
+    finally:
+        if last:
+            write(last if notebook is not None else "")
 
 
 @contextmanager
 def progress(options: RelaxOptions | None = None, shown: bool = True) -> Iterator[Callable[[Iterate], None]]:
-    """Give a callback that draws a bar from the iterates of a run, as `minimize` passes them."""
-    drawn = Progress(RelaxOptions() if options is None else options)
-    with bar(shown, total=100, bar_format="{l_bar}{bar}| {elapsed} {postfix}") as made:
-        yield lambda iterate: drawn.update(made, iterate)
+    """Give a callback that shows the iterates of a run, as `minimize` passes them, and how long it may still take."""
+    wanted = RelaxOptions() if options is None else options
+    left = TimeLeft(wanted)
+    with live(shown) as show:
 
+        def draw(iterate: Iterate) -> None:
+            left.add(iterate)
+            moves, bound = iterate.strand_moves, gradient_bound(wanted, iterate.curve.mesh, iterate.energy)
+            words = [
+                f"iteration {iterate.index}",
+                f"E {iterate.energy:#.5g}",
+                f"gradient {power(iterate.gradient_norm)} → {power(bound)}",
+            ]
+            if moves is not None and not moves.done:
+                words[1:] = [f"strands move: {moves.left} of {moves.before} crossings are left"]
+            elif (seconds := left.seconds) is not None:
+                words.append(time_left(seconds))
+            show(" · ".join(words))
 
-@contextmanager
-def leg_progress(shown: bool) -> Iterator[Callable[[int, int], None] | None]:
-    """Give a function that shows how many of all legs are checked, or None where nothing can be shown."""
-    with bar(shown, unit=" legs") as legs:
-
-        def show(done: int, total: int) -> None:
-            legs.total = total or None
-            legs.update(done - legs.n)
-
-        yield None if legs is None else show
-
-
-def show_frames(done: int, total: int) -> None:
-    """Show a film's progress on one line."""
-    print(f"\rrendering frame {done} of {total}", end="\n" if done == total else "", file=sys.stderr, flush=True)
+        yield draw

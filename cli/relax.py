@@ -8,18 +8,23 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
-from ..addon.engine.playing import Playing
-from ..addon.pictures.looks import DEFAULT, LOOKS
-from ..core import Iterate, MobiusFlowError, RelaxOptions, Result, Status, Task, Trajectory, relax, write_curve
+from ..core import Curve, Iterate, MobiusFlowError, RelaxOptions, Result, Status, Task, Trajectory, relax, write_curve
+from ..core.base.errors import counted
+from ..core.descent.task import centred
 from ..core.driver import Relaxation, finish
-from ..core.errors import counted
+from ..core.driver.run import gradient_bound
+from ..core.energies.hierarchy import moebius_energy
+from ..core.io import written_formats
+from ..core.keys.motion import Playing
 from . import curves, signals
 from . import options as relax_options
-from .places import OUTPUTS, Output, Write, admit, check_places, is_file, kept, output_for, writing
+from .options import DEFAULT, LOOKS
+from .parser import further
+from .places import OUTPUTS, OutputKind, Write, admit, check_places, is_file, kept, output_for, writing
 from .progress import progress
+from .terminal import GREEN, RED, YELLOW, command, digits, power, quoted, report
 
 EXIT_STATUS = dict.fromkeys(Status, 0) | {Status.STALLED: 1, Status.INTERRUPTED: 130}
-NAMED = 4  # meshes of a run that are listed individually
 _PLAYED = {
     "--loop": "play the relaxation there and back",
     "--constant-radius": "draw the tube as thick throughout as where there is least room",
@@ -38,9 +43,10 @@ exit status:
        the best curve, the report and the trajectory are written all the same
   2    bad input or bad options, or an output that cannot be written; one line says what and where
   130  interrupted by Ctrl-C, SIGTERM or SIGHUP; the best curve, the report and the trajectory are written
-
-In the report "energy" is the objective at every iterate, "final_energy" the Möbius energy of the result, exact up to
-30,000 vertices; beyond, "final_energy_error" bounds its relative error. "phases" are the meshes of the run: vertices,
+"""
+_REPORT = """\
+"energy" is the objective at every iterate, "final_energy" the Möbius energy of the result, exact up to 30,000
+vertices; beyond, "final_energy_error" bounds its relative error. "phases" are the meshes of the run: vertices,
 iterations, seconds. "sampled_errors" are the errors of the hierarchical solver, estimated from the last sample of
 edges. "pins" are the vertices of the result that were held, counted from 0 as in "options".
 An output that cannot be written in the end is saved in a temporary directory, which the message names.
@@ -53,6 +59,7 @@ def add_relax(parser: argparse.ArgumentParser) -> None:
     add_outputs(parser)
     relax_options.add_to(parser)
     relax_options.add_task(parser)
+    further(parser, "the report", _REPORT)
     parser.set_defaults(run=_run)
 
 
@@ -66,14 +73,15 @@ def add_outputs(parser: argparse.ArgumentParser) -> None:
         ("--trajectory", "T.npz", "write the certified path, for mobius-flow verify; - is standard output"),
     ):
         parser.add_argument(name, type=lambda path: as_device.get(path, path), metavar=metavar, help=text)
-    for name, text in _PLAYED.items():
-        parser.add_argument(name, action="store_true", help=f"{text} (.mp4 and .blend)")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    films = further(parser, "films and pictures")
+    for name, text in _PLAYED.items():
+        films.add_argument(name, action="store_true", help=f"{text} (.mp4 and .blend)")
     text = (
         f"stage and material of a scene, film or picture: {', '.join(name.lower() for name in LOOKS)} (default: "
         f"{DEFAULT.lower()}; films are then drawn plainly, in a tenth of the time)"
     )
-    parser.add_argument("--look", type=relax_options.look, metavar="LOOK", help=text)
+    films.add_argument("--look", type=relax_options.look, metavar="LOOK", help=text)
 
 
 def _run(options: argparse.Namespace) -> int:
@@ -86,7 +94,7 @@ def _run(options: argparse.Namespace) -> int:
         task = relax_options.task(options, file)
     admit(output, options.output, file.curve)
     respected = {"pins": task.pins, "pin_tangents": task.pin_tangents, "avoid": [each.name for each in task.obstacles]}
-    origin = relax_options.provenance(vars(wanted) | respected, str(file.source.path), file.source.sha256)
+    origin = relax_options.provenance(vars(wanted.resolved) | respected, str(file.source.path), file.source.sha256)
     with curves.refusals(file):
         result, iterates = run_to_end(relax(task, wanted), task, wanted, output, options)
     write_results(options, output, result, iterates, origin)
@@ -99,7 +107,7 @@ def places(options: argparse.Namespace) -> dict[str, str | None]:
 
 
 def run_to_end(
-    relaxation: Relaxation, task: Task, wanted: RelaxOptions, output: Output, options: argparse.Namespace
+    relaxation: Relaxation, task: Task, wanted: RelaxOptions, output: OutputKind, options: argparse.Namespace
 ) -> tuple[Result, list[Iterate]]:
     """Run to the end or an interrupt. Signals interrupt steps only: neither what is recorded nor the end is lost."""
     iterates: list[Iterate] = []
@@ -108,7 +116,7 @@ def run_to_end(
     with progress(wanted, _shown(options)) as draw:
 
         def on_iterate(iterate: Iterate) -> None:
-            if recorded:
+            if recorded or not iterates:  # what is said begins with the first
                 iterates.append(iterate)
             if iterate.index == 0 and not options.quiet:
                 options.notes.show()  # the curve is accepted: there will be no refusal
@@ -140,11 +148,33 @@ class _Job(NamedTuple):
 
 
 def write_results(
-    options: argparse.Namespace, output: Output, result: Result, iterates: list[Iterate], origin: Mapping[str, object]
+    options: argparse.Namespace,
+    output: OutputKind,
+    result: Result,
+    iterates: list[Iterate],
+    origin: Mapping[str, object],
 ) -> None:
     """Write every requested output, and report on standard error how the run ended, unless quiet."""
+
+    def save_trajectory(path: str) -> None:
+        trajectory = Trajectory(origin, result.task.obstacles)
+        for iterate in iterates:
+            trajectory.add(iterate)
+        trajectory.save(path)
+
+    def write(path: str) -> None:
+        playing = Playing(options.look, options.loop, options.constant_radius)
+        output.write(path, result, iterates, _shown(options), playing)
+
     # report, trajectory, and curve or scene: if one cannot be written, the others still are
-    jobs = _jobs(options, output, result, iterates, origin)
+    extras = (options.report, partial(_write_report, result, origin)), (options.trajectory, save_trajectory)
+    jobs = [_Job(path, save, slow=not is_file(path)) for path, save in extras if path is not None]
+    if output.is_scene:  # a film takes a minute
+        plain = partial(write_curve, curve=result.curve)
+        jobs.append(_Job(options.output, write, plain, f"{Path(options.output).stem}.obj", slow=True))
+    else:
+        name = f"curve.{options.format or 'txt'}" if options.output == curves.STREAM else None
+        jobs.append(_Job(options.output, write, name=name, slow=not is_file(options.output)))
     failures: list[str] = []
     interrupted = False
     for job in sorted(jobs, key=lambda job: job.slow):
@@ -160,32 +190,7 @@ def write_results(
         raise MobiusFlowError("; ".join(failures))
     signals.allow()
     if not options.quiet:
-        print(_summary(result, falls="to" not in origin), file=sys.stderr)
-
-
-def _jobs(
-    options: argparse.Namespace, output: Output, result: Result, iterates: list[Iterate], origin: Mapping[str, object]
-) -> Iterator[_Job]:
-    def save_trajectory(path: str) -> None:
-        trajectory = Trajectory(origin, result.task.obstacles)
-        for iterate in iterates:
-            trajectory.add(iterate)
-        trajectory.save(path)
-
-    extras = (options.report, partial(_write_report, result, origin)), (options.trajectory, save_trajectory)
-    yield from (_Job(path, save, slow=not is_file(path)) for path, save in extras if path is not None)
-
-    def write(path: str) -> None:
-        playing = Playing(options.look, options.loop, options.constant_radius)
-        output.write(path, result, iterates, _shown(options), playing)
-
-    job = _Job(options.output, write)
-    if output.is_scene:  # a film takes a minute
-        plain = partial(write_curve, curve=result.curve)
-        yield job._replace(rescue=plain, name=f"{Path(options.output).stem}.obj", slow=True)
-    else:
-        name = f"curve.{options.format or 'txt'}" if options.output == curves.STREAM else None
-        yield job._replace(name=name, slow=not is_file(options.output))
+        print(_said(options, result, iterates[0].curve, falls="to" not in origin), file=sys.stderr)
 
 
 def _write_report(result: Result, origin: Mapping[str, object], path: str) -> None:
@@ -194,25 +199,55 @@ def _write_report(result: Result, origin: Mapping[str, object], path: str) -> No
         temporary.write_text(text, encoding="utf-8")
 
 
-def _summary(result: Result, falls: bool) -> str:
-    """How a run ended; energies of a motion that does not fall are those at its ends, which it did not choose."""
-    certified = "certified free of contact" if result.certified else "NOT certified"
-    error = f" ± {result.final_energy_error * result.final_energy:.1g}" if result.final_energy_error else ""
-    energy = f"Möbius energy {result.final_energy:.9g}{error}"
-    iterations = counted(result.iterations, "iteration")
-    if not falls:
-        return f"{result.message}; {iterations}, {result.seconds:.1f} s, {certified}"
-    return (
-        f"{result.message}; objective {result.energies[0]:.6g} → {result.energies[-1]:.9g} in "
-        f"{iterations}, {result.seconds:.1f} s{_phases(result)}, {energy}, {certified}"
-    )
+def _said(options: argparse.Namespace, result: Result, first: Curve, falls: bool) -> str:
+    """How a run ended, what it reached, what was written, and what to do next.
+
+    Energies have the digits that the mesh leaves them; those of a motion that does not fall are no achievement.
+    """
+    failed = EXIT_STATUS[result.status] != 0
+    mark, colour = ("✓", GREEN) if result.outcome.converged else ("✗", RED) if failed else ("–", YELLOW)
+    took = counted(result.iterations, "iteration"), f"{result.seconds:.1f} s", f"{len(result.curve)} vertices"
+    reason, *notes = result.outcome.clauses
+    told = "" if falls and result.outcome.converged else str(reason).partition(": ")[2] or reason
+    written = [path for path in places(options).values() if path not in (None, curves.STREAM, curves.DEVICE)]
+    is_curve = Path(options.output).suffix.lower() in written_formats()
+    following = ["info", options.output] * is_curve
+    if options.trajectory in written:
+        following = ["verify", options.trajectory]
+    certified = "no contact on the whole path" if result.certified else "NO: contact is not ruled out everywhere"
+    rows = [
+        ("reason", told),
+        *(_energies(result, first, options.tolerance) if falls else ()),
+        ("certified", certified),
+        *(("note", note) for note in notes),
+        ("wrote", [quoted(path) for path in written]),
+        ("next", [command(*following)] if following else ""),
+    ]
+    head = f"{mark} {result.status.value.replace('_', ' ')}", " · ".join(took)
+    return report(head, rows, sys.stderr, colour)
 
 
-def _phases(result: Result) -> str:
-    """How the time was spent on meshes, if there were several, but not very many."""
-    if len(result.phases) > NAMED:
-        return f" on {len(result.phases)} meshes"
-    each = [f"{phase.iterations} with {phase.vertices} vertices, {phase.seconds:.1f} s" for phase in result.phases]
-    if result.last.strand_moves and result.phases[0].iterations == 0:  # the given mesh saw nothing else
-        each[0] = f"strand moves, {result.phases[0].seconds:.1f} s"
-    return f" ({'; '.join(each)})" if len(each) > 1 else ""
+def _energies(result: Result, first: Curve, tolerance: float) -> Iterator[tuple[str, str]]:
+    """From what to what the energy went, and the objective where it differs; and how near to rest the curve is."""
+    start, end, about = moebius_energy(centred(first))[0], result.final_energy, ""
+    tiny = 1e-9 * max(abs(start), 1.0)  # below it is rounding
+    if result.mesh_error is None:
+        share = max(1e-5, result.final_energy_error)
+    else:
+        share = min(1.0, result.mesh_error / abs(end))
+        about = f" (mesh error about {100.0 * share:.1g} %)" if share > 1e-6 else " (mesh error below 0.0001 %)"
+        about = about if share < 0.5 else " (the mesh is too coarse to tell the energy)"
+
+    def told(*ends: float) -> str:
+        return " → ".join(digits(value, max(share, 1e-6) * abs(value)) if abs(value) > tiny else "0" for value in ends)
+
+    if result.final_energy_error:
+        about = f" (± {100.0 * result.final_energy_error:.1g} %, from a sample)"
+    yield "energy", told(start, end) + about
+    first_and_last = result.energies[0], result.energies[-1]
+    pairs = zip(first_and_last, (start, end), strict=True)
+    # 0.01: difference of the objective from the energy, relative to it, from which both are told
+    if any(abs(one - other) > 0.01 * abs(other) + tiny for one, other in pairs):
+        yield "objective", f"{told(*first_and_last)}, which is minimised: the energy with its barrier and other terms"
+    bound = gradient_bound(RelaxOptions(tolerance=tolerance), result.curve.mesh, result.energies[-1])
+    yield "gradient", f"{power(result.last.gradient_norm)} (limit {power(bound)})"

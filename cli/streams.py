@@ -7,6 +7,8 @@ import os
 import sys
 from typing import Any, Self
 
+from .terminal import sentence
+
 
 class OutputStreamError(Exception):
     """Standard output cannot be written."""
@@ -42,11 +44,6 @@ def emit(text: str) -> None:
         raise OutputStreamError(f"standard output cannot be written: {reason}") from error
 
 
-def one_line(text: str) -> str:
-    """A sentence in which line ends in names, and what no terminal can show, appear as backslash escapes."""
-    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
-
-
 class _ForgivingFile(io.FileIO):
     def write(self, data: bytes) -> int:  # type: ignore[override]
         try:
@@ -72,7 +69,7 @@ class Notes(logging.Handler):
 
     def emit(self, record: logging.LogRecord) -> None:
         """Keep a line, or print it."""
-        self._lines.append(one_line(f"mobius-flow: {record.getMessage()}"))
+        self._lines.append(f"mobius-flow: {record.getMessage()}")
         if self._shown:
             self.show()
 
@@ -80,5 +77,5 @@ class Notes(logging.Handler):
         """Print what has been collected; from now on, print what is logged at once."""
         self._shown = True
         for line in self._lines:
-            print(line, file=sys.stderr)
+            print(sentence(line, sys.stderr), file=sys.stderr)
         self._lines.clear()

@@ -6,20 +6,19 @@ import os
 import sys
 import tempfile
 from collections.abc import Iterator
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import contextmanager, nullcontext
 from dataclasses import asdict
-from typing import BinaryIO
 
 from ..core import MobiusFlowError
-from ..core.errors import reason_of
-from ..core.verify import verify
+from ..core.base.errors import reason_of
+from ..core.proof import verify
 from .curves import INPUT, STREAM
 from .places import is_file
-from .progress import leg_progress
+from .progress import live
 from .streams import emit
+from .terminal import GREEN, RED, painted, wrapped
 
 MAX_BYTES = 4 << 30  # of a stream, which is copied to a temporary file: archives are read from their ends
-_PIECE = 1 << 20
 _EPILOG = """\
 examples:
   mobius-flow verify path.npz
@@ -43,45 +42,38 @@ def add_verify(parser: argparse.ArgumentParser) -> None:
 
 
 def _run(options: argparse.Namespace) -> int:
-    with _seekable(options.trajectory) as path, leg_progress(sys.stderr.isatty()) as progress:
-        verdict = verify(path, progress)
+    with _seekable(options.trajectory) as path, live() as show:
+        verdict = verify(path, lambda done, total: show(f"{done:,} of {total:,} legs checked"))
     edges = verdict.edges and [edge + 1 for edge in verdict.edges]  # from 1, as in the reason
     obstacle = None if verdict.obstacle is None else verdict.obstacle + 1
     plain = asdict(verdict) | {"edges": edges, "obstacle": obstacle}
-    emit(json.dumps(plain) if options.json else str(verdict))
+    word, _, rest = wrapped(str(verdict), sys.stdout).partition(":")
+    told = painted(word, GREEN if verdict.accepted else RED, sys.stdout)
+    emit(json.dumps(plain) if options.json else f"{told}:{rest}")
     return 0 if verdict.accepted else 1
 
 
 @contextmanager
 def _seekable(path: str) -> Iterator[str]:
     """A file with the same contents that can be read from its end: itself, or a copy of a stream."""
-    with _opened(path) as stream:
+    if path == STREAM and sys.stdin is None:
+        raise MobiusFlowError(f"{INPUT} is closed")
+    try:
+        opened = nullcontext(sys.stdin.buffer) if path == STREAM else open(path, "rb")  # noqa: SIM115
+    except (OSError, ValueError) as error:  # a ValueError for a null character
+        raise MobiusFlowError(f"{path}: cannot be read: {reason_of(error)}") from error
+    with opened as stream:
         if is_file(path):
             yield path
             return
         with tempfile.TemporaryDirectory(prefix="mobius-flow-") as room:
             copy = os.path.join(room, "trajectory.npz")
-            _spool(INPUT if path == STREAM else path, stream, copy)
+            name = INPUT if path == STREAM else path
+            with open(copy, "wb") as target:
+                while piece := stream.read(1 << 20):
+                    if target.tell() == 0 and not piece.startswith(b"PK"):
+                        raise MobiusFlowError(f"{name}: not a trajectory: an .npz file starts with the letters PK")
+                    if target.tell() > MAX_BYTES:
+                        raise MobiusFlowError(f"{name}: longer than {MAX_BYTES >> 30} GB; verify a file")
+                    target.write(piece)
             yield copy
-
-
-def _opened(path: str) -> AbstractContextManager[BinaryIO]:
-    """The file, open, or standard input; a MobiusFlowError says why there is none."""
-    if path == STREAM:
-        if sys.stdin is None:
-            raise MobiusFlowError(f"{INPUT} is closed")
-        return nullcontext(sys.stdin.buffer)
-    try:
-        return open(path, "rb")
-    except (OSError, ValueError) as error:  # a ValueError for a null character
-        raise MobiusFlowError(f"{path}: cannot be read: {reason_of(error)}") from error
-
-
-def _spool(name: str, stream: BinaryIO, target: str) -> None:
-    with open(target, "wb") as copy:
-        while piece := stream.read(_PIECE):
-            if copy.tell() == 0 and not piece.startswith(b"PK"):
-                raise MobiusFlowError(f"{name}: not a trajectory: an .npz file starts with the letters PK")
-            if copy.tell() > MAX_BYTES:
-                raise MobiusFlowError(f"{name}: longer than {MAX_BYTES >> 30} GB; verify a file")
-            copy.write(piece)

@@ -5,11 +5,12 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from ..core import MobiusFlowError
-from ..core.errors import wrong_suffix
-from ..core.solids import animation, solid
-from ..core.view import FRAMES, Motion, motion, page, still
+from ..core.base.errors import wrong_suffix
+from ..core.keys.solids import animation, solid
+from ..core.keys.view import FRAMES, Motion, motion, page, still
 from . import curves
 from .places import check_places, writing
+from .terminal import say_written
 
 _EPILOG = """\
 examples:
@@ -68,4 +69,5 @@ def _run(options: argparse.Namespace) -> int:
     written = WRITERS[suffix](shown, options.width, Path(options.input).stem)
     with writing(options.output) as temporary:
         temporary.write_bytes(written)
+    say_written(options.output)
     return 0

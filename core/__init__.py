@@ -3,16 +3,17 @@
 `relax` yields the iterates of a relaxation; `minimize` runs it to its end.
 """
 
+from .base.errors import CurveError, CurveFileError, MobiusFlowError, OptionError
 from .curve import Curve, Mesh
-from .curve.io import knot_list, read_curve, write_curve
+from .curve.obstacle import Obstacle
 from .descent import METHODS
-from .driver import Hand, Iterate, Outcome, RelaxOptions, Result, Status, Trajectory, WithOutcome, minimize, relax
+from .descent.task import Task
+from .driver import Hand, Outcome, RelaxOptions, Result, Status, WithOutcome, minimize, relax
 from .energies import MoebiusEnergy, Objective
-from .errors import CurveError, CurveFileError, MobiusFlowError, OptionError
-from .morphing import NoMotionError, morph
-from .obstacle import Obstacle
-from .obstacle_files import read_obstacle
-from .task import Task
+from .io import knot_list, read_curve, write_curve
+from .io.obstacles import read_obstacle
+from .io.trajectory import Iterate, Trajectory
+from .morph import NoMotionError, morph
 
 __all__ = [
     "METHODS",

@@ -10,7 +10,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from sphinx.application import Sphinx
-from sphinx.ext.autodoc.mock import _MockObject
+from sphinx.ext.autodoc.mock import MockFinder, _MockObject
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "docs" / "_extensions"))
@@ -23,9 +23,7 @@ release = version = tomllib.loads((ROOT / "blender_manifest.toml").read_text(enc
 extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
-    "sphinx.ext.graphviz",
     "sphinx.ext.napoleon",
-    "sphinx_argparse_cli",
     "sphinx_gallery.gen_gallery",
     "docstrings",
     "mathml",
@@ -48,6 +46,7 @@ _BLENDER = ["bl_operators", "bl_ui", "blf", "bpy", "bpy_extras", "gpu", "gpu_ext
 # annotations such as bpy.types.Object | None are computed
 _MockObject.__or__ = _MockObject.__ror__ = lambda one, other: one
 autodoc_mock_imports = [] if find_spec("bpy") else _BLENDER
+sys.meta_path.insert(0, MockFinder(autodoc_mock_imports))  # the gallery looks up what its scripts import, too
 napoleon_google_docstring = False
 napoleon_attr_annotations = False
 napoleon_use_rtype = False
@@ -55,7 +54,7 @@ napoleon_use_rtype = False
 sphinx_gallery_conf = {
     "examples_dirs": ["../examples"],
     "gallery_dirs": ["gallery"],
-    "filename_pattern": r"\.py$",
+    "filename_pattern": r"(?<!blender)\.py$" if autodoc_mock_imports else r"\.py$",  # what runs; the others are shown
     "ignore_pattern": r"drawing\.py$",
     "within_subsection_order": "FileNameSortKey",
     "remove_config_comments": True,
@@ -75,7 +74,6 @@ if (_SITE := ROOT / "build" / "site").is_dir():  # with the pages of mobius-flow
     tags.add("atlas")  # type: ignore[name-defined]  # noqa: F821  # Sphinx's
 html_copy_source = html_show_sourcelink = False
 html_math_renderer = "mathml"
-graphviz_output_format = "svg"
 
 
 def link_to_gallery(_app: Sphinx, _page: str, source: list[str]) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 from mobius_flow.core import Trajectory, relax
 from mobius_flow.core.collision import minimal_gap
 from mobius_flow.core.knots import knot
-from mobius_flow.core.verify import verify
+from mobius_flow.core.proof import verify
 
 curve = knot("goeritz")
 trajectory, path = Trajectory(), []

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import matplotlib.pyplot as plt
 from mobius_flow.core import RelaxOptions, minimize
 from mobius_flow.core.knots import knot
-from mobius_flow.core.metrics import SparseInnerProduct, WithoutRule
-from mobius_flow.core.metrics.local import mass, stiffness
+from mobius_flow.core.solve.metrics import SparseInnerProduct, WithoutRule
+from mobius_flow.core.solve.metrics.local import mass, stiffness
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ A tube as wide as a relaxed curve has room for; a wider one would run into itsel
 import matplotlib.pyplot as plt
 from mobius_flow.core import CurveError, minimize
 from mobius_flow.core.collision.gap import thickness
+from mobius_flow.core.keys.solids import solid, wire
 from mobius_flow.core.knots import knot
-from mobius_flow.core.solids import solid, wire
 
 curve = minimize(knot("5_1", 150)).curve
 widest = 2 * thickness(curve)

@@ -14,7 +14,7 @@ import numpy as np
 from drawing import draw
 from mobius_flow.core import NoMotionError, Trajectory, morph
 from mobius_flow.core.knots import knot
-from mobius_flow.core.verify import verify
+from mobius_flow.core.proof import verify
 
 here, there = knot("4_1"), knot("m4_1")
 trajectory, path = Trajectory(), []

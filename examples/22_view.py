@@ -13,8 +13,8 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 from drawing import draw
 from mobius_flow.core import Trajectory, minimize
+from mobius_flow.core.keys.view import motion, page
 from mobius_flow.core.knots import knot
-from mobius_flow.core.view import motion, page
 
 trajectory = Trajectory()
 minimize(knot("thistlethwaite"), callback=trajectory.add)

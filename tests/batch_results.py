@@ -3,11 +3,12 @@
 from pathlib import Path
 from types import MappingProxyType
 
-from mobius_flow.cli.batch.folder import new_folder, write_report
-from mobius_flow.cli.batch.job import CURVE, TRAJECTORY, Job, folder_name
-from mobius_flow.cli.batch.table import Row
+import numpy as np
 from mobius_flow.core import Curve, write_curve
 from mobius_flow.core.curve.fourier import FourierCurve
+from mobius_flow.lab.batch.folder import new_folder, write_report
+from mobius_flow.lab.batch.job import CURVE, TRAJECTORY, Job, folder_name
+from mobius_flow.lab.batch.table import Row
 
 _ENDED = MappingProxyType({"status": "converged", "message": "", "options": "{}", "certified": True, "verified": True})
 
@@ -23,6 +24,6 @@ def write_run(
     row = Row(**{"name": name, "start": start, "seed": seed, **_ENDED, **columns})
     with new_folder(folder) as room:
         write_curve(room / CURVE, curve)
-        (room / TRAJECTORY).write_bytes(b"")
+        np.savez(room / TRAJECTORY, stage_000=curve.vertices[None], component_sizes_000=curve.mesh.component_sizes)
         write_report(room, job, row, {} if smooth is None else {"smooth": smooth.as_lists})
     return folder

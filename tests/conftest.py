@@ -9,7 +9,7 @@ import pytest
 import scipy.linalg  # noqa: F401 (a pool can be bounded once it is there)
 import threadpoolctl
 from hypothesis import HealthCheck, settings
-from mobius_flow.core import verify as verification
+from mobius_flow.core import proof as verification
 from second_opinion import agreeing
 
 verification.verify = agreeing(verification.verify)  # before the tests, and the command line, take it from there

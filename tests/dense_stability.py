@@ -5,11 +5,11 @@ from functools import cache
 import numpy as np
 from descent_contracts import point_on
 from mobius_flow.core import Curve
-from mobius_flow.core.constraints import ConstraintDerivative
+from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.curve.pins import holds
 from mobius_flow.core.descent import Point
 from mobius_flow.core.knots import torus_knot
-from mobius_flow.core.types import FloatArray
+from mobius_flow.core.solve.constraints import ConstraintDerivative
 from scipy.linalg import eigh, qr
 from shapes import half_circle, hopf_link, regular_polygon, torus_trefoil
 

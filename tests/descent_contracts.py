@@ -5,11 +5,11 @@ from itertools import pairwise
 
 import numpy as np
 from mobius_flow.core import Curve
-from mobius_flow.core.descent import Point, State, Step
+from mobius_flow.core.base.types import FloatArray
+from mobius_flow.core.descent import Point, SearchState, Step
 from mobius_flow.core.descent.problem import Geometry
 from mobius_flow.core.driver.prepare import start_problem
-from mobius_flow.core.types import FloatArray
-from mobius_flow.core.verify.filter import doubtful_pairs
+from mobius_flow.core.proof.filter import doubtful_pairs
 from tasks import wanted
 
 ROUNDING = 1e-13  # of the energy
@@ -25,7 +25,7 @@ def with_geometry(point: Point, geometry: Geometry) -> Point:
     return point.within(replace(point.problem, geometry=geometry))
 
 
-def taken(result: object) -> tuple[Step, State]:
+def taken(result: object) -> tuple[Step, SearchState]:
     """The step that a rule has found."""
     assert isinstance(result, tuple)
     step, state = result
@@ -41,7 +41,7 @@ def assert_armijo(start: Point, step: Step, direction: FloatArray, decrease: flo
 
 
 def assert_weak_wolfe(
-    start: Point, step: Step, direction: FloatArray, decrease: float = 1e-4, curvature: float = 0.9
+    start: Point, step: Step, direction: FloatArray, decrease: float = 0.25, curvature: float = 0.9
 ) -> None:
     """E(Q) ≤ E(P) + c₁ τ DE(P)·d and DE(Q)·d ≥ c₂ DE(P)·d, d moved to Q."""
     assert_armijo(start, step, direction, decrease)

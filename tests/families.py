@@ -9,9 +9,9 @@ import pytest
 EVERY = 12
 
 
-def family(names: Iterable[str], every: int = EVERY) -> list[Any]:
-    """Every twelfth name, and the others as parameters marked slow."""
-    return [pytest.param(name, marks=pytest.mark.slow if k % every else ()) for k, name in enumerate(names)]
+def family(members: Iterable[Any], every: int = EVERY) -> list[Any]:
+    """Every twelfth member, and the others as parameters marked slow."""
+    return [pytest.param(each, marks=pytest.mark.slow if k % every else ()) for k, each in enumerate(members)]
 
 
 def crossed(*lists: Iterable[Any]) -> list[Any]:

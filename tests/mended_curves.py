@@ -2,23 +2,21 @@
 
 import bpy
 from blender_scenes import add_curve, add_trefoil, relax
-from mobius_flow.addon.live.checks import RELAXABLE
-from mobius_flow.addon.live.requirements import Remedy
+from mobius_flow.addon.live.requirements import RELAXABLE, Remedy
 from shapes import torus_trefoil
 
 SHAPE = torus_trefoil(12).vertices
 
 
-def call(remedy: Remedy) -> object:
-    """The operator that is a remedy."""
-    return getattr(bpy.ops.curve, remedy.value.removeprefix("curve."))
+def call(remedy: Remedy) -> set[str]:
+    return set(bpy.ops.curve.mobius_flow_mend(remedy=remedy.name))
 
 
 def mend(remedy: Remedy) -> None:
     """See that it is this remedy that is offered next, and take it."""
     bpy.context.view_layer.update()
     assert RELAXABLE(bpy.context).remedy is remedy
-    assert call(remedy)() == {"FINISHED"}
+    assert call(remedy) == {"FINISHED"}
     bpy.context.view_layer.update()
 
 

@@ -1,12 +1,10 @@
 """Motions of quadrilaterals, tame and nasty, and the exact time of their first contact."""
 
 from collections.abc import Callable
-from fractions import Fraction
 
 import numpy as np
 import numpy.typing as npt
-from mobius_flow.core.verify.polynomials import Root
-from mobius_flow.core.verify.segments import meetings
+from exact_times import Root, meetings
 
 Array = npt.NDArray[np.float64]
 Motion = tuple[Array, Array]
@@ -99,11 +97,4 @@ def first_contact(motion: Motion) -> Root | None:
 
 def pair_contacts(motion: Motion) -> list[Root]:
     """Times at which two edges meet, the first among them; rows of the motion are x₀, x₁, y₀, y₁."""
-    start, end = ([[Fraction(x) for x in p] for p in points.tolist()] for points in motion)
-    return [narrowed(root) for root in meetings(start, end)]
-
-
-def narrowed(root: Root) -> Root:
-    while root.high - root.low > Fraction(1, 2**80):
-        root = root.halved()
-    return root
+    return meetings(*(points.tolist() for points in motion))

@@ -10,10 +10,9 @@ from itertools import combinations
 
 import numpy as np
 import numpy.typing as npt
+from exact_times import meetings
 from mobius_flow.core import Mesh, Obstacle
 from mobius_flow.core.collision import Limit, free_motion
-from mobius_flow.core.verify.polynomials import Root
-from mobius_flow.core.verify.segments import meetings, pierced_at
 
 Array = npt.NDArray[np.float64]
 Motion = tuple[Array, Array]
@@ -177,7 +176,7 @@ def first_contact(motion: Motion) -> tuple[Fraction, Fraction] | None:
     times = [pierced_at(start[k], end[k], triangle) for k in (0, 1)] + [shrunk_at(start[:2], end[:2])]
     found = [(time, time) for time in times if time is not None]
     for a, b in combinations(triangle, 2):
-        found += map(interval, meetings([*start[:2], a, b], [*end[:2], a, b]))
+        found += [(root.low, root.high) for root in meetings([*start[:2], a, b], [*end[:2], a, b])]
     return min(found, default=None)
 
 
@@ -197,13 +196,43 @@ def almost_shrinks(motion: Motion) -> bool:
     return bool(np.linalg.norm(before + time * change) <= 8 * np.finfo(float).eps * np.abs(motion).max())
 
 
-def interval(root: Root) -> tuple[Fraction, Fraction]:
-    """One around a root in [0, 1] whose length is nothing beside it."""
-    if root.sign_of((0, 1)) == 0:
-        return Fraction(0), Fraction(0)
-    while root.high - root.low > root.high / 2**70:
-        root = root.halved()
-    return root.low, root.high
+def pierced_at(p: Sequence[Fraction], q: Sequence[Fraction], triangle: Sequence[Sequence[Fraction]]) -> Fraction | None:
+    """The parameter at which the segment from p to q meets a triangle; None if it does not.
+
+    By Cramer's rule for p + s (q − p) = y₀ + r f + t g. If they are in one plane it is 0, or None if p is not in the
+    triangle: whether the segment meets its edges must be decided elsewhere.
+    """
+    y0, y1, y2 = triangle
+    f, g, d, D = _difference(y1, y0), _difference(y2, y0), _difference(p, q), _difference(p, y0)
+    volume = _det(d, f, g)
+    if volume == 0:
+        return Fraction(0) if _in_plane_and_inside(D, f, g) else None
+    s, r, t = (_det(*columns) / volume for columns in ((D, f, g), (d, D, g), (d, f, D)))
+    inside = 0 <= s <= 1 and r >= 0 and t >= 0 and r + t <= 1
+    return s if inside else None
+
+
+def _in_plane_and_inside(D: Sequence[Fraction], f: Sequence[Fraction], g: Sequence[Fraction]) -> bool:
+    """Whether D = r f + t g with r, t ≥ 0 and r + t ≤ 1, for a triangle with an area; by the normal equations."""
+    ff, fg, gg, Df, Dg = _inner(f, f), _inner(f, g), _inner(g, g), _inner(D, f), _inner(D, g)
+    whole = ff * gg - fg * fg
+    if whole == 0 or _det(D, f, g) != 0:
+        return False
+    r, t = (Df * gg - Dg * fg) / whole, (Dg * ff - Df * fg) / whole
+    return r >= 0 and t >= 0 and r + t <= 1
+
+
+def _difference(u: Sequence[Fraction], v: Sequence[Fraction]) -> Sequence[Fraction]:
+    return [a - b for a, b in zip(u, v, strict=True)]
+
+
+def _inner(u: Sequence[Fraction], v: Sequence[Fraction]) -> Fraction:
+    return sum((a * b for a, b in zip(u, v, strict=True)), Fraction(0))
+
+
+def _det(u: Sequence[Fraction], v: Sequence[Fraction], w: Sequence[Fraction]) -> Fraction:
+    products = (u[i] * (v[j] * w[k] - v[k] * w[j]) for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)))
+    return sum(products, Fraction(0))
 
 
 def touching(corners: Array) -> bool:

@@ -2,7 +2,7 @@
 
 import math
 
-from mobius_flow.core.arguments import Option
+from mobius_flow.core.base.arguments import Option
 
 
 def unlike_default(option: Option) -> object:

@@ -3,10 +3,10 @@
 from itertools import pairwise
 
 import numpy as np
-from mobius_flow.addon.engine.motion import Motion
-from mobius_flow.addon.engine.placement import Link, Placement
 from mobius_flow.core import Curve, Iterate
 from mobius_flow.core.collision import free_motion
+from mobius_flow.core.keys.motion import Recording
+from mobius_flow.core.keys.placement import Link, Placement
 from shapes import regular_polygon
 
 
@@ -31,7 +31,7 @@ def around(angle):
 
 
 def followed(iterates, link=None):
-    motion = Motion(link or at_rest(1))
+    motion = Recording(link or at_rest(1))
     for each in iterates:
         motion.add(each)
     return motion

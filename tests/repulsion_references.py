@@ -5,8 +5,8 @@ from itertools import pairwise
 import mpmath as mp
 import numpy as np
 from mobius_flow.core import Curve
+from mobius_flow.core.curve.obstacle import Obstacle
 from mobius_flow.core.energies.repulsion import Repulsion
-from mobius_flow.core.obstacle import Obstacle
 from scipy.integrate import dblquad, quad
 
 Vector = list[mp.mpf]

@@ -1,16 +1,13 @@
-"""Whatever a test lets ``verify`` look at is shown to the stand-alone checker too, and both must agree."""
+"""Whatever a test lets ``verify`` look at is shown to the checker alone too, without the filter: both must agree."""
 
 import functools
-import runpy
 from collections.abc import Callable
 from pathlib import Path
 
-from mobius_flow.core.verify import Verdict
+from mobius_flow.core.proof import Verdict
+from mobius_flow.core.proof.checker import check
 
-CHECKER = Path(__file__).parents[1] / "tools" / "check_trajectory.py"
-check: Callable[[object], tuple[bool, str]] = runpy.run_path(str(CHECKER))["check"]
-# The one reads more than the other, or decides more pairs before it gives up.
-_BOUNDS = ("more than this program takes", "in Fortran order and large", "too many edges are so near")
+_BOUND = "too many edges are so near"  # of which the one decides more than the other before it gives up
 
 
 def agreeing(verify: Callable[..., Verdict]) -> Callable[..., Verdict]:
@@ -19,9 +16,10 @@ def agreeing(verify: Callable[..., Verdict]) -> Callable[..., Verdict]:
     @functools.wraps(verify)
     def both(path: Path | str, callback: Callable[[int, int], None] | None = None) -> Verdict:
         verdict = verify(path, callback)
-        if not any(bound in verdict.reason for bound in _BOUNDS):
-            accepted, sentence = check(path)
-            assert accepted == verdict.accepted, f"{verdict}; the stand-alone checker: {sentence}"
+        if _BOUND not in verdict.reason:
+            alone = check(path)
+            same = [(each.accepted, each.stage, each.frame, each.legs) for each in (verdict, alone)]
+            assert same[0] == same[1], f"{verdict}; without the filter: {alone}"
         return verdict
 
     return both

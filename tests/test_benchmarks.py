@@ -13,19 +13,16 @@ ARGUMENTS = {
     "batch": ["many", "2"],
     "collision": ["60"],
     "drags": ["10"],
-    "hierarchy": ["60"],
     "hops": ["T34", "--hops", "1"],
     "knots": ["knots", "--only", "3_1,L2a1,unknot-rope", "--tolerance", "1e-2"],
-    "metric": ["100"],
     "morphs": ["--only", "ochiai"],
     "obstacles": ["--vertices", "60"],
     "passes": ["goeritz"],
     "repulsion": ["60", "--latitudes", "12"],
     "resolution": ["3_1"],
+    "seeded_runs": ["different", "--save", "runs.json"],
     "soak": ["--flows", "2"],
     "speed": ["--sizes", "60,80", "--solver", "hierarchical"],
-    "threads": ["3_1", "--max-iterations", "2"],
-    "tries": ["T35", "--seeds", "1"],
 }
 
 PHASES = ["lists", "energy", "derivative", "metric", "gradient", "retract", "proof", "iteration"]
@@ -39,7 +36,7 @@ def run(name, *arguments):
     return finished([sys.executable, str(BENCHMARKS / f"{name}.py"), *arguments])
 
 
-QUICK = {"collision", "metric", "obstacles"}
+QUICK = {"collision", "obstacles"}
 NAMES = [pytest.param(each, marks=() if each in QUICK else pytest.mark.slow) for each in ARGUMENTS]
 
 
@@ -48,7 +45,7 @@ def test_it_runs(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     done = run(name, *ARGUMENTS[name])
     assert done.returncode == 0, done.stdout + done.stderr
-    few = {"batch": 1, "soak": 1, "resolution": 3, "hops": 3, "knots": 6, "tries": 3}
+    few = {"batch": 1, "seeded_runs": 0, "soak": 1, "resolution": 3, "hops": 3, "knots": 6}
     least = few.get(name, 5)  # a title, and a line for each of four curves
     assert len(done.stdout.splitlines()) >= least
 

@@ -11,6 +11,8 @@ from pathlib import Path
 
 import mobius_flow.core
 import pytest
+from mobius_flow.core.proof import verify
+from numpy.typing import ArrayLike
 from processes import finished
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -24,7 +26,7 @@ def test_generated_parts_are_up_to_date():
 
 def test_every_generated_part_stands_in_one_place():
     found = [name for path in DOCUMENTS for name in re.findall(r"<!-- generated: (.*?) -->", path.read_text("utf-8"))]
-    assert sorted(found) == ["energies", "formats", "methods", "metrics", "options", "rooms"]
+    assert sorted(found) == ["commands", "energies", "formats", "methods", "metrics", "options", "rooms"]
 
 
 def test_every_section_is_about_a_method():
@@ -32,7 +34,7 @@ def test_every_section_is_about_a_method():
     linked = set(re.findall(r"\[`[\w-]+`\]\(#([\w-]+)\)", page))
     headings = re.findall(r"^## (.+: `.+)$", page, re.MULTILINE)
     assert linked == {re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-") for heading in headings}
-    assert len(linked) == 8
+    assert len(linked) == 6
 
 
 def test_examples_in_docstrings():
@@ -53,13 +55,22 @@ def test_the_reference_has_every_public_name():
     assert set(mobius_flow.core.__all__) <= listed
 
 
+def test_signatures_name_what_is_like_an_array():
+    typing = pytest.importorskip("sphinx.util.typing")
+    shorten = runpy.run_path(str(ROOT / "docs/_extensions/docstrings.py"))["shorten"]
+    annotation = typing.stringify_annotation(ArrayLike, "smart")
+    newer = "Buffer | _SupportsArray[Any] | _NestedSequence[_SupportsArray[Any]] | complex | _NestedSequence[complex]"
+    for each in (annotation, newer):
+        assert shorten(f"(target: {each}, k: int)", "None") == ("(target: ~numpy.typing.ArrayLike, k: int)", "None")
+
+
 def test_the_readme_is_one_page():
-    assert len((ROOT / "README.md").read_text(encoding="utf-8").split()) <= 700
+    assert len((ROOT / "README.md").read_text(encoding="utf-8").split()) <= 650
 
 
 def test_a_version_has_few_words_in_the_changelog():
     _, *versions = re.split(r"^## ", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), flags=re.MULTILINE)
-    assert all(len(text.split()) <= 400 for text in versions)
+    assert all(len(text.split()) <= 460 for text in versions)
 
 
 @pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
@@ -69,13 +80,30 @@ def test_links_lead_somewhere(document):
             assert (document.parent / target).exists(), target
 
 
-@pytest.mark.parametrize("document", ["README.md", "docs/library.md", "docs/surroundings.md"])
+@pytest.mark.parametrize("document", ["README.md", "docs/library.md", "docs/certificate.md"])
 def test_the_examples_run(document, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    text = (ROOT / document).read_text(encoding="utf-8")
-    example = re.search(r"```python\n(from .*?)```", text, re.DOTALL)
-    assert example is not None
-    exec(compile(example.group(1), document, "exec"), {"__name__": document})
+    examples = re.findall(r"```python\n(.*?)```", (ROOT / document).read_text(encoding="utf-8"), re.DOTALL)
+    code = "".join(each for each in examples if "bpy" not in each)
+    assert code
+    exec(compile(code, document, "exec"), {"__name__": document})
+    assert all(verify(path).accepted for path in tmp_path.glob("*.npz"))
+
+
+@pytest.mark.slow
+def test_the_commands_of_the_tutorial_run(tmp_path):
+    for needed in ("plotly", "tqdm", "pyarrow"):
+        pytest.importorskip(needed)
+    text = (ROOT / "docs/tutorial-command-line.md").read_text(encoding="utf-8")
+    commands = re.findall(r"^    ((?:mobius-flow|echo) .*)$", text, re.MULTILINE)
+    program = f'set -e; mobius-flow() {{ "{sys.executable}" -m mobius_flow "$@"; }}\n'
+    refused = "mobius-flow same a.txt b.txt"  # they are mirror images
+    lines = "".join(f"{line} || test $? = 1\n" if line == refused else f"{line}\n" for line in commands)
+    assert len(commands) > 20
+    assert refused in commands
+    done = finished(["bash", "-c", program + lines], cwd=tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert verify(tmp_path / "perko.npz").accepted
 
 
 def test_the_readme_example_for_blender_runs():
@@ -128,15 +156,10 @@ def test_the_readme_names_the_versions_of_blender():
     assert f"Blender {least.removesuffix('.0')} or newer" in (ROOT / "README.md").read_text(encoding="utf-8")
 
 
-def test_the_readme_has_both_commands():
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    for marker in ("main command", "test command"):
-        assert re.search(rf"<!-- {marker} -->\n\n    \S", readme)
-
-
 @pytest.mark.parametrize("made", [True, False])
-def test_the_site_takes_in_the_pages_of_an_atlas(made, tmp_path):
+def test_the_site_takes_in_the_pages_of_an_atlas(made, tmp_path, monkeypatch):
     pytest.importorskip("sphinx")
+    monkeypatch.setattr(sys, "meta_path", [*sys.meta_path])
     for name in ("docs/conf.py", "blender_manifest.toml"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         shutil.copy(ROOT / name, tmp_path / name)

@@ -18,8 +18,11 @@ NEEDED = {
 }
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "script",
+    [pytest.param(path, marks=() if path is SCRIPTS[0] else pytest.mark.slow) for path in SCRIPTS],
+    ids=lambda path: path.stem,
+)
 def test_an_example(script):
     needed = NEEDED.get(script.stem, "matplotlib")
     if importlib.util.find_spec(needed) is None:

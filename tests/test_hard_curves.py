@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 from braid_words import burau_alexander
 from curve_checks import strand_distance
-from hard_curves import bent_trefoil, hard_unknot, rope, spiral, unknot_word
+from hard_curves import bent_trefoil, hard_unknot, lattice_closure, rope, spiral, unknot_word
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from knot_type import UNKNOT, knot_invariants
 from mobius_flow.core.collision import check_embedded
-from mobius_flow.core.diagrams import quick_invariants
 from mobius_flow.core.knots import KNOTS, braid_closure, knot, scramble
-from mobius_flow.core.knots.braids import lattice_closure
+from mobius_flow.core.knots.diagrams import quick_invariants
 
 WORDS = {name: KNOTS[name] for name in ("0_1", "3_1", "4_1", "8_19", "10_132", "L2a1", "L5a1", "L6a4")}
 WORDS |= {f"unknot {c}": unknot_word(c, seed=c) for c in (20, 141)}

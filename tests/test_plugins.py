@@ -1,7 +1,7 @@
 """What CONTRIBUTING promises: one file, and a line in a table, and the new thing is everywhere.
 
-A copy of the project is given an energy, a metric, a direction, a search, a file format, an option and a subcommand,
-from `plugins/`, and is looked at from outside: command line, Blender, documents, tests.
+A copy of the project is given an energy, a metric, a direction, a search, a move, a file format, an option and a
+subcommand, from `plugins/`, and is looked at from outside: command line, Blender, documents, tests.
 """
 
 import inspect
@@ -11,9 +11,11 @@ import re
 import shutil
 import subprocess
 import sys
+from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
 import pytest
 from mobius_flow.core import RelaxOptions, read_curve, write_curve
 from processes import finished, running
@@ -58,24 +60,24 @@ PLUGINS = {
         "core/energies/__init__.py",
         (
             Line("from .energy import ", "from .height import Height"),
-            Line("        Bending(),", "        Height(),"),
+            Line("            Bending(),", "            Height(),"),
         ),
     ),
     "metric": Plugin(
-        "core/metrics",
+        "core/solve/metrics",
         "lumped.py",
-        "core/metrics/__init__.py",
+        "core/solve/metrics/__init__.py",
         (
             Line("from .local import ", "from .lumped import LumpedMetric"),
             Line("        MoebiusMetric(),", "        LumpedMetric(),"),
         ),
     ),
     "direction": Plugin(
-        "core/descent/directions",
+        "core/descent",
         "heavy_ball.py",
         METHODS,
         (
-            Line("from .directions import ", "from .directions.heavy_ball import HeavyBall"),
+            Line("from .geometries import ", "from .heavy_ball import HeavyBall"),
             Line(
                 '    yield Method("lbfgs"',
                 '    yield Method("heavy-ball", "heavy ball, metric J_C", LineSearch(HeavyBall(), armijo))',
@@ -83,21 +85,30 @@ PLUGINS = {
         ),
     ),
     "search": Plugin(
-        "core/descent/searches",
+        "core/descent",
         "halving.py",
         METHODS,
         (
-            Line("from .searches import ", "from .searches.halving import Halving"),
+            Line("from .geometries import ", "from .halving import Halving"),
             Line(
                 '    yield Method("lbfgs"',
                 '    yield Method("halving", "steepest descent by halves", LineSearch(steepest, Halving()))',
             ),
         ),
     ),
+    "move": Plugin(
+        "core/driver/moves",
+        "turning.py",
+        "core/driver/moves/__init__.py",
+        (
+            Line("from .starts import ", "from .turning import Turning"),
+            Line("    Untangling,", "    Turning,"),
+        ),
+    ),
     "format": Plugin(
-        "core/curve/io",
+        "core/io",
         "numbered.py",
-        "core/curve/io/formats.py",
+        "core/io/formats.py",
         (
             Line("from .source import ", "from . import numbered"),
             Line(
@@ -219,7 +230,7 @@ def test_the_lists_of_the_command_line(command):
     assert {"heavy-ball", "halving", "flow-lumped", "implicit-lumped"} <= set(methods)
     assert re.search(r"length +print it", command("--help"))
     assert "inverse-cube" in command("energy", "--help")
-    shown = " ".join(command("relax", "--help").split())
+    shown = " ".join(command("relax", "--help-all").split())
     for text in (
         "inverse-cube",
         "height",
@@ -269,6 +280,22 @@ def test_relaxing_with_it(words, command, trefoil, tmp_path):
     command("verify", "t.npz")
 
 
+def test_a_run_with_the_move(command, trefoil, tmp_path):
+    """Turns are proved like steps, in trajectories too, and change no energy."""
+    short = ["--vertices", "40", "--mesh", "fixed", "--seed", "35", "--max-iterations", "6", "--quiet"]
+    command("relax", trefoil, "out.txt", *short, "--report", "r.json", "--trajectory", "t.npz")
+    command("verify", "t.npz")
+    report = json.loads((tmp_path / "r.json").read_text())
+    assert report["certified"]
+    start, first, second, turned, *_ = report["energy"]
+    assert turned == pytest.approx(second, rel=1e-9)
+    assert start > first > second > report["energy"][-1]
+    with np.load(tmp_path / "t.npz") as frames:
+        ends = np.concatenate([frames[name] for name in frames if name.startswith("stage_")])
+    moves = [np.abs(after - before).max() for before, after in pairwise(ends)]
+    assert sorted(moves)[-2] > 0.2
+
+
 def test_files_in_the_format(command, trefoil, tmp_path):
     command("relax", trefoil, "a.num", "--max-iterations", "0", "--vertices", "40", "--quiet")
     command("relax", "a.num", "b.txt", "--max-iterations", "0", "--vertices", "40", "--quiet")
@@ -284,12 +311,13 @@ import json
 import bpy, mobius_flow
 mobius_flow.register()
 from mobius_flow.addon import properties
-owners = bpy.context.scene.mobius_flow.bl_rna.properties, bpy.ops.curve.mobius_flow_relax.get_rna_type().properties
-for owner in owners:
-    for name in ("energy", "metric", "method"):
-        print(name, *(item.identifier for item in owner[name].enum_items))
-    print(owner["patience"].name, owner["patience"].description)
+owner, scene = bpy.ops.curve.mobius_flow_relax.get_rna_type().properties, bpy.context.scene.mobius_flow
+for name in ("energy", "metric", "method"):
+    print(name, *(item.identifier for item in owner[name].enum_items))
+print(owner["patience"].name, owner["patience"].description)
 print(*(option.name for option in properties.shown()))
+scene.method, scene.patience = "heavy-ball", 2.5
+print(scene.options)
 """
 
 
@@ -298,12 +326,13 @@ def test_blender(copy):
     done = finished([sys.executable, "-c", IN_BLENDER], env=environment(copy))
     assert done.returncode == 0, done.stderr
     lines = [line.split() for line in done.stdout.splitlines() if line]
-    for energy, metric, method, patience in (lines[:4], lines[4:8]):
-        assert "inverse-cube" in energy
-        assert "lumped" in metric
-        assert {"heavy-ball", "halving", "flow-lumped", "implicit-lumped"} <= set(method)
-        assert " ".join(patience) == "Patience How long to wait; 0: always"
-    assert "patience" in lines[8]
+    energy, metric, method, patience, shown, options = lines
+    assert "inverse-cube" in energy
+    assert "lumped" in metric
+    assert {"heavy-ball", "halving", "flow-lumped", "implicit-lumped"} <= set(method)
+    assert " ".join(patience) == "Patience How long to wait; 0: always"
+    assert "patience" in shown
+    assert options == ["method=heavy-ball", "patience=2.5"]
 
 
 def test_the_documents_are_out_of_date_until_they_are_rendered(copy, python):
@@ -311,9 +340,9 @@ def test_the_documents_are_out_of_date_until_they_are_rendered(copy, python):
     stale = python(tool, "--check", status=1)
     wanted = {
         "docs/command-line.md": "number of the component",
-        "docs/energies.md": "| `inverse-cube` | 1/r³ at the edges' midpoints | -1 | no |",
-        "docs/methods.md": "| `heavy-ball` | heavy-ball | heavy ball, metric $J_C$ |",
-        "docs/options.md": "| `patience` | how long to wait | always | yes |",
+        "docs/energies.md": "| `inverse-cube` | 1/r³ at the edges' midpoints | -1 |",
+        "docs/methods.md": "| `heavy-ball` | heavy ball, metric $J_C$ |",
+        "docs/options.md": "\n: How long to wait (default: always).\n",
     }
     for document in wanted:
         assert f"{document} is out of date; python tools/docs.py mends it" in stale
@@ -328,8 +357,8 @@ def test_the_documents_are_out_of_date_until_they_are_rendered(copy, python):
 def test_the_tests_pick_it_up(copy):
     """And that of the metrics asks for the newcomer's value on the circle."""
     files = [
-        *("core/energies/test_derivatives.py", "core/energies/test_invariances.py", "core/test_relax.py"),
-        *("core/curve/test_io_refusals.py", "cli/test_options.py", "core/test_metrics.py"),
+        *("core/energies/test_derivatives.py", "core/energies/test_invariances.py", "core/driver/test_relax.py"),
+        *("core/io/test_refusals.py", "cli/test_options.py", "core/solve/test_metrics.py"),
     ]
     chosen = (
         "inverse-cube or heavy-ball-trefoil or halving-trefoil or num or patience or lumped and (circle or definite)"
@@ -342,7 +371,7 @@ def test_the_tests_pick_it_up(copy):
         "test_invariances.py::test_similarities[inverse-cube]",
         "test_relax.py::test_every_method_goes_down_feasibly_and_certified[heavy-ball-trefoil]",
         "test_relax.py::test_every_method_goes_down_feasibly_and_certified[halving-trefoil]",
-        "test_io_refusals.py::test_any_bytes_give_a_curve_or_one_sentence[.num]",
+        "test_refusals.py::test_any_bytes_give_a_curve_or_one_sentence[.num]",
         "test_options.py::test_every_option_can_be_given[patience]",
     ):
         assert found.get(test) == "PASSED", done.stdout

@@ -84,7 +84,7 @@ def test_the_package_has_every_module_and_all_data(tmp_path):
     # as build backends do: under another name than its own
     done = finished([sys.executable, "-c", "exec(open('setup.py').read())", *words], cwd=ROOT)
     assert done.returncode == 0, done.stderr
-    rooms = [path for room in ("core", "cli", "addon") for path in (ROOT / room).rglob("*")]
+    rooms = [path for room in ("core", "cli", "addon", "lab") for path in (ROOT / room).rglob("*")]
     wanted = {path.relative_to(ROOT) for path in rooms if path.is_file() and "__pycache__" not in path.parts}
     package = tmp_path / "built/mobius_flow"
     found = {path.relative_to(package) for path in package.rglob("*") if path.is_file()}

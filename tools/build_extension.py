@@ -24,7 +24,7 @@ PLATFORMS = {
     "windows-x64": "win_amd64",
     "windows-arm64": "win_arm64",
     "macos-arm64": "macosx_12_0_arm64",
-    "macos-x64": "macosx_10_14_x86_64",
+    "macos-x64": "macosx_10_",
 }
 DEBIAN = "-cp314-"  # the Python of Debian's Blender, which Blender's own builds do not have
 ANY = "-none-any"  # wheels without compiled code
@@ -110,6 +110,9 @@ def _stage(stage: Path, platform: str, wheels: list[Path]) -> None:
     manifest = stage / "blender_manifest.toml"
     lines = manifest.read_text(encoding="utf-8").split("\n[", 1)  # values belong before the first table
     names = ",\n".join(f'  "./wheels/{wheel.name}"' for wheel in wheels)
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    if website := project["urls"].get("Homepage"):
+        lines[0] += f'\nwebsite = "{website}"'
     lines[0] += f'\nplatforms = ["{platform}"]\nwheels = [\n{names},\n]\n'
     manifest.write_text("\n[".join(lines), encoding="utf-8")
 

@@ -17,11 +17,13 @@ from types import MappingProxyType
 
 import mobius_flow
 from import_map import drawn, import_map
+from mobius_flow.cli.options import flag
+from mobius_flow.cli.parser import COMMANDS, add_to, joined
 from mobius_flow.core import METHODS, RelaxOptions
-from mobius_flow.core.arguments import Option, declared
-from mobius_flow.core.curve.io import FORMATS
+from mobius_flow.core.base.arguments import declared
 from mobius_flow.core.energies import ENERGIES
-from mobius_flow.core.metrics import METRICS
+from mobius_flow.core.io import FORMATS
+from mobius_flow.core.solve.metrics import METRICS
 
 ROOT = Path(__file__).resolve().parents[1]
 _REGION = re.compile(r"(?<=<!-- generated: )(\w+)( -->\n)(.*?)(?=<!-- end -->)", re.DOTALL)
@@ -29,11 +31,8 @@ _REGION = re.compile(r"(?<=<!-- generated: )(\w+)( -->\n)(.*?)(?=<!-- end -->)",
 
 def energies() -> str:
     """The available energies."""
-    rows = [
-        (f"`{name}`", each.description, f"{each.scale_exponent:g}", "yes" if hasattr(each, "hessian") else "no")
-        for name, each in ENERGIES.items()
-    ]
-    return _table(("name", "what it is", "scaling exponent", "second derivative"), rows)
+    rows = [(f"`{name}`", each.description, f"{each.scale_exponent:g}") for name, each in ENERGIES.items()]
+    return _table(("name", "what it is", "scaling exponent"), rows)
 
 
 def metrics() -> str:
@@ -52,17 +51,38 @@ def methods() -> str:
     for name, each in METHODS.items():
         anchor = next((anchor for anchor, names in sections if _is_one_of(name, names)), "")
         link = f"[`{name}`](#{anchor})" if anchor else f"`{name}`"
-        rows.append((link, _typeset(each.label), _typeset(each.description)))
-    return _table(("name", "in Blender", "what it is"), rows)
+        rows.append((link, _typeset(each.description)))
+    return _table(("name", "what it is"), rows)
 
 
 def options() -> str:
-    """The options of a relaxation."""
-    rows = [
-        (f"`{each.name}`", each.help, _default(each), "yes" if each.is_setting else "no")
-        for each in declared(RelaxOptions)
-    ]
-    return _table(("option", "what it does", "default", "setting in Blender"), rows)
+    """The options of a relaxation, as on the command line."""
+    rows = []
+    for each in declared(RelaxOptions):
+        plain = each.kind is bool or each.repeated
+        default = "" if plain else f" (default: {each.automatic or each.default})"
+        rows.append((_code(flag(each), "" if each.kind is bool else each.metavar), each.phrase + default))
+    return _definitions(rows)
+
+
+def commands() -> str:
+    """What else the subcommands take: the options of several, then those of one alone."""
+    elsewhere = {each.name for each in declared(RelaxOptions)} | {"format", "json", "output"}  # told in words
+    takers: dict[str, list[str]] = {}
+    texts: dict[str, str] = {}
+    for name in (*COMMANDS, *joined()):
+        alone = argparse.ArgumentParser(prog=f"mobius-flow {name}", add_help=False)
+        add_to(alone, name)
+        for each in alone._actions:
+            if each.option_strings and each.dest not in elsewhere and each.help not in (None, argparse.SUPPRESS):
+                option = _code(max(each.option_strings, key=len), str(each.metavar or ""))
+                takers.setdefault(option, []).append(f"`{name}`")
+                texts.setdefault(option, str(each.help))
+    several = [(f"{one} ({', '.join(names)})", texts[one]) for one, names in takers.items() if len(names) > 1]
+    sections = {"Several commands": several}
+    for name in (*COMMANDS, *joined()):
+        sections[f"`{name}`"] = [(one, texts[one]) for one, names in takers.items() if names == [f"`{name}`"]]
+    return "".join(f"### {title}\n\n{_definitions(rows)}" for title, rows in sections.items() if rows)
 
 
 def formats() -> str:
@@ -75,11 +95,11 @@ def formats() -> str:
 
 def rooms() -> str:
     """The import map of the rooms."""
-    return f"```{{graphviz}}\n{drawn(import_map(ROOT))}\n```\n"
+    return f"```text\n{drawn(import_map(ROOT))}\n```\n"
 
 
 RENDERERS: Mapping[str, Callable[[], str]] = MappingProxyType(
-    {each.__name__: each for each in (energies, metrics, methods, options, formats, rooms)}
+    {each.__name__: each for each in (energies, metrics, methods, options, commands, formats, rooms)}
 )
 
 
@@ -123,10 +143,13 @@ def _is_one_of(name: str, patterns: Iterable[str]) -> bool:
     return any(fnmatchcase(name, pattern) for pattern in patterns)
 
 
-def _default(option: Option) -> str:
-    if option.kind is bool:
-        return "on" if option.default else "off"
-    return option.automatic or ("none" if option.repeated else f"{option.default}")
+def _definitions(rows: Iterable[tuple[str, str]]) -> str:
+    """A list of terms and their meanings, which fits on a telephone's screen too."""
+    return "".join(f"{term}\n: {text[0].upper()}{text[1:]}.\n\n" for term, text in rows)
+
+
+def _code(*words: str) -> str:
+    return f"`{' '.join(filter(None, words))}`"
 
 
 def main() -> int:

@@ -1,10 +1,10 @@
 """Which room of the house imports which, read from the sources.
 
-A room is a package directly below `core`, `addon` or `cli`, with everything in it, or a module there on its
-own. The files of curves are a separate room: they hold codes of knots, which are made of curves. Imports inside
-functions and those for type checkers count like the others: whoever reads a file has to know what it names.
+A room is a package directly below `core`, with everything in it, and each of `addon`, `cli` and `lab`; modules directly
+in `core` count as `core.base`. Imports inside functions and those for type checkers count like the others: whoever
+reads a file has to know what it names.
 
-    python tools/import_map.py         the map as Graphviz draws it
+    python tools/import_map.py         the map, room by room
 """
 
 import ast
@@ -15,7 +15,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 Map = Mapping[str, frozenset[str]]
-INNER = ("core.curve.io",)  # rooms within rooms
+TOPS = ("core", "addon", "cli", "lab")
 
 
 class _AtRunTime(ast.NodeTransformer):
@@ -43,22 +43,20 @@ def imports(path: Path, root: Path = ROOT, *, types: bool = True) -> Iterator[st
 
 def room(name: str, root: Path = ROOT) -> str | None:
     """The room of a dotted name; None outside the house, ``core`` for names that `core` itself provides."""
-    for inner in INNER:
-        if f"{name}.".startswith(f"{inner}."):
-            return inner
     first, *rest = name.split(".")
-    if first in ("addon", "cli") and (root / first).is_dir():
+    if first in TOPS[1:] and (root / first).is_dir():
         return first
     if first != "core":
         return None
-    known = rest and ((root / "core" / rest[0]).is_dir() or (root / "core" / f"{rest[0]}.py").is_file())
-    return f"core.{rest[0]}" if known else "core"
+    if rest and (root / "core" / rest[0]).is_dir():
+        return f"core.{rest[0]}"
+    return "core.base" if rest and (root / "core" / f"{rest[0]}.py").is_file() else "core"
 
 
 def import_map(root: Path = ROOT) -> Map:
     """The rooms, and the other rooms that each of them imports."""
     found: dict[str, set[str]] = defaultdict(set)
-    for top in ("core", "addon", "cli"):
+    for top in TOPS:
         for path in sorted((root / top).rglob("*.py")):
             here = room(".".join(path.relative_to(root).with_suffix("").parts).removesuffix(".__init__"), root)
             assert here is not None
@@ -78,14 +76,15 @@ def reachable(rooms: Map, start: str) -> set[str]:
 
 
 def drawn(rooms: Map) -> str:
-    """A Graphviz graph, importers above; implied arrows are left out. Raises CycleError."""
+    """A line for each room with those it needs, importers above; implied arrows are left out. Raises CycleError."""
     order = list(TopologicalSorter({name: sorted(rooms[name]) for name in rooms}).static_order())[::-1]
     beyond = {name: reachable(rooms, name) for name in rooms}
-    lines = ["digraph rooms {", '    node [shape=plain, fontname="sans-serif", fontsize=11];']
+    lines = []
     for name in order:
         direct = {there for there in rooms[name] if not any(there in beyond[other] for other in rooms[name])}
-        lines += [f'    "{name}" -> "{there}";' for there in sorted(direct)]
-    return "\n".join([*lines, "}"])
+        if direct:
+            lines.append(f"{name:<{max(map(len, order))}} → {', '.join(sorted(direct))}")
+    return "\n".join(lines)
 
 
 if __name__ == "__main__":

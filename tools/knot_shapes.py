@@ -17,12 +17,12 @@ from pathlib import Path
 
 import numpy as np
 from mobius_flow.core import Curve, Mesh, RelaxOptions, minimize
+from mobius_flow.core.base.types import ComplexArray, FloatArray
 from mobius_flow.core.curve.fourier import FourierCurve
-from mobius_flow.core.diagrams import quick_invariants
 from mobius_flow.core.knots import KNOTS, knot
+from mobius_flow.core.knots.diagrams import quick_invariants
 from mobius_flow.core.knots.inscribed import arc_steps, equal_steps, is_isotopic
 from mobius_flow.core.knots.shapes import FILE, QUANTUM, shapes, smooth_knot
-from mobius_flow.core.types import ComplexArray, FloatArray
 from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 

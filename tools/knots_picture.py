@@ -10,8 +10,8 @@ import numpy as np
 from mobius_flow.addon.pictures.looks import LOOKS
 from mobius_flow.addon.pictures.materials import colour_components
 from mobius_flow.addon.pictures.rendering import use_cycles
-from mobius_flow.addon.pictures.stage import Stage, add_sky, build, place
-from mobius_flow.core.types import FloatArray
+from mobius_flow.addon.pictures.stage import Stage, build, sky
+from mobius_flow.core.base.types import FloatArray
 from PIL import Image
 
 TARGET = Path(__file__).resolve().parents[1] / "docs" / "pictures" / "knots.png"
@@ -37,8 +37,7 @@ def main() -> int:
     middle = np.array([0.5 * (width - STEP), -0.5 * (height - STEP), 0.0])
     floor = build(scene.collection, Stage(np.eye(3), middle, 0.6 * width, 0.5 * np.pi), LOOKS[LOOK])
     floor.location = middle - [0.0, 0.0, 1.0]
-    scene.world = bpy.data.worlds.new("World")
-    add_sky(scene.world, LOOKS[LOOK])
+    scene.world = sky(LOOKS[LOOK], "World")
     add_camera(scene, middle, width)
     use_cycles(scene, LOOKS[LOOK], WIDTH, HEIGHT)
     scene.render.image_settings.color_mode = "RGB"
@@ -62,7 +61,7 @@ def add_camera(scene: bpy.types.Scene, middle: FloatArray, width: float) -> None
     camera = bpy.data.objects.new("Camera", data)
     scene.collection.objects.link(camera)
     scene.camera = camera
-    place(camera, middle + np.array([0.0, 0.0, 20.0]), middle, np.array([0.0, 1.0, 0.0]))
+    camera.location, camera.rotation_euler = middle + np.array([0.0, 0.0, 20.0]), (0.0, 0.0, 0.0)
 
 
 if __name__ == "__main__":

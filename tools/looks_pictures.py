@@ -1,7 +1,11 @@
 #!/usr/bin/env python3
-"""Render docs/pictures: unknot.png, a tangle on its way to the circle; looks.png, a knot in each look; and morph.png.
+"""Render docs/pictures: looks.png, a knot in each look, and morph.png.
 
 Each part is rendered in a few seconds of processor time: `looks_pictures.py NAME` renders one of the pictures only.
+The moving picture is a film, as ffmpeg makes it smaller:
+
+    mobius-flow relax examples/tangle.obj untangle.mp4
+    ffmpeg -i untangle.mp4 -vf fps=15,scale=480:-1 -c:v libwebp -loop 0 -quality 55 docs/pictures/untangle.webp
 """
 
 import sys
@@ -10,22 +14,14 @@ from pathlib import Path
 
 from mobius_flow.addon.pictures.export import write_picture
 from mobius_flow.addon.pictures.looks import LOOKS
-from mobius_flow.core import Iterate, RelaxOptions, minimize, morph, read_curve, relax
+from mobius_flow.core import Iterate, minimize, morph
 from mobius_flow.core.curve import Curve
 from mobius_flow.core.knots import knot
 from PIL import Image
 
 ROOT = Path(__file__).resolve().parents[1]
-TANGLE = ROOT / "examples" / "tangle.obj"
-STAGES = (0, 40, 70, -1)  # iterates of the tangle
 LEGS = (0, 20, 44, 64, 108, -1)  # of the morph, where tubes are about as thick in the picture
 COLORS = 256
-
-
-def tangle() -> list[tuple[Curve, str]]:
-    """Stages of an unknot."""
-    iterates = list(relax(read_curve(TANGLE), RelaxOptions()))
-    return [(iterates[k].curve, "STUDIO") for k in STAGES]
 
 
 def looks() -> list[tuple[Curve, str]]:
@@ -41,7 +37,7 @@ def unknots() -> list[tuple[Curve, str]]:
     return [(iterates[k].curve, "STUDIO") for k in LEGS]
 
 
-PICTURES = {"unknot": (tangle, 330, 4), "looks": (looks, 300, 5), "morph": (unknots, 300, 3)}  # side, columns
+PICTURES = {"looks": (looks, 300, 5), "morph": (unknots, 300, 3)}  # side, columns
 
 
 def strip(name: str) -> None:

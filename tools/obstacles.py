@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from mobius_flow.core import Obstacle
-from mobius_flow.core.types import FloatArray, IntArray
+from mobius_flow.core.base.types import FloatArray, IntArray
 
 TARGET = Path(__file__).resolve().parents[1] / "examples" / "obstacles"
 DIGITS = 6

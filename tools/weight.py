@@ -1,51 +1,79 @@
-"""What there is to carry: files, lines by room, constants, arrows between rooms, functions too long, words.
+"""What there is to carry: files, lines, functions, names, constants, arrows between rooms, words.
 
 python tools/weight.py [REVISION ...]     one column a revision (default: the working tree)
 """
 
 import ast
-import importlib.util
-import statistics
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from statistics import fmean, median
+
+from import_map import import_map
 
 ROOT = Path(__file__).resolve().parents[1]
 PRODUCT = ("core", "cli", "addon")
-SMALL, LONG = 60, 50  # lines of a file, of a function
+SMALL, LONG = 60, 80  # lines of a file, of a function
+Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
 def weights(root: Path) -> dict[str, object]:
-    """The figures of a checkout, each under its name."""
-    files = {path: path.read_text(encoding="utf-8") for top in PRODUCT for path in sorted((root / top).rglob("*.py"))}
-    trees = [ast.parse(text) for text in files.values()]
-    lines = {path: text.count("\n") for path, text in files.items()}
-    functions = [length for tree in trees for length in _function_lengths(tree)]
-    rooms = _import_map(root)
+    """The figures of a checkout, each under its name; functions, names and constants are those of product and lab."""
+    texts = {
+        top: {path: path.read_text(encoding="utf-8") for path in sorted((root / top).rglob("*.py"))}
+        for top in (*PRODUCT, "lab", "tests", "tools", "benchmarks")
+    }
+    lines = {top: {path: text.count("\n") for path, text in files.items()} for top, files in texts.items()}
+    total = {top: sum(each.values()) for top, each in lines.items()}
+    product = [n for top in PRODUCT for n in lines[top].values()]
+    trees = [ast.parse(text) for top in (*PRODUCT, "lab") for text in texts[top].values()]
+    nodes = [node for tree in trees for node in ast.walk(tree)]
+    functions = [node for node in nodes if isinstance(node, Function)]
+    bodies = [_body(function) for function in functions]
+    classes = Counter(node.name for node in nodes if isinstance(node, ast.ClassDef))
+    twice = sorted(name for name, count in classes.items() if count > 1)
+    rooms = import_map(root)
     return {
-        "product: files": len(files),
-        "product: lines": sum(lines.values()),
-        **{f"  {top}": sum(n for path, n in lines.items() if path.is_relative_to(root / top)) for top in PRODUCT},
-        f"files under {SMALL} lines": sum(n < SMALL for n in lines.values()),
-        "longest file": max(lines.values()),
-        "median function": statistics.median(functions),
-        f"functions over {LONG} lines": sum(n > LONG for n in functions),
+        "product: files": len(product),
+        "product: lines": sum(product),
+        **{f"  {top}": total[top] for top in PRODUCT},
+        "lab: files": len(lines["lab"]),
+        "lab: lines": total["lab"],
+        f"files under {SMALL} lines": sum(n < SMALL for n in product),
+        "longest file": max(product),
+        "mean body": f"{fmean(bodies):.1f}",
+        "median body": median(bodies),
+        f"functions over {LONG} lines": sum(node.end_lineno - node.lineno + 1 > LONG for node in functions),
+        "private functions used once": sum(map(_used_once, trees)),
         "numeric constants of modules": sum(map(_constants, trees)),
         "rooms": len(rooms),
         "arrows between rooms": sum(map(len, rooms.values())),
-        "tests: files": len(list((root / "tests").rglob("*.py"))),
-        "tests: lines": sum(path.read_text(encoding="utf-8").count("\n") for path in (root / "tests").rglob("*.py")),
+        "tests: files": len(lines["tests"]),
+        "tests: lines": total["tests"],
+        "tools and benchmarks: lines": total["tools"] + total["benchmarks"],
         "README: words": len((root / "README.md").read_text(encoding="utf-8").split()),
         "CHANGELOG: words": len((root / "CHANGELOG.md").read_text(encoding="utf-8").split()),
+        "names of several classes": f"{len(twice)}: {', '.join(twice)}",
     }
 
 
-def _function_lengths(tree: ast.AST) -> Iterator[int]:
-    for node in ast.walk(tree):
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
-            yield node.end_lineno - node.lineno + 1
+def _body(function: Function) -> int:
+    """Lines of a function without its head and its docstring."""
+    body = function.body[1:] if ast.get_docstring(function) and len(function.body) > 1 else function.body
+    return body[-1].end_lineno - body[0].lineno + 1
+
+
+def _used_once(tree: ast.Module) -> int:
+    """Private functions and methods whose names a module reads exactly once."""
+    nodes = list(ast.walk(tree))
+    used = Counter(node.id for node in nodes if isinstance(node, ast.Name))
+    used.update(node.attr for node in nodes if isinstance(node, ast.Attribute))
+    names = {node.name for node in nodes if isinstance(node, Function)}
+    return sum(used[name] == 1 for name in names if name.startswith("_") and not name.startswith("__"))
 
 
 def _constants(tree: ast.Module) -> int:
@@ -69,24 +97,24 @@ def _is_numeric(node: ast.expr) -> bool:
     return isinstance(node, ast.Constant) and isinstance(node.value, int | float) and not isinstance(node.value, bool)
 
 
-def _import_map(root: Path) -> dict[str, frozenset[str]]:
-    spec = importlib.util.spec_from_file_location("import_map", Path(__file__).with_name("import_map.py"))
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module.import_map(root)
-
-
-def _at(revision: str, then: Callable[[Path], dict[str, object]]) -> dict[str, object]:
-    """The figures of a revision, unpacked for the moment."""
+@contextmanager
+def unpacked(revision: str) -> Iterator[Path]:
+    """The tree of a revision, for the moment, in a folder named like the package."""
     with tempfile.TemporaryDirectory() as folder:
+        tree = Path(folder, "mobius_flow")
+        tree.mkdir()
         archive = subprocess.run(["git", "archive", revision], cwd=ROOT, check=True, capture_output=True).stdout
-        subprocess.run(["tar", "-x", "-C", folder], input=archive, check=True)
-        return then(Path(folder))
+        subprocess.run(["tar", "-x", "-C", tree], input=archive, check=True)
+        yield tree
 
 
 def main(revisions: list[str]) -> None:
     """Print the table."""
-    columns = [_at(revision, weights) for revision in revisions] or [weights(ROOT)]
+    columns = []
+    for revision in revisions:
+        with unpacked(revision) as tree:
+            columns.append(weights(tree))
+    columns = columns or [weights(ROOT)]
     print("| |" + "|".join(revisions or ["now"]) + "|\n|---|" + "---|" * len(columns))
     for name in columns[0]:
         print(f"| {name} | " + " | ".join(str(column[name]) for column in columns) + " |")

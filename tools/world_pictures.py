@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 from mobius_flow.core import Curve, Obstacle, RelaxOptions, Task, minimize, read_obstacle
+from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.knots import knot, overhand
-from mobius_flow.core.types import FloatArray
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -5,31 +5,33 @@ import re
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 from bpy_extras.object_utils import AddObjectHelper, object_data_add
-from mathutils import Vector
 
 from ...core import Curve, OptionError, knots
-from ...core.messages import Message
-from ...core.types import FloatArray
+from ...core.base.messages import Message
+from ...core.base.types import FloatArray
 from ..curves import bevel
-from ..curves.exchange import box, new_curve_data, write_points
+from ..curves.splines import box, new_curve_data, write_points
 from ..engine.knot_list import labels, name_of
 from ..live.requirements import Condition
 from ..pictures.materials import colour_components
 from .button import Button
 
 OBJECT_MODE = Condition("Go back to Object Mode first", lambda context: context.mode != "OBJECT")
-_MAX_TURNS = 100  # of a torus knot, or strands of a braid: 50,000 points and a second
-_SOLID = {"MESH", "CURVE", "CURVES", "SURFACE", "META", "FONT", "VOLUME", "POINTCLOUD", "GREASEPENCIL"}
-_MARGIN = 0.25  # of its width, between a new knot and what is beside it
-_RAISED = 1.0, 1.0, 2.0  # woven knots lie so flat that their tubes would be thin
-_MAX_NUMBER = 1e30  # Blender computes with squares and products of such numbers
+_SHOWN = {
+    "TABLE": ("knot",),
+    "TORUS": ("p", "q"),
+    "BRAID": ("word",),
+    "LISSAJOUS": ("frequency_x", "frequency_y", "frequency_z", "phase_x", "phase_y"),
+    "CABLE": ("companion", "strands", "turns"),
+    "DOUBLE": ("companion", "twists", "left_clasp"),
+}
 
 
 def check_length(label: Message, value: float) -> None:
     """Raise an OptionError for values that Blender lets through although they are not numbers."""
-    if not value <= _MAX_NUMBER:
+    if not value <= 1e30:  # Blender computes with squares and products of such numbers
         sentence = "{label} is {value:g}; it must be a number up to {most:g}"
-        raise OptionError(Message(sentence, label=label, value=value, most=_MAX_NUMBER))
+        raise OptionError(Message(sentence, label=label, value=value, most=1e30))
 
 
 class AddsKnot(Button, AddObjectHelper):
@@ -68,7 +70,15 @@ class AddsKnot(Button, AddObjectHelper):
             context, self.curve_data(name, scale * (curve.vertices - 0.5 * (low + high)), curve), self
         )
         if not given:
-            self.location = obj.location = _beside(context, obj)
+            # right of all others that are visible, unless it is clear of them where it is
+            context.view_layer.update()
+            low, high = box(obj)
+            solid = {"MESH", "CURVE", "CURVES", "SURFACE", "META", "FONT", "VOLUME", "POINTCLOUD", "GREASEPENCIL"}
+            boxes = [box(each) for each in context.visible_objects if each is not obj and each.type in solid]
+            if any((low < other[1]).all() and (other[0] < high).all() for other in boxes):
+                gap = 0.25 * (high - low)[0]
+                obj.location.x += max(other[1][0] for other in boxes) + gap - low[0]
+            self.location = obj.location
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Add it, and turn the view to it."""
@@ -82,7 +92,9 @@ class AddsKnot(Button, AddObjectHelper):
     def curve_data(self, name: str, vertices: FloatArray, curve: Curve) -> bpy.types.Curve:
         """Make curve data of a curve with these vertices, shape (n, 3), its tube and its colours."""
         data = new_curve_data(name, curve.mesh)
-        self.fit_bevel = self._fits()  # so that doing it again does the same
+        given = self.properties.is_property_set
+        # kept, so that doing it again does the same
+        self.fit_bevel = self.fit_bevel and (given("fit_bevel") or not given("thickness"))
         if self.fit_bevel:
             self.thickness = bevel.fitting_radius(curve.with_vertices(vertices))
         (bevel.fit if self.fit_bevel else bevel.draw)(data, self.thickness)
@@ -94,10 +106,6 @@ class AddsKnot(Button, AddObjectHelper):
     def check_lengths(self) -> None:
         check_length(Message("Size"), self.size)
         check_length(Message("Thickness"), self.thickness)
-
-    def _fits(self) -> bool:
-        given = self.properties.is_property_set
-        return self.fit_bevel and (given("fit_bevel") or not given("thickness"))
 
     def draw_kind(self, layout: bpy.types.UILayout) -> None:
         raise NotImplementedError
@@ -119,26 +127,27 @@ class AddsKnot(Button, AddObjectHelper):
         row.prop(self, "thickness")
 
 
-def _beside(context: bpy.types.Context, obj: bpy.types.Object) -> Vector:
-    """Where an object is clear of all others that are visible: where it is, or else to their right."""
-    context.view_layer.update()
-    low, high = box(obj)
-    boxes = [box(each) for each in context.visible_objects if each is not obj and each.type in _SOLID]
-    if any((low < other[1]).all() and (other[0] < high).all() for other in boxes):
-        return obj.location + Vector((max(other[1][0] for other in boxes) + _MARGIN * (high - low)[0] - low[0], 0, 0))
-    return obj.location
+def found(_operator: bpy.types.Operator, _context: bpy.types.Context, _text: str) -> list[str]:
+    """All labels; Blender shows those that match what is typed."""
+    return list(labels().values())
 
 
 class CURVE_OT_mobius_flow_add_knot(AddsKnot, bpy.types.Operator):
-    """Add a tangle to be relaxed: a hard unknot, a knot or link of the table as it is woven, a torus knot or braid"""
+    """Add a tangle to be relaxed: a hard unknot, a knot or link of the table as it is woven, or one made by a few \
+numbers: a torus knot, braid, Lissajous curve, or two strands along a knot"""
 
     bl_label = "Knot"
 
     kind: EnumProperty(
         name="Kind",
+        description="What makes the knot",
         items=[
             ("TABLE", "Name", "A knot or link of the table"),
             ("TORUS", "Torus", "The torus knot or link T(p, q)"),
+            ("BRAID", "Braid", "Strands that cross one by one and close in a circle"),
+            ("LISSAJOUS", "Lissajous", "Three oscillations at right angles"),
+            ("CABLE", "Cable", "Strands along a knot, wound around each other"),
+            ("DOUBLE", "Double", "Two strands along a knot that hook into each other"),
         ],
         default="TABLE",
     )
@@ -147,29 +156,63 @@ class CURVE_OT_mobius_flow_add_knot(AddsKnot, bpy.types.Operator):
     )
     p: IntProperty(name="p", description="How often the curve goes round the torus", default=2, soft_min=2)
     q: IntProperty(name="q", description="How often the curve goes through the torus", default=3, soft_min=2)
+    word: StringProperty(
+        name="Braid",
+        description="Crossings one by one: 2 crosses strands 2 and 3, -2 does so the other way",
+        default="1 -2 1 -2 1 -2",
+    )
+    frequency_x: IntProperty(name="Frequency X", description="Oscillations along X", default=3, min=1, max=40)
+    frequency_y: IntProperty(name="Y", description="Oscillations along Y", default=4, min=1, max=40)
+    frequency_z: IntProperty(name="Z", description="Oscillations along Z", default=7, min=1, max=40)
+    phase_x: FloatProperty(
+        name="Phase X", description="Where the oscillation along X begins", default=0.7, subtype="ANGLE"
+    )
+    phase_y: FloatProperty(name="Y", description="Where the oscillation along Y begins", default=0.2, subtype="ANGLE")
+    companion: StringProperty(
+        name="Along", description="Knot that the strands follow", default=labels()["3_1"], search=found
+    )
+    strands: IntProperty(name="Strands", description="Number of strands along the knot", default=2, min=2, max=12)
+    turns: IntProperty(
+        name="Turns",
+        description="Steps from strand to strand around the knot; one curve if Strands has no common divisor with it",
+        default=1,
+        min=-100,
+        max=100,
+    )
+    twists: IntProperty(
+        name="Twists", description="Full turns of the two strands around each other", default=0, min=-100, max=100
+    )
+    left_clasp: BoolProperty(
+        name="Left-Handed Clasp", description="Hook the strands into each other the other way", default=False
+    )
 
     def make(self) -> tuple[str, Curve]:
-        name, curve = named_knot(self.knot if self.kind == "TABLE" else f"T({self.p},{self.q})")
-        return name, knots.rounded(curve.with_vertices(curve.vertices * _RAISED))
+        if self.kind == "LISSAJOUS":
+            frequencies, phases = (self.frequency_x, self.frequency_y, self.frequency_z), (self.phase_x, self.phase_y)
+            return f"Lissajous{frequencies}".replace(" ", ""), knots.lissajous_knot(frequencies, phases)
+        if self.kind in ("CABLE", "DOUBLE"):
+            name = name_of(self.companion)
+            along = knots.smooth_knot(name)
+            if self.kind == "CABLE":
+                return f"Cable({self.strands},{self.turns}) of {name}", knots.cable(along, self.strands, self.turns)
+            return f"Double of {name}", knots.double(along, self.twists, clasp=-1 if self.left_clasp else 1)
+        name = self.knot
+        if self.kind == "TORUS":
+            name = f"T({self.p},{self.q})"
+        elif self.kind == "BRAID":
+            name = f"braid({','.join(self.word.replace(',', ' ').split())})"
+        numbers = map(int, re.findall(r"\d+", "".join(re.findall(r"\([^)]*\)", name))))
+        if max(numbers, default=0) > 100:  # turns, or strands of a braid: 50,000 points and a second
+            sentence = "{name} has a number beyond {most}, which is too much for a window; use smaller ones"
+            raise OptionError(Message(sentence, name=name[:60], most=100))
+        curve = knots.knot(name)  # woven so flat that its tube would be thin
+        return name, knots.rounded(curve.with_vertices(curve.vertices * [1.0, 1.0, 2.0]))
 
     def draw_kind(self, layout: bpy.types.UILayout) -> None:
         layout.prop(self, "kind")
-        for name in ("knot",) if self.kind == "TABLE" else ("p", "q"):
-            layout.prop(self, name)
-
-
-def named_knot(name: str) -> tuple[str, Curve]:
-    """A woven knot and its name; raises an OptionError if a torus knot or braid would freeze the window."""
-    numbers = map(int, re.findall(r"\d+", "".join(re.findall(r"\([^)]*\)", name))))
-    if max(numbers, default=0) > _MAX_TURNS:
-        sentence = "{name} has a number beyond {most}, which is too much for a window; use smaller ones"
-        raise OptionError(Message(sentence, name=name[:60], most=_MAX_TURNS))
-    return name, knots.knot(name)
-
-
-def found(_operator: bpy.types.Operator, _context: bpy.types.Context, _text: str) -> list[str]:
-    """All labels; Blender shows those that match what is typed."""
-    return list(labels().values())
+        column = layout.column(align=True)
+        for name in _SHOWN[self.kind]:
+            column.prop(self, name)
 
 
 class CURVE_OT_mobius_flow_pick_knot(AddsKnot, bpy.types.Operator):

@@ -1,30 +1,32 @@
-"""Operators that lift drawings into knots, and operators that add knots from families given by a few numbers."""
+"""Operators that lift drawings into knots."""
+
+import contextlib
+import threading
+from collections.abc import Sequence
 
 import bpy
 import numpy as np
-from bpy.props import BoolProperty, BoolVectorProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
+from bpy.props import BoolProperty, BoolVectorProperty, CollectionProperty, FloatProperty, IntProperty
 from bpy_extras.object_utils import object_data_add
+from bpy_extras.view3d_utils import location_3d_to_region_2d, region_2d_to_location_3d
+from mathutils import Vector
 
-from ...core import Curve, knots
+from ...core import Curve, MobiusFlowError
+from ...core.base.messages import Message
+from ...core.base.types import FloatArray
+from ...core.curve import Mesh
+from ...core.curve.refine import arc_lengths, smoothed
+from ...core.keys.placement import DrawingPlane
 from ...core.knots import Drawing, knot_type
-from ...core.messages import Message
-from ...core.types import FloatArray
-from ..curves.exchange import read_link
-from ..engine.knot_list import labels, name_of
-from ..engine.placement import DrawingPlane
+from ...core.knots.inscribed import averaged
+from ..curves.splines import read_link, read_splines
+from ..live import overlay
 from ..live.requirements import Condition, selected_curves
 from ..translations import iface_, rpt_
-from .adding import OBJECT_MODE, AddsKnot, found, named_knot
+from .adding import OBJECT_MODE, AddsKnot
 
 _DRAWN = Condition("Draw a flat curve and select it first", lambda context: not selected_curves(context))
 _SWITCHES = 32  # Blender's longest array of switches
-_SHOWN = {
-    "TORUS": ("p", "q"),
-    "BRAID": ("word",),
-    "LISSAJOUS": ("frequency_x", "frequency_y", "frequency_z", "phase_x", "phase_y"),
-    "CABLE": ("companion", "strands", "turns"),
-    "DOUBLE": ("companion", "twists", "left_clasp"),
-}
 
 
 class DrawsKnot(AddsKnot):
@@ -78,21 +80,22 @@ class CURVE_OT_mobius_flow_draw_knot(DrawsKnot, bpy.types.Operator):
         curve = Curve.from_components(read_link(drawn)[0].components)
         plane = DrawingPlane.of(curve)
         drawing = Drawing.of(plane.flattened(curve))
-        lifted = self._lifted(drawing)
         self.count = len(drawing.crossings)
+        lifted = drawing.lifted([k + 1 for k in range(min(self.count, _SWITCHES)) if self.change[k]])
+        height = -self.height if self.mirror else self.height
+        lifted = lifted.with_vertices(lifted.vertices * [1.0, 1.0, height])
         middle = self.add(context, plane, lifted, self.count)
         if self.number:
             places = np.column_stack([drawing.crossings, np.zeros(self.count)])
             size = 0.03 * float(np.ptp(lifted.vertices))
-            _mark(context.collection, context.object, plane.raised(places) - middle, size)
+            for number, place in enumerate(plane.raised(places) - middle, 1):
+                empty = bpy.data.objects.new(str(number), None)
+                empty.empty_display_size, empty.show_name, empty.show_in_front = size, True, True
+                empty.parent, empty.location = context.object, place
+                context.collection.objects.link(empty)
         for obj in drawn if self.hide_drawing else ():
             obj.hide_set(True)
             obj.hide_render = True
-
-    def _lifted(self, drawing: Drawing) -> Curve:
-        count = min(len(drawing.crossings), _SWITCHES)
-        lifted = drawing.lifted([k + 1 for k in range(count) if self.change[k]])
-        return lifted.with_vertices(lifted.vertices * [1.0, 1.0, -self.height if self.mirror else self.height])
 
     def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout
@@ -120,79 +123,151 @@ def described(curve: Curve, crossings: int) -> tuple[str, Message]:
     return name, Message(sentence, crossings=said, knots=known)
 
 
-def _mark(collection: bpy.types.Collection, parent: bpy.types.Object, places: FloatArray, size: float) -> None:
+_PLANE = "mobius_flow_plane"  # custom property of drawn curves: origin and axes of the plane, in their coordinates
+_SHORTEST, _STEP = 60.0, 4.0  # of a stroke, and from one of its points to the next, in pixels
+_VIEW = Condition("Draw in a 3D view", lambda context: getattr(context, "region_data", None) is None)
+
+
+class CURVE_OT_mobius_flow_stroke(DrawsKnot, bpy.types.Operator):
+    """Draw a stroke, which closes itself and goes over and under by turns; click a crossing to swap the two strands"""
+
+    bl_label = "Draw Knot"
+    needs = (OBJECT_MODE, _VIEW)
+
+    path: CollectionProperty(name="Path", type=bpy.types.OperatorMousePath, options={"SKIP_SAVE", "HIDDEN"})
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Swap strands where there is a crossing, or else begin a stroke."""
+        mouse = np.array([event.mouse_region_x, event.mouse_region_y], dtype=np.float64)
+        try:
+            if found := _crossing(context, mouse):
+                drawing, plane, number = found
+                lifted, count = drawing.lifted([number]), len(drawing.crossings)
+                name, said = described(lifted, count)
+                obj, old = context.object, context.object.data
+                obj.data = self.curve_data(name, plane.raised(lifted.vertices), lifted)
+                obj.data[_PLANE], obj.name = list(old[_PLANE]), name
+                bpy.data.curves.remove(old)
+                self.report({"INFO"}, rpt_(said))
+                return {"FINISHED"}
+        except MobiusFlowError as error:
+            return self.fail(error)
+        self._stroke, self._name = [mouse], _Name()
+        self._timer = context.window_manager.event_timer_add(0.1, window=context.window)  # to name the stroke
+        self._handle = bpy.types.SpaceView3D.draw_handler_add(self._trace, (), "WINDOW", "POST_PIXEL")
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if event.type == "MOUSEMOVE":
+            mouse = np.array([event.mouse_region_x, event.mouse_region_y], dtype=np.float64)
+            if np.linalg.norm(mouse - self._stroke[-1]) >= _STEP:
+                self._stroke.append(mouse)
+                context.area.tag_redraw()
+        elif event.type == "TIMER":
+            self._name.look(self._stroke)
+            context.area.tag_redraw()
+        elif event.type == "LEFTMOUSE" and event.value == "RELEASE":
+            self.cancel(context)
+            if _length(self._stroke) < _SHORTEST:
+                return {"CANCELLED"}
+            for place in self._stroke:
+                self.path.add().loc = place
+            return self.execute(context)
+        elif event.type in {"ESC", "RIGHTMOUSE"}:
+            self.cancel(context)
+            return {"CANCELLED"}
+        return {"RUNNING_MODAL"}
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Remove the stroke's trace and name, also when Blender ends the operator."""
+        context.window_manager.event_timer_remove(self._timer)
+        bpy.types.SpaceView3D.draw_handler_remove(self._handle, "WINDOW")
+        if context.area is not None:
+            context.area.tag_redraw()
+
+    def act(self, context: bpy.types.Context) -> None:
+        """Lift the stroke towards the viewer, and add it at the depth of the 3D cursor."""
+        self.check_lengths()
+        stroke = [np.array(each.loc) for each in self.path]
+        if _length(stroke) < _SHORTEST:
+            raise MobiusFlowError(Message("The stroke is too short; draw a longer one"))
+        plane = DrawingPlane(np.array(context.scene.cursor.location), np.array(context.region_data.view_matrix)[:3, :3])
+        depth = context.scene.cursor.location
+        places = [region_2d_to_location_3d(context.region, context.region_data, each, depth) for each in _even(stroke)]
+        drawing = Drawing.of(plane.flattened(Curve(np.array(places))))
+        middle = self.add(context, plane, drawing.lifted(), len(drawing.crossings))
+        context.object.data[_PLANE] = [*(plane.origin - middle).tolist(), *plane.axes.ravel().tolist()]
+
+    def _trace(self) -> None:
+        overlay.line(np.array([*self._stroke, self._stroke[0]]), overlay.GOLD, 2.0)
+        if self._name.said:
+            overlay.label(iface_(self._name.said), self._stroke[-1])
+
+
+class _Name:
+    """What a stroke would be if it ended now; a thread finds the answer, so drawing never waits."""
+
+    def __init__(self) -> None:
+        self.said = ""
+        self._seen = 0  # points of the stroke that the name is about
+        self._thread: threading.Thread | None = None
+
+    def look(self, stroke: Sequence[FloatArray]) -> None:
+        """Start to name what has been drawn since, if the last search is over."""
+        if self._seen != len(stroke) and not (self._thread is not None and self._thread.is_alive()):
+            self._seen = len(stroke)
+            self._thread = threading.Thread(target=self._find, args=(list(stroke),), daemon=True)
+            self._thread.start()
+
+    def _find(self, stroke: Sequence[FloatArray]) -> None:
+        said = ""
+        if _length(stroke) >= _SHORTEST:
+            with contextlib.suppress(MobiusFlowError):  # it touches itself for a moment
+                drawing = Drawing.of(Curve(_even(stroke)))
+                count = len(drawing.crossings)
+                named = described(drawing.lifted(), count)[1] if count <= 16 else None
+                said = named or Message("{count} crossings", count=count)
+        self.said = said
+
+
+def _crossing(context: bpy.types.Context, mouse: FloatArray) -> tuple[Drawing, DrawingPlane, int] | None:
+    """The active object's drawing, if it has one and was not relaxed, and which crossing is under the mouse, from 1."""
+    obj = context.object
+    if obj is None or obj.type != "CURVE" or _PLANE not in obj.data or obj.data.shape_keys is not None:
+        return None
+    values, curve = np.array(obj.data[_PLANE]), Curve.from_components(read_splines(obj))
+    plane = DrawingPlane(values[:3], values[3:].reshape(3, 3))
+    drawing = Drawing.seen(curve.with_vertices((curve.vertices - plane.origin) @ plane.axes.T))
+    places = plane.raised(np.column_stack([drawing.crossings, np.zeros(len(drawing.crossings))]))
     for number, place in enumerate(places, 1):
-        empty = bpy.data.objects.new(str(number), None)
-        empty.empty_display_size, empty.show_name, empty.show_in_front = size, True, True
-        empty.parent, empty.location = parent, place
-        collection.objects.link(empty)
+        there = location_3d_to_region_2d(context.region, context.region_data, obj.matrix_world @ Vector(place))
+        if there and np.linalg.norm(mouse - np.array(there)) < 15.0 * context.preferences.system.ui_scale:
+            return drawing, plane, number
+    return None
 
 
-class CURVE_OT_mobius_flow_add_family(AddsKnot, bpy.types.Operator):
-    """Add a knot or link made by a few numbers: a torus knot, braid, Lissajous curve, or two strands along a knot"""
+def _length(stroke: Sequence[FloatArray]) -> float:
+    return float(arc_lengths(np.array(stroke))[-1])
 
-    bl_label = "Knot Family"
 
-    family: EnumProperty(
-        name="Family",
-        description="What makes the knot",
-        items=[
-            ("TORUS", "Torus", "Winds around a torus"),
-            ("BRAID", "Braid", "Strands that cross one by one and close in a circle"),
-            ("LISSAJOUS", "Lissajous", "Three oscillations at right angles"),
-            ("CABLE", "Cable", "Strands along a knot, wound around each other"),
-            ("DOUBLE", "Double", "Two strands along a knot that hook into each other"),
-        ],
-        default="TORUS",
-    )
-    p: IntProperty(name="p", description="How often the curve goes round the torus", default=3, soft_min=2)
-    q: IntProperty(name="q", description="How often the curve goes through the torus", default=4, soft_min=2)
-    word: StringProperty(
-        name="Braid",
-        description="Crossings one by one: 2 crosses strands 2 and 3, -2 does so the other way",
-        default="1 -2 1 -2 1 -2",
-    )
-    frequency_x: IntProperty(name="Frequency X", description="Oscillations along X", default=3, min=1, max=40)
-    frequency_y: IntProperty(name="Y", description="Oscillations along Y", default=4, min=1, max=40)
-    frequency_z: IntProperty(name="Z", description="Oscillations along Z", default=7, min=1, max=40)
-    phase_x: FloatProperty(
-        name="Phase X", description="Where the oscillation along X begins", default=0.7, subtype="ANGLE"
-    )
-    phase_y: FloatProperty(name="Y", description="Where the oscillation along Y begins", default=0.2, subtype="ANGLE")
-    companion: StringProperty(
-        name="Along", description="Knot that the strands follow", default=labels()["3_1"], search=found
-    )
-    strands: IntProperty(name="Strands", description="Number of strands along the knot", default=2, min=2, max=12)
-    turns: IntProperty(
-        name="Turns",
-        description="Steps from strand to strand around the knot; one curve if Strands has no common divisor with it",
-        default=1,
-        min=-100,
-        max=100,
-    )
-    twists: IntProperty(
-        name="Twists", description="Full turns of the two strands around each other", default=0, min=-100, max=100
-    )
-    left_clasp: BoolProperty(
-        name="Left-Handed Clasp", description="Hook the strands into each other the other way", default=False
-    )
+def _even(stroke: Sequence[FloatArray]) -> FloatArray:
+    """A stroke, closed, with points at equal distances and smooth; shape (n, 2).
 
-    def make(self) -> tuple[str, Curve]:
-        if self.family == "TORUS":
-            return named_knot(f"T({self.p},{self.q})")
-        if self.family == "BRAID":
-            return named_knot(f"braid({','.join(self.word.replace(',', ' ').split())})")
-        if self.family == "LISSAJOUS":
-            frequencies, phases = (self.frequency_x, self.frequency_y, self.frequency_z), (self.phase_x, self.phase_y)
-            return f"Lissajous{frequencies}".replace(" ", ""), knots.lissajous_knot(frequencies, phases)
-        name = name_of(self.companion)
-        along = knots.smooth_knot(name)
-        if self.family == "CABLE":
-            return f"Cable({self.strands},{self.turns}) of {name}", knots.cable(along, self.strands, self.turns)
-        return f"Double of {name}", knots.double(along, self.twists, clasp=-1 if self.left_clasp else 1)
+    It goes along the spline through the stroke's points, if strands cross there as they do on the polygon.
+    """
+    closed = np.array([*stroke, stroke[0]])
+    arc = arc_lengths(closed)
+    corners = np.stack([np.interp(np.arange(0.0, arc[-1], 2 * _STEP), arc, x) for x in closed.T], axis=1)
+    polygon = averaged(Curve(corners), 6)  # passes that take the hand's trembling out
+    apart = closed[:-1][np.diff(arc) > 0.0]
+    with contextlib.suppress(MobiusFlowError):  # it touches itself, or has too few points
+        smooth = averaged(smoothed(Curve(apart), Mesh((len(corners),))), 6)
+        if _crossings(smooth) == _crossings(polygon):
+            return smooth
+    return polygon
 
-    def draw_kind(self, layout: bpy.types.UILayout) -> None:
-        layout.prop(self, "family")
-        column = layout.column(align=True)
-        for name in _SHOWN[self.family]:
-            column.prop(self, name)
+
+def _crossings(points: FloatArray) -> list[int]:
+    """The crossings of a closed plane polygon, numbered as they are first reached, in the order of its points."""
+    return list((np.argsort(Drawing.of(Curve(points)).passes, axis=None) // 2).tolist())

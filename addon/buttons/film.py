@@ -6,19 +6,17 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 
 from ...core import MobiusFlowError
-from ...core.messages import Message
+from ...core.base.messages import Message
+from ...core.driver.words import named, time_left
 from ..curves.recorded import drawn_radius
-from ..engine.words import named, time_left
-from ..live.checks import FILMABLE
 from ..live.modal import clear_status
-from ..live.requirements import Condition, idle, shown_curves
+from ..live.requirements import FILMABLE, Condition, idle, shown_curves
 from ..pictures import staging
-from ..pictures.movie import CHOICES, Filming, is_rendering, play, target
+from ..pictures.movie import CHOICES, Filming, is_rendering, is_there, play, target
 from ..scripting import Relaxation
 from ..translations import iface_, rpt_
 from .button import Button, button
 
-_INTERVAL = 0.2  # seconds between checks whether a render is over
 _STAGE = Condition(
     "The scene has no stage; press Set Up Stage first", lambda context: not staging.own_stage(context.scene)
 )
@@ -39,10 +37,19 @@ Your own lights stay; your camera and your world come back with Remove Stage"""
     use_world: BoolProperty(
         name="Use World", description="Render under the stage's sky instead of your own world", default=True
     )
+    hide_others: BoolProperty(
+        name="Hide Others",
+        description="Leave all other objects out of renders until Remove Stage, but for lights and what curves avoid",
+        default=True,
+    )
 
     def act(self, context: bpy.types.Context) -> None:
         objects = shown_curves(context)
-        Relaxation(*objects).set_up_stage(self.use_camera, self.use_world, context.scene.mobius_flow_film.look)
+        look = context.scene.mobius_flow_film.look
+        made = Relaxation(*objects).set_up_stage(self.use_camera, self.use_world, look, self.hide_others)
+        if others := staging.kept(made, staging.HIDDEN):
+            sentence = "Renders leave out {names} until you press Remove Stage"
+            self.report({"INFO"}, rpt_(sentence, names=named([obj.name for obj in others])))
         thin = [obj.name for obj in objects if not obj.hide_render and not drawn_radius(obj)]
         if thin:
             sentence = "Renders do not show {names}, as there is no tube: press Fit Tube"
@@ -107,7 +114,7 @@ class CURVE_OT_mobius_flow_render_film(_OfFilm, Button, bpy.types.Operator):
             self.filming.start()
         except MobiusFlowError as error:
             return self.fail(error)
-        self.timer = context.window_manager.event_timer_add(_INTERVAL, window=context.window)
+        self.timer = context.window_manager.event_timer_add(0.2, window=context.window)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
@@ -143,14 +150,13 @@ class CURVE_OT_mobius_flow_render_film(_OfFilm, Button, bpy.types.Operator):
         self.report({"INFO"}, rpt_("A film of {count} frames: {path}", count=made.frames, path=made.path))
 
 
-def _no_film(context: bpy.types.Context) -> bool:
-    try:
-        return not target(context.scene.mobius_flow_film.filepath).is_file()
-    except MobiusFlowError:
-        return True
+_MADE = Condition(
+    "This scene has made no film at this place; press Render Film first",
+    lambda context: not is_there(context.scene, context.scene.mobius_flow_film.filepath),
+)
 
 
-@button("Play Film", Condition("There is no film at this place; press Render Film first", _no_film), bl_options=set())
+@button("Play Film", _MADE, bl_options=set())
 def play_film(_operator: Button, context: bpy.types.Context) -> None:
     """Play the film that was rendered"""
     play(target(context.scene.mobius_flow_film.filepath))

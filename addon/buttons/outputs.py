@@ -7,26 +7,24 @@ import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 from ...core import Curve
+from ...core.base.messages import Message
 from ...core.collision import check_embedded
-from ...core.messages import Message
+from ...core.curve.tube import places_between
+from ...core.driver.words import named
+from ...core.keys.colours import COLOURINGS, COMPONENT, DISTANCE, ENERGY, vertex_values
+from ...core.keys.smooth_fit import FEWEST
 from ..curves import bevel, frame_values, outputs
-from ..curves.exchange import length, stretch
 from ..curves.frame_values import CLOSED, RING
 from ..curves.outputs import put_beside, smooth_objects
 from ..curves.recorded import Recorded, in_world
-from ..engine.colours import COLOURINGS, COMPONENT, DISTANCE, ENERGY, vertex_values
-from ..engine.interpolation import places_between
-from ..engine.smooth_fit import FEWEST, SmoothFit
-from ..engine.words import named
-from ..live.checks import READABLE
-from ..live.requirements import selected_curves
+from ..curves.splines import length, stretch
+from ..live.requirements import READABLE, selected_curves
 from ..pictures.materials import vertex_colours
 from ..translations import rpt_
 from .adding import check_length
 from .button import Button
 
 _PLAIN = "NONE"
-_MAX_POINTS = 10_000
 _Objects, _Records = Sequence[bpy.types.Object], Sequence[Recorded]
 
 
@@ -36,7 +34,7 @@ class _Output(Button):
             name="Hide Curve",
             description="Hide the curve, which is in the same place, in views and renders",
             default=True,
-        ),
+        )
     }
 
     needs = (READABLE,)
@@ -101,10 +99,14 @@ FBX does with NLA Strips and All Actions off, one frame later"""
 
     def make(self, objects: _Objects, recorded: _Records, link: Curve) -> list[bpy.types.Object]:
         """Make the meshes; the numbers that colors may show become attributes."""
-        values, radii, first, made = vertex_values(link), self._radii(objects, recorded, link), 0, []
+        values, first, made = vertex_values(link), 0, []
+        drawn = all(obj.data.bevel_depth for obj in objects)
+        wanted = self.radius or (0.0 if drawn else bevel.fitting_radius(link))  # in the world
         colours = None if self.color == _PLAIN else COLOURINGS[self.color](values[self.color])
-        for obj, each, own in zip(objects, recorded, radii, strict=True):
-            tube = outputs.tube_object(obj, each, own, self.sides)
+        for obj, each in zip(objects, recorded, strict=True):
+            depth = 0.0 if self.radius else obj.data.bevel_depth
+            radii = depth * each.radii if depth else np.full(each.radii.shape, wanted / stretch(obj))
+            tube = outputs.tube_object(obj, each, radii, self.sides)
             part = slice(first, first := first + each.mesh.size)
             outputs.write_values(tube.data, {name: array[part] for name, array in values.items()})
             if self.every_frame:
@@ -114,28 +116,15 @@ FBX does with NLA Strips and All Actions off, one frame later"""
             if colours is not None:
                 outputs.write_colours(tube.data, colours[part], vertex_colours(outputs.COLOUR))
             made.append(tube)
-        self._report(objects, recorded)
-        return made
-
-    def _radii(self, objects: _Objects, recorded: _Records, link: Curve) -> list[np.ndarray]:
-        """Radii at all keys, in each object's coordinates; (keys, n) each."""
-        drawn = [obj.data.bevel_depth for obj in objects]
-        wanted = self.radius or (0.0 if all(drawn) else bevel.fitting_radius(link))
-        return [
-            np.full(each.radii.shape, wanted / stretch(obj)) if self.radius or not depth else depth * each.radii
-            for obj, each, depth in zip(objects, recorded, drawn, strict=True)
-        ]
-
-    def _report(self, objects: _Objects, recorded: _Records) -> None:
-        own = [obj.name for obj in objects if obj.data.bevel_mode != "ROUND" or obj.data.taper_object]
-        if own:
+        if own := [obj.name for obj in objects if obj.data.bevel_mode != "ROUND" or obj.data.taper_object]:
             sentence = "The tube of {names} is round: profiles and tapers are left out"
             self.report({"WARNING"}, rpt_(sentence, names=named(own)))
         else:
-            keys, vertices = max(len(each.frames) for each in recorded), sum(each.mesh.size for each in recorded)
-            made = {"names": named([obj.name for obj in objects]), "count": vertices * self.sides, "keys": keys}
+            keys, names = max(len(each.frames) for each in recorded), named([obj.name for obj in objects])
             several = "{names}: {count} vertices with {keys} shape keys"
-            self.report({"INFO"}, rpt_(several if keys > 1 else "{names}: {count} vertices", **made))
+            made_of = {"names": names, "count": link.mesh.size * self.sides, "keys": keys}
+            self.report({"INFO"}, rpt_(several if keys > 1 else "{names}: {count} vertices", **made_of))
+        return made
 
 
 class CURVE_OT_mobius_flow_smooth_curve(_Output, bpy.types.Operator):
@@ -159,7 +148,7 @@ are. USD and Alembic keep the control points, glTF and FBX what is drawn (glTF n
             default=0,
             min=0,
             soft_max=200,
-            max=_MAX_POINTS,
+            max=10_000,
         ),
         **_Output.__annotations__,
     }
@@ -168,21 +157,14 @@ are. USD and Alembic keep the control points, glTF and FBX what is drawn (glTF n
         """Make the splines of all objects together: the strand that one comes near may belong to another."""
         points = max(self.points, FEWEST) if self.points else None
         made, fit = smooth_objects(objects, link, points, self.kind)
-        self._report(objects, fit)
-        return made
-
-    def _report(self, objects: _Objects, fit: SmoothFit) -> None:
-        scene = bpy.context.scene
-        said = Message(
-            "{names}: {count} points, at most {error} off",
-            names=named([obj.name for obj in objects]),
-            count=sum(map(len, fit.points)),
-            error=length(scene, fit.error),
-        )
+        scene, names = bpy.context.scene, named([obj.name for obj in objects])
+        count, error = sum(map(len, fit.points)), length(scene, fit.error)
+        said = Message("{names}: {count} points, at most {error} off", names=names, count=count, error=error)
         if fit.proved:
             self.report({"INFO"}, rpt_("{made}; the same knot, proved", made=said))
-            return
+            return made
         if np.isfinite(fit.gap):
             gap = length(scene, fit.gap)
             said = Message("{made}, where strands are only {gap} apart", made=said, gap=gap)
         self.report({"WARNING"}, rpt_("{made}; NOT proved to be the same knot, so give it more Points", made=said))
+        return made

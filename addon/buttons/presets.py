@@ -9,7 +9,7 @@ from bl_operators.presets import AddPresetBase
 from bl_ui.utils import PresetPanel
 from bpy.props import StringProperty
 
-from ..properties import SETTINGS, shown
+from ..properties import FURTHER, SETTINGS, shown
 from ..translations import rpt_
 
 PANEL = "VIEW3D_PT_mobius_flow_presets"
@@ -33,8 +33,8 @@ class CURVE_OT_mobius_flow_preset(bpy.types.Operator):
             sentence = "The preset {name} no longer exists; choose another one"
             self.report({"ERROR"}, rpt_(sentence, name=Path(self.filepath).name))
             return {"CANCELLED"}
-        for option in shown():
-            context.scene.mobius_flow.property_unset(option.name)
+        for name in ("options", *(option.name for option in shown() if option.row)):
+            context.scene.mobius_flow.property_unset(name)
         return set(bpy.ops.script.execute_preset(filepath=self.filepath, menu_idname=PANEL))
 
 
@@ -46,7 +46,7 @@ class CURVE_OT_mobius_flow_preset_add(AddPresetBase, bpy.types.Operator):
     preset_menu = PANEL
     preset_subdir = SUBDIRECTORY
     preset_defines = ("settings = bpy.context.scene.mobius_flow",)
-    preset_values = tuple(f"settings.{name}" for name in SETTINGS)
+    preset_values = tuple(f"settings.{name}" for name in ("options", *SETTINGS) if name not in FURTHER)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Add or remove a preset; the extension's own presets stay, wherever it is installed."""

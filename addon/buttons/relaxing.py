@@ -1,29 +1,37 @@
 """The operators that relax, anew or further, and those for the resulting animations."""
 
-from contextlib import suppress
+import time
+from functools import partial
 from typing import Any
 
 import bpy
+import numpy as np
 from bpy.props import BoolProperty, StringProperty
 
-from ...core import MobiusFlowError, Task
-from ...core.messages import Message
-from ..curves import bake
-from ..curves.baked_keys import BakedKeys
-from ..curves.pins import pinned_vertices
+from ...core import MobiusFlowError
+from ...core.base.messages import Message
+from ...core.keys.placement import at
+from ..curves import bake, pins
 from ..curves.session import Session
-from ..curves.surroundings import Surroundings
-from ..engine.rest import Rest
-from ..engine.words import named
+from ..curves.splines import control_points, questions
 from ..live import registry
-from ..live.checks import BAKED, CLEARABLE, POLYGONS, RELAXABLE, UNEDITED
-from ..live.modal import Listening, report_result, unseen
-from ..live.requirements import Condition, avoided, container, selected_curves, shown_curves
-from ..live.run import Run
-from ..live.viewing import Refresh
-from ..properties import SETTINGS, relax_options, settings
+from ..live.modal import Listening, report_end, report_result, unseen
+from ..live.requirements import (
+    BAKED,
+    CLEARABLE,
+    POLYGONS,
+    RELAXABLE,
+    Condition,
+    avoided,
+    container,
+    require,
+    selected_curves,
+    shown_curves,
+)
+from ..live.run import LiveRun, Refresh, RunState
+from ..properties import SETTINGS, settings
 from ..scripting import Relaxation, begin, implied
-from ..translations import rpt_
+from ..translations import iface_, rpt_
 from .button import Button, button
 
 _ANIMATED = Condition(
@@ -33,7 +41,6 @@ _PICKED = Condition(
     "Pick a mesh as the container first", lambda context: context.scene.mobius_flow_surroundings.container is None
 )
 _INSIDE = Condition("Put the curves inside the container first", lambda context: container(context) is None)
-_FULL = 20.0  # times its length: more than any curve reaches in a container that it is to fill
 _SEVERAL = Condition(
     "Select a curve, and then the one that it is to become",
     lambda context: context.active_object not in selected_curves(context) or len(selected_curves(context)) < 2,
@@ -56,15 +63,24 @@ class Relaxing(Listening, Button):
             description="Name of the collection whose visible objects are never touched; empty for none",
             options={"SKIP_SAVE", "HIDDEN"},
         ),
+        "again": BoolProperty(
+            name="Start Again",
+            description="Replace the keys of curves that have some without asking",
+            options={"SKIP_SAVE", "HIDDEN"},
+        ),
     }
     needs = (RELAXABLE,)
     continues = False  # whether baked curves are relaxed on from the ends of their animations
     stays = False  # whether a live run waits for a hand where it comes to rest
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        """Relax the selected curves live; ask first if smooth splines have to become polygons."""
+        """Relax the selected curves live; ask first if keys are replaced, or smooth splines have to become polygons."""
         if bpy.app.background or context.window is None:
             return self.execute(context)
+        if not (self.again or self.continues) and any(bake.is_baked(obj.data) for obj in self.moving(context)):
+            ask = partial(_go_on_or_begin_anew, type(self).bl_idname)
+            context.window_manager.popup_menu(ask, title=iface_("Already Animated"), icon="QUESTION")
+            return {"CANCELLED"}
         context.view_layer.update()
         if POLYGONS.of(selected_curves(context)) and not self.sample_splines:
             return set(bpy.ops.curve.mobius_flow_sample("INVOKE_DEFAULT")) and {"CANCELLED"}
@@ -73,7 +89,7 @@ class Relaxing(Listening, Button):
     def begin(self, context: bpy.types.Context) -> set[str]:
         try:
             values = self.values(context)
-            run = Run(self.session(context, values), Refresh(values["view_every"]), self.stays)
+            run = LiveRun(self.session(context, values), Refresh(values["view_every"]), self.stays)
         except MobiusFlowError as error:
             return self.fail(error)
         registry.begin(run)
@@ -83,12 +99,16 @@ class Relaxing(Listening, Button):
         try:
             return super().execute(context)
         except MemoryError:
-            sentence = "Memory ran out; all is as it was. Take fewer Vertices or Max Iterations"
+            sentence = "Memory ran out; all is as it was. Write fewer vertices or max_iterations into Further Options"
             self.report({"ERROR"}, rpt_(sentence))
             return {"CANCELLED"}
 
     def act(self, context: bpy.types.Context) -> None:
         report_result(self, context.scene, self.session(context, self.values(context)).run())
+
+    def moving(self, context: bpy.types.Context) -> list[bpy.types.Object]:
+        """The curves that get keys."""
+        return selected_curves(context)
 
     def session(self, context: bpy.types.Context, values: dict[str, Any]) -> Session:
         """Begin to relax the selected curves; raises MobiusFlowError."""
@@ -104,29 +124,45 @@ class Relaxing(Listening, Button):
 
 
 class CURVE_OT_mobius_flow_relax(Relaxing, bpy.types.Operator):
-    """Relax the selected curves together, never through themselves or each other, and keep the motion as keyframes"""
+    """Relax the selected curves together, never through themselves or each other, and keep the motion as keyframes. \
+Asks first whether curves that have keys go on from their end; in a script they begin anew"""
 
     bl_label = "Relax"
 
 
+def _go_on_or_begin_anew(name: str, menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
+    """Offer to press the operator of that name again, which then replaces keys."""
+    menu.layout.operator_context = "INVOKE_DEFAULT"
+    if name == CURVE_OT_mobius_flow_relax.bl_idname:
+        menu.layout.operator("curve.mobius_flow_continue", text=iface_("Continue from the Last Key"), icon="FF")
+    anew = menu.layout.operator(name, text=iface_("Start Again, and Replace the Keys"))
+    anew.again = True
+
+
+def _in_turn(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """The curve that morphs, and what it becomes before it is the active one."""
+    return sorted((obj for obj in selected_curves(context) if obj != context.active_object), key=lambda obj: obj.name)
+
+
 class CURVE_OT_mobius_flow_morph(Relaxing, bpy.types.Operator):
     """Let the selected curve become the active one by a motion that never passes through itself, and keep it as \
-keyframes; of several, the first by name moves, and becomes one after the other on its way"""
+keyframes; of several, the first by name moves, and becomes one after the other on its way. At the end the others are \
+hidden, which would be in the same place (Alt H)"""
 
     bl_label = "Morph to Active"
     needs = (RELAXABLE, POLYGONS, _SEVERAL)
 
+    def moving(self, context: bpy.types.Context) -> list[bpy.types.Object]:
+        return _in_turn(context)[:1]
+
     def session(self, context: bpy.types.Context, values: dict[str, Any]) -> Session:
-        active = context.active_object
-        moving, *between = sorted(
-            (obj for obj in selected_curves(context) if obj is not active), key=lambda obj: obj.name
-        )
-        return begin([moving], values, False, self.sample_splines, [*between, active])
+        moving, *between = _in_turn(context)
+        return begin([moving], values, False, self.sample_splines, [*between, context.active_object])
 
 
 class CURVE_OT_mobius_flow_grab(Relaxing, bpy.types.Operator):
     """Relax the selected curves, and wait for strands to be dragged in the view until the shape is kept; curves with \
-keys go on from the end of their animation"""
+keys go on from the end of their animation. Of all shapes of one energy they come to the one that bends least"""
 
     bl_label = "Grab"
     stays = True
@@ -136,9 +172,14 @@ keys go on from the end of their animation"""
         return BAKED.of(selected_curves(bpy.context)) is None
 
     def values(self, context: bpy.types.Context) -> dict[str, Any]:
-        """The settings of Relax, but lengths stay unless another size is asked for: pins are to stay where they are."""
-        values = super().values(context)
-        return values | ({"keep_size": "LENGTH"} if values["keep_size"] == "AUTO" else {})
+        """The settings of Relax, but lengths stay, for pins, and shapes are balanced, or knots would stay tiny."""
+        values, curves = super().values(context), [obj.data for obj in selected_curves(context)]
+        free = values["energy"] == "moebius" and not values["avoid"] and not any(map(pins.count, curves))
+        closed = all(spline.use_cyclic_u for data in curves for spline in data.splines)
+        return values | {
+            "keep_size": "LENGTH" if values["keep_size"] == "AUTO" else values["keep_size"],
+            "balance": values["balance"] or (free and closed),
+        }
 
 
 class CURVE_OT_mobius_flow_pack(Relaxing, bpy.types.Operator):
@@ -151,7 +192,7 @@ class CURVE_OT_mobius_flow_pack(Relaxing, bpy.types.Operator):
         """The settings of Relax, but curves grow, and always avoid the container."""
         values = super().values(context)
         if not self.properties.is_property_set("grow"):
-            values["grow"] = _FULL
+            values["grow"] = 20.0  # times its length: more than any curve reaches in a container that it is to fill
         return values | {"avoid": [*values["avoid"], container(context)]}
 
 
@@ -163,8 +204,8 @@ class CURVE_OT_mobius_flow_bake_again(Relaxing, bpy.types.Operator):
 
 
 class CURVE_OT_mobius_flow_continue(Relaxing, bpy.types.Operator):
-    """Relax the selected curves on from the end of their animation, with the points that they have, whatever \
-Vertices says; new keys follow the old ones"""
+    """Relax the selected curves on from the end of their animation, with the points that they have; new keys follow \
+the old ones"""
 
     bl_label = "Continue"
     needs = (RELAXABLE, BAKED)
@@ -186,64 +227,116 @@ def scene_range(operator: Button, context: bpy.types.Context) -> None:
         operator.report({"WARNING"}, rpt_(hidden))
 
 
-class CURVE_OT_mobius_flow_balance(Relaxing, bpy.types.Operator):
-    """Go on to the shape of the same energy that bends least for its length; new keys follow the old ones"""
-
-    bl_label = "Balance"
-    needs = (RELAXABLE, BAKED)
-    continues = True
-
-    def values(self, context: bpy.types.Context) -> dict[str, Any]:
-        return super().values(context) | {"balance": True}
-
-
-@button("Check", RELAXABLE, BAKED, needs_at_last=(UNEDITED,), bl_options={"REGISTER"})  # nothing to undo
-def check(operator: Button, context: bpy.types.Context) -> None:
-    """Tell whether the selected curves have come to rest at a minimum of the energy or at a saddle; nothing changes"""
-    values = {name: getattr(context.scene.mobius_flow, name) for name in SETTINGS}
-    operator.report({"INFO"}, rpt_(_described(context, _rest(context, values | {"avoid": avoided(context)}))))
+_GOING_ON = Condition("Nothing is being relaxed", lambda _: registry.current() is None)
+_COMPUTING = Condition(
+    "The relaxation is over; its keys are being written",
+    lambda _: (run := registry.current()) is not None and run.state is RunState.FINISHING,
+)
+_TROUBLE = Condition(
+    "This curve has no problem to show",
+    lambda context: not ((run := registry.shown(context.active_object)) and run.state.over and run.trouble),
+)
+_RECOVERABLE = Condition(
+    "No relaxation was cancelled", lambda _: (run := registry.latest()) is None or not run.recoverable
+)
 
 
-class CURVE_OT_mobius_flow_leave_saddle(Relaxing, bpy.types.Operator):
-    """Go on downhill where the selected curves rest on a saddle of the energy; new keys follow the old ones"""
+@button("Pause", _COMPUTING, _GOING_ON, bl_options=set())
+def pause(_operator: Button, _context: bpy.types.Context) -> None:
+    """Pause the relaxation, or go on with it"""
+    registry.current().toggle_pause()
 
-    bl_label = "Leave Saddle"
-    needs = (RELAXABLE, BAKED)
-    continues = True
 
-    def values(self, context: bpy.types.Context) -> dict[str, Any]:
-        return super().values(context) | {"escape_saddles": True}
+@button("Keep", _COMPUTING, _GOING_ON, bl_options=set())
+def stop(_operator: Button, _context: bpy.types.Context) -> None:
+    """Stop here: keep the shape that the curves have now, and the motion up to it"""
+    registry.current().keep()  # the event loop writes the result
+
+
+@button("Cancel", _GOING_ON, bl_options=set())
+def cancel(_operator: Button, _context: bpy.types.Context) -> None:
+    """Stop, and put everything back as it was; Recover brings it back again"""
+    registry.current().cancel()
+
+
+class CURVE_OT_mobius_flow_recover(Listening, Button, bpy.types.Operator):
+    """Keep what the last relaxation had reached when it was cancelled"""
+
+    bl_label = "Recover"
+    needs = (_RECOVERABLE,)
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        """Write the keys while Blender stays usable."""
+        if bpy.app.background or context.window is None:
+            return self.execute(context)
+        try:
+            return self.listen(context, self._recovered())
+        except MobiusFlowError as error:
+            return self.fail(error)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Do the whole job, if there is a saddle to leave."""
-        return {"CANCELLED"} if self._at_minimum(context) else super().execute(context)
+        try:
+            run = self._recovered()
+        except MobiusFlowError as error:
+            return self.fail(error)
+        while not run.state.over:
+            run.tick()
+            time.sleep(0.005)  # the keys are being prepared
+        report_end(self, context.scene, run)
+        return {"FINISHED"} if run.state is RunState.DONE else {"CANCELLED"}
 
-    def begin(self, context: bpy.types.Context) -> set[str]:
-        return {"CANCELLED"} if self._at_minimum(context) else super().begin(context)
-
-    def _at_minimum(self, context: bpy.types.Context) -> bool:
-        """Whether the curves rest at a minimum, which is reported; other errors are left to the relaxation."""
-        with suppress(MobiusFlowError):
-            rest = _rest(context, self.values(context))
-            if rest.index == 0:
-                self.report({"INFO"}, rpt_(_described(context, rest)))
-                return True
-        return False
-
-
-def _rest(context: bpy.types.Context, values: dict[str, Any]) -> Rest:
-    """Where the selected curves rest; raises MobiusFlowError."""
-    context.view_layer.update()
-    objects = selected_curves(context)
-    keys = BakedKeys(objects)
-    task = Task(
-        curve=keys.curves[-1],
-        obstacles=Surroundings.of(values["avoid"], objects).obstacles,
-        pins=pinned_vertices(objects, keys.mesh),
-    )
-    return Rest.of(task, relax_options({**values, "balance": False}))
+    def _recovered(self) -> LiveRun:
+        run = registry.latest()
+        assert run is not None, "poll looks for it"
+        require(RELAXABLE.of(run.group.objects))
+        run.recover()
+        return run
 
 
-def _described(context: bpy.types.Context, rest: Rest) -> Message:
-    names = named([obj.name for obj in selected_curves(context)])
-    return Message("{names}: {rest}", names=names, rest=rest.words)
+class CURVE_OT_mobius_flow_sample(Button, bpy.types.Operator):
+    """Ask whether smooth splines may become polygons, then relax"""
+
+    bl_label = "Sample and Relax"
+    bl_options = {"INTERNAL"}
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        try:
+            self.questions = questions(selected_curves(context))
+        except MobiusFlowError as error:
+            return self.fail(error)
+        return set(context.window_manager.invoke_props_dialog(self, width=420))
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        for question in self.questions:
+            self.layout.label(text=iface_(question), icon="QUESTION")
+        self.layout.label(text=iface_("For more or fewer points change the curve's Resolution Preview U."))
+
+    def act(self, _context: bpy.types.Context) -> None:
+        bpy.ops.curve.mobius_flow_relax("INVOKE_DEFAULT", sample_splines=True, again=True)
+
+
+@button("Show", _TROUBLE)
+def show(_operator: Button, context: bpy.types.Context) -> None:
+    """Select the points that the message is about, in Edit Mode"""
+    run = registry.shown(context.active_object)
+    spots = {obj: spot for obj, spot in run.spots.items() if obj.visible_get()}
+    if not spots:
+        sentence = "The curve is hidden, or not in this view layer; make it visible first"
+        raise MobiusFlowError(Message(sentence))
+    if context.mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")
+    for obj in context.view_layer.objects:
+        obj.select_set(obj in spots)
+    context.view_layer.objects.active = next(iter(spots))
+    for obj, spot in spots.items():
+        points = [point for spline in obj.data.splines for point in control_points(spline)]
+        chosen = at(np.array([point.co[:3] for point in points]), spot.points)
+        for point, wanted in zip(points, chosen.tolist(), strict=True):
+            if isinstance(point, bpy.types.BezierSplinePoint):
+                point.select_control_point = wanted
+                point.select_left_handle = point.select_right_handle = False
+            else:
+                point.select = wanted
+    bpy.ops.object.mode_set(mode="EDIT")
+    if context.region_data is not None:
+        bpy.ops.view3d.view_selected()

@@ -8,23 +8,91 @@ import bpy
 import numpy as np
 
 from ...core import MobiusFlowError
-from ...core.messages import Message
-from ..engine.key_options import KeyOptions, Output, Timing
-from . import blends, keyframes
-from .exchange import key_points
-from .keyframes import animated, count_own
-from .splines import Splines, shape
+from ...core.base.messages import Message
+from ...core.base.types import FloatArray
+from ...core.keys.key_options import Course, KeyOptions, Output, Timing
+from ...core.keys.placement import Similarity
+from . import keyframes
+from .keyframes import animated, count_own, fcurves_of
+from .sizes import drive
+from .splines import Splines, key_points, shape
 
 _RECORD = "mobius_flow_bake"  # custom property of curve data
-_DRIVEN = ("splines", "eval_time", "key_blocks")  # beginnings of paths of drivers that move points
-_BEVEL = ("bevel_depth", "bevel_resolution", "use_fill_caps")
 
 
-def remember(data: bpy.types.Curve, before: bpy.types.Curve, timing: Timing) -> None:
-    """Record on curve data that has just been keyed what it was before; data without keys gets no record."""
-    if animated(data):
-        data[_RECORD] = {"original": before, "holds": [timing.hold_start, 0], "loop": timing.loop}
-        update(data, timing)
+def remember(
+    data: bpy.types.Curve,
+    timing: Timing,
+    frames: FloatArray,
+    course: Course,
+    shown: Sequence[Similarity],
+    before: bpy.types.Curve | None,
+) -> None:
+    """Record how curve data has just been keyed, the keys' sizes, and what it was before; nothing without keys.
+
+    ``before``: None if the keys follow others, the last of which is the first of them.
+    """
+    if before is not None:
+        if not animated(data):
+            return
+        slots = len(before.materials), len(data.materials)  # those between are goals'
+        data[_RECORD] = {"original": before, "holds": [timing.hold_start, 0], "loop": timing.loop, "slots": slots}
+    elif count := key_count(data):
+        course = Course(*np.array(data[_RECORD]["course"]).reshape(-1, count)).then(course)
+        frames, shown = np.append(data[_RECORD]["frames"], frames[1:]), [*_noted(data), *shown[1:]]
+    record = data[_RECORD]
+    if before is not None or count:  # versions that did not note them wrote shape keys as they are
+        record["frames"], record["course"] = frames.tolist(), np.concatenate(course.columns).tolist()
+    elif data.shape_keys:
+        shown = [Similarity()] * (len(data.shape_keys.key_blocks) - len(shown) + 1) + [*shown[1:]]
+    _note_sizes(data, shown)
+    update(data, timing)
+
+
+def _note_sizes(data: bpy.types.Curve, shown: Sequence[Similarity]) -> None:
+    data[_RECORD]["sizes"] = [float(value) for size in shown for value in (size.factor, *size.shift)]
+
+
+def key_count(data: bpy.types.Curve) -> int:
+    """The number of keys that curve data was given here; 0 in files of versions that did not note it."""
+    return len(data[_RECORD].get("frames", ())) if _RECORD in data else 0
+
+
+def sizes(data: bpy.types.Curve) -> list[Similarity]:
+    """How a curve is shown, in its object's coordinates, at each of its keys; one as it is where that is at all."""
+    blocks = data.shape_keys.key_blocks if data.shape_keys else ()
+    noted = _noted(data) if _RECORD in data else []
+    return noted if len(noted) == len(blocks) > 0 else [Similarity()] * max(len(blocks), 1)
+
+
+def _noted(data: bpy.types.Curve) -> list[Similarity]:
+    noted = np.array(data[_RECORD].get("sizes", ())).reshape(-1, 4)
+    return [Similarity(float(factor), shift) for factor, shift in zip(noted[:, 0], noted[:, 1:], strict=True)]
+
+
+def resize(obj: bpy.types.Object, shown: Sequence[Similarity]) -> None:
+    """Show a baked curve in other sizes at its shape keys."""
+    _note_sizes(obj.data, shown)
+    drive(obj, shown)
+
+
+def retime(data: bpy.types.Curve, timing: Timing) -> bool:
+    """Let a baked curve's keys be passed at other frames; return whether they are, and nobody has moved them.
+
+    Raises OptionError if they would not all be passed.
+    """
+    record = data[_RECORD]
+    old = np.array(record.get("frames", ()))
+    there = keyframes.frames_of(data)
+    if not len(old) or len(there) < len(old) or np.abs(there[: len(old)] - old).max() > 0.02:
+        return False
+    timing.check_keys(len(old))
+    new = timing.frames(Course(*np.array(record["course"]).reshape(-1, len(old))))
+    for curve in [curve for owner in animated(data) for curve in fcurves_of(owner)]:
+        keyframes.retime(curve, old, new, timing)
+    record["frames"], record["loop"] = new.tolist(), timing.loop
+    record["holds"] = [timing.hold_start, timing.hold_start - 1 if timing.loop else timing.hold_end]
+    return True
 
 
 def original(data: bpy.types.Curve) -> bpy.types.Curve:
@@ -36,8 +104,7 @@ def update(data: bpy.types.Curve, timing: Timing | None = None) -> None:
     record = data[_RECORD]
     record["fingerprint"], record["shapes"] = _fingerprint(data), _digest(data)
     if timing is not None:  # the rest before the first key of all is the one that was baked
-        # the frame where a loop begins again is the first one
-        after = timing.hold_start - 1 if timing.loop else timing.hold_end
+        after = timing.hold_start - 1 if timing.loop else timing.hold_end  # a loop begins again at the first frame
         record["bevel_depth"], record["holds"] = data.bevel_depth, [record["holds"][0], after]
 
 
@@ -47,11 +114,6 @@ def scale_bevel(data: bpy.types.Curve, factor: float) -> None:
     data.bevel_depth *= factor
     if ours:
         record["bevel_depth"] = data.bevel_depth
-
-
-def loops(data: bpy.types.Curve) -> bool:
-    """Whether a baked curve goes back to where it began."""
-    return bool(data[_RECORD].get("loop", False))
 
 
 def is_baked(data: bpy.types.Curve) -> bool:
@@ -85,10 +147,8 @@ def continued(objects: Sequence[bpy.types.Object], options: KeyOptions) -> KeyOp
     """The options with which an animation continues where the last of some baked objects comes to rest."""
     played = scene_range(objects)
     assert played is not None, "they are baked"
-    if looping := next((obj.name for obj in objects if loops(obj.data)), None):
-        raise MobiusFlowError(
-            Message("'{name}' ends where it begins; switch Loop off, and Relax it anew", name=looping)
-        )
+    if looping := next((obj.name for obj in objects if obj.data[_RECORD].get("loop")), None):
+        raise MobiusFlowError(Message("'{name}' ends where it begins; switch Loop off first", name=looping))
     # the first of the new frames is the last of the old ones
     timing = replace(options.timing, start_frame=float(played[1]), length=options.timing.length + 1, loop=False)
     return replace(options, output=Output.SHAPE_KEYS if not options.animated else options.output, timing=timing)
@@ -97,18 +157,28 @@ def continued(objects: Sequence[bpy.types.Object], options: KeyOptions) -> KeyOp
 def clear(obj: bpy.types.Object) -> None:
     """Remove a baked curve's keys and restore the curve that was there before.
 
-    A bevel that was changed since the keys were written stays, and so do the materials that splines were given.
+    A bevel that was changed since the keys were written stays, and so do the materials that splines were given, but
+    for those of goals.
     """
     data = obj.data
-    before, bevel_depth = original(data), data[_RECORD]["bevel_depth"]
+    before, bevel_depth, (first, last) = (
+        original(data),
+        data[_RECORD]["bevel_depth"],
+        data[_RECORD].get("slots", (0, 0)),
+    )
+    keyed = {curve.data_path for curve in (fcurves_of(data) if data in animated(data) else ())}
     slots = [spline.material_index for spline in data.splines]
     forget(obj)
     Splines.of(before).fill(data)
-    for spline, slot in zip(data.splines, slots, strict=True):
-        spline.material_index = slot
-    blends.take_off(data)
+    for k, (spline, slot) in enumerate(zip(data.splines, slots, strict=True)):
+        if f"splines[{k}].material_index" not in keyed:
+            spline.material_index = slot
+    used = {spline.material_index for spline in data.splines}
+    for slot in reversed(range(first, min(last, len(data.materials)))):
+        if slot not in used:
+            data.materials.pop(index=slot)
     if data.bevel_depth == bevel_depth:
-        for name in _BEVEL:
+        for name in ("bevel_depth", "bevel_resolution", "use_fill_caps"):
             setattr(data, name, getattr(before, name))
     if not before.users:
         bpy.data.curves.remove(before)
@@ -125,9 +195,12 @@ def _fingerprint(data: bpy.types.Curve) -> list[int]:
     keys = data.shape_keys
     owner, moved = keys or data, data.animation_data
     blocks = 0 if keys is None else -1 if keys.use_relative else len(keys.key_blocks)
-    other = keys is not None and moved is not None and bool(moved.action or moved.nla_tracks)
+    other = (
+        keys is not None and moved is not None and bool(moved.nla_tracks or (moved.action and count_own(data) is None))
+    )
     driven = owner.animation_data.drivers if owner.animation_data is not None else ()
-    other = other or any(driver.data_path.startswith(_DRIVEN) for driver in driven)
+    moving = "splines", "eval_time", "key_blocks"  # beginnings of paths of drivers that move points
+    other = other or any(driver.data_path.startswith(moving) for driver in driven)
     own = None if other else count_own(owner)
     splines = shape(data)
     points, open_ones = sum(each.count for each in splines), [k for k, each in enumerate(splines) if not each.closed]

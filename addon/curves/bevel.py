@@ -12,14 +12,14 @@ import numpy as np
 
 from ...core import Curve, CurveError, Obstacle
 from ...core.collision import check_embedded
-from ..engine.tube import free_radius, radius_beside, thickest_radius
-from ..engine.words import in_blenders_words, spline_names
-from .exchange import stretch
+from ...core.driver.words import in_blenders_words, spline_names
+from ...core.keys.tube import free_radius, radius_beside, thickest_radius
+from . import bake
 from .recorded import Recorded, in_world
-from .splines import radii
+from .splines import radii, stretch
 
 _FITTED = "mobius_flow_tube"  # custom property of curve data: depths that were fitted
-_RESOLUTION = 6
+_CONSTANT = "mobius_flow_tube_constant"  # another one: whether they were fitted to be as thick at all keys
 
 
 def can_fit(data: bpy.types.Curve) -> bool:
@@ -33,25 +33,32 @@ def is_fitted(data: bpy.types.Curve) -> bool:
     return data.bevel_depth in list(data.get(_FITTED, ()))
 
 
+def is_constant(data: bpy.types.Curve) -> bool:
+    """Whether a curve is drawn as a tube that was fitted to all its keys, and is as thick at each of them."""
+    return bool(is_fitted(data) and data.get(_CONSTANT))
+
+
 def fitting_radius(curve: Curve, obstacles: Sequence[Obstacle] = ()) -> float:
     """The largest radius that is free of contact, but not so large that the tube no longer looks like a curve."""
     return radius_beside(curve, free_radius(curve, thickest_radius(curve)), obstacles)
 
 
-def fit(data: bpy.types.Curve, radius: float) -> None:
-    """Draw a curve as the tube that fits, and note that it is one."""
+def fit(data: bpy.types.Curve, radius: float, constant: bool | None = None) -> None:
+    """Draw a curve as the tube that fits, and note that it is one; ``constant``: whether it was fitted to all keys."""
     draw(data, radius)
     data[_FITTED] = sorted({*data.get(_FITTED, ()), data.bevel_depth})
+    if constant is not None:
+        data[_CONSTANT] = constant
 
 
 def draw(data: bpy.types.Curve, radius: float) -> None:
     if not data.bevel_depth:
-        data.bevel_resolution, data.use_fill_caps = _RESOLUTION, True  # caps, which closed splines do not need
+        data.bevel_resolution, data.use_fill_caps = 6, True  # caps, which closed splines do not need
     data.bevel_depth = radius
 
 
-def fit_tubes(objects: Sequence[bpy.types.Object]) -> None:
-    """Fit the bevels of curve objects that are shown together.
+def fit_tubes(objects: Sequence[bpy.types.Object], constant: bool = False) -> None:
+    """Fit the bevels of curve objects that are shown together; ``constant``: as thick at all keys as where it is least.
 
     Where all have the same number of shape keys, tubes are fitted at each of them, and otherwise at the end. Raises
     CurveError if their splines cannot be read, or touch at a key: no tube is thin enough then.
@@ -68,9 +75,11 @@ def fit_tubes(objects: Sequence[bpy.types.Object]) -> None:
         except CurveError as error:
             raise CurveError(in_blenders_words(str(error), splines)) from error
     fitting = np.array([fitting_radius(link) for link in links])
+    fitting = np.full_like(fitting, fitting.min()) if constant else fitting
     for obj in objects:
         data, wanted = obj.data, fitting / stretch(obj)
-        fit(data, float(wanted[-1]))
+        wanted = wanted / [size.factor for size in bake.sizes(data)]  # which the tube is shown in too
+        fit(data, float(wanted[-1]), constant)
         for k, block in enumerate(data.shape_keys.key_blocks if data.shape_keys else ()):
             relative = wanted[min(k, len(wanted) - 1)] / wanted[-1]
             block.data.foreach_set("radius", np.full(len(block.data), relative, dtype=np.float32))

@@ -1,27 +1,27 @@
 """The curve objects that are relaxed together as one link; a single object is a group of one."""
 
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack
 
 import bpy
 import numpy as np
 
 from ...core import Curve
+from ...core.base.errors import Place
+from ...core.base.messages import Message
+from ...core.base.types import FloatArray
 from ...core.curve import Mesh
-from ...core.errors import Place
-from ...core.messages import Message
-from ...core.types import FloatArray
-from ..engine.key_options import KeyOptions
-from ..engine.motion import Keys
-from ..engine.placement import Frame, Placement, Spot, spots
-from ..engine.words import in_blenders_words, named, spline_names
-from .exchange import read_link
+from ...core.driver.words import in_blenders_words, named, spline_names
+from ...core.keys.key_options import Course, KeyOptions
+from ...core.keys.motion import Keys
+from ...core.keys.placement import Frame, Placement, Similarity, Spot, spots
 from .member import Member
 from .pins import pin, pinned_vertices, unpin
-from .splines import coordinates
+from .sizes import placement
+from .splines import coordinates, read_link
 
 
-class Group:
+class CurveGroup:
     """Curve objects, the link that their splines form, and what is written to them.
 
     `checks.refusal` accepts the objects, and their transforms are evaluated. They show stand-ins until all
@@ -75,7 +75,17 @@ class Group:
         """Whether any of the objects is drawn as a tube that is to be fitted."""
         return any(member.fits(options) for member in self._members)
 
-    def equals(self, other: "Group") -> bool:
+    @property
+    def size(self) -> Similarity:
+        """How the link is shown that the run begins with."""
+        return self._members[0].size if self.continues else Similarity()
+
+    @property
+    def replaced(self) -> int:
+        """The number of keys that those written take the place of."""
+        return max(member.replaced for member in self._members)
+
+    def equals(self, other: "CurveGroup") -> bool:
         """Whether the same polygons are stored in the same places, bit for bit."""
         pairs = zip(self.link.placements, other.link.placements, strict=False)
         return (
@@ -92,7 +102,8 @@ class Group:
         """
         reason = next((reason for member in self._members if (reason := member.lost())), None)
         if reason is None and not (alone and len(self._members) == 1):
-            moved = next((member for member in self._members if member.moved), None)
+            there = ((member, placement(member.object)) for member in self._members)
+            moved = next((member for member, here in there if not here.equals(member.placement)), None)
             reason = Message("'{name}' was moved against the others", name=moved.name) if moved else None
         return reason
 
@@ -170,32 +181,21 @@ class Group:
         for member, vertices, scale in zip(self._members, self.link.slices(mesh), self.link.scales, strict=True):
             own = None if radii is None else radii / scale
             yield from member.writing(keys.part(vertices), frames, options, own)
+
+    def keep(self, keys: Keys, frames: FloatArray, options: KeyOptions, course: Course) -> None:
+        """Make what was written final."""
         for member in self._members:
-            member.keep(options)
+            member.keep(keys, frames, options, course)
 
     def discard(self) -> bool:
         """Show the originals for good, unless somebody else changed something; return whether all is as it was."""
-        with _outside_edit_mode(self.objects), ExitStack() as everything:
-            restored: list[bool] = []
-
-            def discard(member: Member) -> None:
-                restored.append(member.discard())
-
+        restored: list[bool] = []
+        with ExitStack() as everything:
+            # close curves that may just have been opened for editing, and reopen them afterwards
+            if mode := next((obj.mode for obj in self.objects if obj.mode != "OBJECT"), None):
+                bpy.ops.object.mode_set(mode="OBJECT")
+                everything.callback(bpy.ops.ed.undo_push, message="Relaxation Ended")
+                everything.callback(bpy.ops.object.mode_set, mode=mode)
             for member in self._members:  # each of them, even if one fails
-                everything.callback(discard, member)
+                everything.callback(lambda each: restored.append(each.discard()), member)
         return all(restored)
-
-
-@contextmanager
-def _outside_edit_mode(objects: Sequence[bpy.types.Object]) -> Iterator[None]:
-    """Change curves while some may just have been opened for editing: close these, and reopen them afterwards."""
-    mode = next((obj.mode for obj in objects if obj.mode != "OBJECT"), "OBJECT")
-    if mode == "OBJECT":
-        yield
-        return
-    bpy.ops.object.mode_set(mode="OBJECT")
-    try:
-        yield
-    finally:
-        bpy.ops.object.mode_set(mode=mode)
-        bpy.ops.ed.undo_push(message="Relaxation Ended")

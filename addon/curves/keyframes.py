@@ -3,21 +3,22 @@
 Data that already has such keys gets the new ones after the last.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from itertools import chain
 from typing import Any
 
 import bpy
 import numpy as np
 
-from ...core.types import FloatArray
-from ..engine.key_options import Output, Timing
-from ..engine.motion import Keys
-from ..engine.placement import Frame
-from .exchange import key_points, key_radii, write_points
+from ...core.base.types import FloatArray
+from ...core.keys.key_options import Output, Timing
+from ...core.keys.motion import Keys
+from ...core.keys.placement import Frame
+from .fcurves import LINEAR, collections, draw_line, new_action
+from .splines import key_points, read, write_points
+from .splines import radii as spline_radii
 
 _ONCE = Timing()
-_LINEAR = 1  # 'LINEAR' among the interpolations of a keyframe, as arrays of them are written in one call
 _MARK = "mobius_flow"  # custom property of the actions made here
 
 
@@ -32,19 +33,53 @@ def writing(
     """Write keys in short pieces to a curve object with as many points; the curve itself keeps the last key.
 
     It has no animation, or keys of an earlier call, the last of which is the first of the new ones. ``frames``: scene
-    frame of each key, ascending; ``radii``: relative radii at each, (keys,) or of each point, (keys, n); None keeps the
-    points' own; ``timing``: whether keys are passed again on the way back.
+    frame of each key, ascending; ``radii``: factors of the points' own radii at each key, (keys,), or for each point,
+    (keys, n); ``timing``: whether keys are passed again on the way back.
     """
-    write_points(obj.data, keys.keys[-1].points)
-    if output is Output.SHAPE_KEYS:
-        yield from _shape_keys(obj, keys, frames, radii, timing)
-    elif output is Output.FCURVES:
-        yield from _fcurves(obj, keys, frames)
+    data = obj.data
+    write_points(data, keys.keys[-1].points)
+    if output is Output.SHAPE_KEYS:  # absolute ones, and an F-curve that runs through them
+        own = np.concatenate([spline_radii(spline) for spline in data.splines])
+        there = len(data.shape_keys.key_blocks) if data.shape_keys else 0
+        skipped = min(there, 1)  # the first of the additional keys is there already
+        for k, key in enumerate(keys.keys[skipped:], skipped):
+            place = there - skipped + k
+            if place:
+                # An absolute key is put where the evaluation time is. In steps of 1 it is read back exactly; Blender's
+                # own steps of 10 add up rounding errors, and the animation would miss its keys.
+                data.shape_keys.use_relative = False
+                data.shape_keys.eval_time = place
+            block = obj.shape_key_add(name=f"{key.kind.value} {key.time:g}", from_mix=False)
+            block.interpolation = "KEY_LINEAR"
+            block.data.foreach_set("co", key.points.ravel())
+            if radii is not None:
+                block.data.foreach_set("radius", (own * radii[k]).astype(np.float32))
+            yield
+        data.shape_keys.use_relative = False
+        data.shape_keys.eval_time = 0
+        curves = FCurves(data.shape_keys, f"{obj.name} Relaxation")
+        curves.add("eval_time", 0, *there_and_back(frames, there - skipped + np.arange(float(len(frames))), timing))
+    elif output is Output.FCURVES:  # one for every coordinate of every point
+        curves = FCurves(data, f"{obj.name} Relaxation")
+        values = np.stack([key.points for key in keys.keys], axis=-1).astype(np.float64)
+        for path, point in zip(point_paths(data), values, strict=True):
+            for axis in range(3):
+                curves.add(path, axis, frames, point[axis])
+            yield
 
 
 def erase(obj: bpy.types.Object) -> None:
-    """Remove all that `writing` has written except the positions of the points."""
-    drop_actions(obj.data)
+    """Remove all that `writing` has written except the positions of the points.
+
+    Actions and slots that nothing else uses are deleted.
+    """
+    for animation in [owner.animation_data for owner in animated(obj.data)]:
+        action, slot = animation.action, getattr(animation, "action_slot", None)
+        animation.action = None
+        if action.users == action.use_fake_user:
+            bpy.data.actions.remove(action)
+        elif slot is not None and not slot.users():
+            action.slots.remove(slot)
     if obj.data.shape_keys:
         uid = obj.data.shape_keys.session_uid
         obj.shape_key_clear()
@@ -63,22 +98,12 @@ def remove(data: bpy.types.Curve) -> None:
     bpy.data.curves.remove(data)
 
 
-def names(data: bpy.types.Curve) -> dict[str, str]:
-    """The names of curve data, of its shape keys, and of their action or its own."""
-    return {kind: block.name for kind, block in _blocks(data).items()}
-
-
-def rename(data: bpy.types.Curve, wanted: dict[str, str]) -> None:
-    """Give curve data and its keys names that are free now."""
-    for kind, block in _blocks(data).items():
-        block.name = wanted.get(kind, block.name)
-
-
-def _blocks(data: bpy.types.Curve) -> dict[str, bpy.types.ID]:
+def blocks(data: bpy.types.Curve) -> dict[str, bpy.types.ID]:
+    """Curve data, its shape keys, and their action or its own."""
     owner = data.shape_keys or data
     action = owner.animation_data.action if owner.animation_data else None
-    blocks = {"curve": data, "keys": data.shape_keys, "action": action}
-    return {kind: block for kind, block in blocks.items() if block is not None}
+    found = {"curve": data, "keys": data.shape_keys, "action": action}
+    return {kind: block for kind, block in found.items() if block is not None}
 
 
 def output_of(data: bpy.types.Curve) -> Output | None:
@@ -96,49 +121,24 @@ def end_of(data: bpy.types.Curve) -> Frame:
     return np.array(last, dtype=np.float32).reshape(-1, 3)
 
 
-def scale_radii(data: bpy.types.Curve, factors: float | FloatArray) -> None:
-    """Multiply the points' radii at all shape keys by one factor, or one for each, (keys,)."""
-    blocks = data.shape_keys.key_blocks if data.shape_keys else ()
-    for block, factor in zip(blocks, np.broadcast_to(factors, len(blocks)), strict=True):
-        block.data.foreach_set("radius", key_radii(block) * np.float32(factor))
+def there_and_back(frames: FloatArray, values: FloatArray, timing: Timing) -> tuple[FloatArray, FloatArray]:
+    """Frames and values of all keys of an F-curve, those passed on the way back included."""
+    back = timing.way_back(frames)
+    return np.concatenate([frames, back]), np.concatenate([values, values[::-1][len(values) - len(back) :]])
 
 
-def _shape_keys(
-    obj: bpy.types.Object, keys: Keys, frames: FloatArray, radii: FloatArray | None = None, timing: Timing = _ONCE
-) -> Iterator[None]:
-    """Absolute shape keys, and an F-curve that runs through them."""
-    data = obj.data
-    there = len(data.shape_keys.key_blocks) if data.shape_keys else 0
-    skipped = min(there, 1)  # the first of the additional keys is there already
-    for k, key in enumerate(keys.keys[skipped:], skipped):
-        place = there - skipped + k
-        if place:
-            # An absolute key is put where the evaluation time is. In steps of 1 it is read back exactly; Blender's own
-            # steps of 10 add up rounding errors, and the animation would miss its keys.
-            data.shape_keys.use_relative = False
-            data.shape_keys.eval_time = place
-        block = obj.shape_key_add(name=f"Iterate {key.time:g}", from_mix=False)
-        block.interpolation = "KEY_LINEAR"
-        block.data.foreach_set("co", key.points.ravel())
-        if radii is not None:
-            block.data.foreach_set("radius", np.broadcast_to(radii[k], len(key.points)).astype(np.float32))
-        yield
-    data.shape_keys.use_relative = False
-    data.shape_keys.eval_time = 0
-    curves = FCurves(data.shape_keys, f"{obj.name} Relaxation")
-    places, back = there - skipped + np.arange(len(frames), dtype=np.float64), timing.way_back(frames)
-    values = np.concatenate([places, places[::-1][len(places) - len(back) :]])
-    curves.add("eval_time", 0, np.concatenate([frames, back]), values)
+def frames_of(data: bpy.types.Curve) -> FloatArray:
+    """The frames at which the keys of curve data are passed, on the way back too, (k,)."""
+    curve = next(fcurves_of(data.shape_keys or data))
+    return read(curve.keyframe_points, "co", 2)[:, 0].astype(np.float64)
 
 
-def _fcurves(obj: bpy.types.Object, keys: Keys, frames: FloatArray) -> Iterator[None]:
-    """One F-curve for every coordinate of every point, for exporters that do not support shape keys."""
-    curves = FCurves(obj.data, f"{obj.name} Relaxation")
-    values = np.stack([key.points for key in keys.keys], axis=-1).astype(np.float64)
-    for path, point in zip(point_paths(obj.data), values, strict=True):
-        for axis in range(3):
-            curves.add(path, axis, frames, point[axis])
-        yield
+def retime(curve: bpy.types.FCurve, old: FloatArray, new: FloatArray, timing: Timing) -> None:
+    """Let the keys of an F-curve be passed at new frames instead of old ones, and perhaps again on the way back."""
+    places = read(curve.keyframe_points, "co", 2).astype(np.float64)
+    there = places[: np.searchsorted(places[:, 0], old[-1] + 1e-3)]  # frames nearer than that are one
+    frames, values = there_and_back(np.interp(there[:, 0], old, new), there[:, 1], timing)
+    draw_line(curve, frames, values, int(read(curve.keyframe_points, "interpolation", dtype=np.int32)[0]))
 
 
 def point_paths(data: bpy.types.Curve) -> Iterator[str]:
@@ -156,8 +156,7 @@ def coordinate_curves(data: bpy.types.Curve) -> list[bpy.types.FCurve]:
 def all_fcurves() -> Iterator[bpy.types.FCurve]:
     """Yield the F-curves of all actions in the file."""
     for action in bpy.data.actions:
-        slotted = hasattr(action, "slots")  # not in Blender 4.3 and before
-        yield from chain.from_iterable(_collections(action, action.slots) if slotted else [action.fcurves])
+        yield from chain.from_iterable(collections(action))
 
 
 def fcurves_of(block: bpy.types.ID) -> Iterator[bpy.types.FCurve]:
@@ -193,37 +192,19 @@ def animated(data: bpy.types.Curve) -> list[bpy.types.ID]:
     return [owner for owner in owners if owner.animation_data is not None and owner.animation_data.action is not None]
 
 
-def drop_actions(data: bpy.types.Curve) -> None:
-    """Remove the actions of a curve and its shape keys; actions and slots that nothing else uses are deleted."""
-    for animation in [owner.animation_data for owner in animated(data)]:
-        action, slot = animation.action, getattr(animation, "action_slot", None)
-        animation.action = None
-        if action.users == action.use_fake_user:
-            bpy.data.actions.remove(action)
-        elif slot is not None and not slot.users():
-            action.slots.remove(slot)
-
-
-def _collections(action: bpy.types.Action, slots: Iterable[bpy.types.ActionSlot]) -> Iterator[Any]:
-    for layer in action.layers:
-        for strip in layer.strips:
-            channels = (strip.channelbag(slot) for slot in slots)
-            yield from (each.fcurves for each in channels if each)
-
-
 def _own_collections(block: bpy.types.ID) -> Iterator[Any]:
     animation = block.animation_data
-    if not hasattr(animation.action, "slots"):  # Blender 4.3 and before
-        yield animation.action.fcurves
+    if not hasattr(animation, "action_slot"):  # Blender 4.3 and before
+        yield from collections(animation.action)
     elif animation.action_slot:
-        yield from _collections(animation.action, [animation.action_slot])
+        yield from collections(animation.action, [animation.action_slot])
 
 
 def mirror(curve: bpy.types.FCurve, middle: float) -> None:
-    """Let a piecewise linear F-curve retrace its path backwards from a frame on."""
-    for frame, value in [tuple(point.co) for point in curve.keyframe_points][::-1]:
+    """Let a piecewise linear or constant F-curve retrace its path backwards from a frame on."""
+    for frame, value, kind in [(*point.co, point.interpolation) for point in curve.keyframe_points][::-1]:
         if frame < middle:
-            curve.keyframe_points.insert(2 * middle - frame, value, options={"FAST"}).interpolation = "LINEAR"
+            curve.keyframe_points.insert(2 * middle - frame, value, options={"FAST"}).interpolation = kind
     curve.update()
 
 
@@ -233,16 +214,14 @@ class FCurves:
     def __init__(self, block: bpy.types.ID, name: str) -> None:
         if not (block.animation_data and block.animation_data.action):
             animation = block.animation_data_create()
-            animation.action = action = bpy.data.actions.new(name)
+            animation.action = action = new_action(name, block.id_type, block.name)
             action[_MARK] = True
-            if hasattr(action, "slots"):  # not in Blender 4.3 and before
-                animation.action_slot = slot = action.slots.new(id_type=block.id_type, name=block.name)
-                strip = action.layers.new("Layer").strips.new(type="KEYFRAME")
-                strip.channelbag(slot, ensure=True)
+            if hasattr(animation, "action_slot"):
+                animation.action_slot = action.slots[0]
         (self._fcurves,) = _own_collections(block)
 
-    def add(self, path: str, axis: int, frames: FloatArray, values: FloatArray) -> None:
-        """Add keys to a piecewise linear F-curve, made if there is none; keys not after its last one are left out."""
+    def add(self, path: str, axis: int, frames: FloatArray, values: FloatArray, kind: int = LINEAR) -> None:
+        """Add keys to an F-curve, made if there is none; keys not after its last one are left out."""
         curve = self._fcurves.find(path, index=axis) or self._fcurves.new(path, index=axis)
         points = curve.keyframe_points
         if len(points):
@@ -254,7 +233,7 @@ class FCurves:
         kinds = np.empty(len(points), dtype=np.int32)
         points.foreach_get("co", places.ravel())
         points.foreach_get("interpolation", kinds)
-        places[first:], kinds[first:] = np.column_stack([frames, values]), _LINEAR
+        places[first:], kinds[first:] = np.column_stack([frames, values]), kind
         points.foreach_set("co", places.ravel())
         points.foreach_set("interpolation", kinds)
         curve.update()

@@ -8,24 +8,25 @@ save. When such a file is opened, or undo returns to such a step, `show_original
 from collections.abc import Iterator
 
 import bpy
+import numpy as np
 
 from ...core import Curve
-from ...core.messages import Message
-from ...core.types import FloatArray
-from ..engine.key_options import KeyOptions
-from ..engine.motion import Keys
-from ..engine.placement import Frame, Placement
-from . import bake, bevel, keyframes
-from .exchange import Reference, write_points
+from ...core.base.messages import Message
+from ...core.base.types import FloatArray
+from ...core.keys.key_options import Course, KeyOptions
+from ...core.keys.motion import Keys
+from ...core.keys.placement import Frame
+from . import bake, bevel, keyframes, sizes
 from .keyframes import own_action
 from .moving import what_deforms
-from .splines import Splines, shape
+from .sizes import placement
+from .splines import Reference, Splines, read, shape, write_points
 
 _MARK = "mobius_flow_stand_in"  # custom property of stand-ins
 
 
 class Member:
-    """A curve object of a run, as for `Group`; nothing of it is touched before `begin`."""
+    """A curve object of a run, as for `CurveGroup`; nothing of it is touched before `begin`."""
 
     def __init__(self, obj: bpy.types.Object, continues: bool = False) -> None:
         self.name = obj.name
@@ -33,12 +34,15 @@ class Member:
         self._continues, self._baked = continues, bake.is_baked(obj.data)
         self._object, self._original = Reference(obj), Reference(obj.data)
         self._stand_in: Reference | None = None
-        self._placement = Placement.from_matrix(obj.matrix_world)
 
     def begin(self) -> None:
         """Show a stand-in: the curve that the relaxation begins with."""
         obj, original = self.object, self._original.get()
         assert obj is not None, "whoever begins looks for it first"
+        sizes.suspend(obj)
+        self.placement = placement(obj)
+        self.size = self.placement.in_world(bake.sizes(original)[-1])
+        self.replaced = 0 if self._continues or not self._baked else bake.key_count(original)
         self._show(original.copy())
         if self._baked and self._continues:
             bake.forget(obj)
@@ -64,12 +68,6 @@ class Member:
     def data(self) -> bpy.types.Curve | None:
         """The stand-in, even if the object is gone."""
         return self._stand_in.get() if self._stand_in else None
-
-    @property
-    def moved(self) -> bool:
-        """Whether the object is no longer where it was."""
-        obj = self.object
-        return obj is not None and not Placement.from_matrix(obj.matrix_world).equals(self._placement)
 
     def fits(self, options: KeyOptions) -> bool:
         """Whether the tube is to be fitted: it was before, or somebody asks for it."""
@@ -102,14 +100,10 @@ class Member:
             counts = [each.count for each in shape(data)] != [each.count for each in self._shape]
             changed = "Points of '{name}' were added or removed" if counts else "Splines of '{name}' were changed"
             return Message(changed, name=self.name)
-        if self._foreign_keys(data):
+        if data.shape_keys is not None and not self.keyed:  # they fit the points it has now
             return Message("'{name}' was given shape keys", name=self.name)
         deformer = what_deforms(obj)
         return Message("{deformer} moves its points", deformer=deformer) if deformer else None
-
-    def _foreign_keys(self, data: bpy.types.Curve) -> bool:
-        """Whether somebody gave the curve shape keys: they fit the points it has now."""
-        return data.shape_keys is not None and not self.keyed
 
     def writing(self, keys: Keys, frames: FloatArray, options: KeyOptions, radii: FloatArray | None) -> Iterator[None]:
         """Write keys in short pieces; ``radii``: of the tube in the object's units, (keys,)."""
@@ -123,16 +117,17 @@ class Member:
             own_action(data.shape_keys or data)
             self._show(data)
             keyframes.remove(preview)
-        relative = None
+        relative = np.array([1.0 / key.size.factor for key in keys.keys])  # what is drawn is not to be scaled
         if radii is not None and self.fits(options):
             depth = obj.data.bevel_depth
-            bevel.fit(obj.data, float(radii[-1]))
-            keyframes.scale_radii(obj.data, depth / obj.data.bevel_depth)  # which are relative to it
+            bevel.fit(obj.data, float(radii[-1]), options.constant_radius)
+            for block in obj.data.shape_keys.key_blocks if obj.data.shape_keys else ():  # radii are relative to it
+                block.data.foreach_set("radius", read(block.data, "radius") * np.float32(depth / obj.data.bevel_depth))
             relative = radii / radii[-1]
         output = keyframes.output_of(obj.data) or options.output
         yield from keyframes.writing(obj, keys, frames, output, relative, options.timing)
 
-    def keep(self, options: KeyOptions) -> None:
+    def keep(self, keys: Keys, frames: FloatArray, options: KeyOptions, course: Course) -> None:
         """Make what was written final: the stand-in takes over the names and the users of the original.
 
         What was relaxed is kept by the record of the bake; without one, only undo brings it back.
@@ -141,17 +136,19 @@ class Member:
         assert data is not None, "it was written a moment ago"
         _name_original(data)
         start = bake.original(original) if self._baked else original
-        names, original.name = keyframes.names(original), f"{original.name} Original"
+        names = {kind: block.name for kind, block in keyframes.blocks(original).items()}
+        original.name = f"{original.name} Original"
         del data[_MARK]
         original.use_fake_user, data.use_fake_user = False, original.use_fake_user
         original.user_remap(data)
-        if self._baked and self._continues:
-            bake.update(data, options.timing)
-        else:
-            bake.remember(data, start, options.timing)
+        sizes_here = [self.placement.similarity(key.size) for key in keys.keys]
+        follows = self._baked and self._continues
+        bake.remember(data, options.timing, frames, course, sizes_here, None if follows else start)
         if not original.users:
             keyframes.remove(original)
-        keyframes.rename(data, names)
+        for kind, block in keyframes.blocks(data).items():  # names that are free now
+            block.name = names.get(kind, block.name)
+        sizes.drive(self.object, bake.sizes(data))
 
     def discard(self) -> bool:
         """Show the original again, and remove the stand-in unless someone else changed it.
@@ -159,7 +156,7 @@ class Member:
         Return whether the object is as it was.
         """
         obj, data, original = self.object, self.data, self._original.get()
-        if data is not None and (shape(data) != self._shape or self._foreign_keys(data)):
+        if data is not None and (shape(data) != self._shape or (data.shape_keys is not None and not self.keyed)):
             del data[_MARK]
             original.use_fake_user = True  # whoever changed it may want that too
             if self._fitted:
@@ -174,6 +171,7 @@ class Member:
         if not self.keyed and not self.lost():
             _name_original(self.data)
             self._object.get().data = self._original.get()
+            sizes.resume(self._object.get())
 
     def resume(self) -> None:
         """Show the stand-in again after `hide`; undo may have removed it, or brought another one back."""
@@ -186,6 +184,7 @@ class Member:
         if data is None:
             self.begin()
         else:
+            sizes.suspend(obj)
             self._show(data)
 
 
@@ -205,8 +204,11 @@ def _show_original(data: bpy.types.Curve) -> None:
     _name_original(data)
     original = data.pop(_MARK)["original"]
     if original is not None:
+        wearers = [obj for obj in bpy.data.objects if obj.data == data]
         data.user_remap(original)
         keyframes.remove(data)
+        for obj in wearers:
+            sizes.resume(obj)
 
 
 def _name_original(data: bpy.types.Curve) -> None:

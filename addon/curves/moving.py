@@ -10,11 +10,11 @@ from typing import Any
 
 import bpy
 
-from ...core.messages import Message
+from ...core.base.messages import Message
+from . import sizes
 from .keyframes import fcurves_of
 
 _TRANSFORMS = ("location", "rotation", "scale", "delta_", "matrix", "parent")
-_SHAPING = ("modifiers", "pose")  # beginnings of paths of F-curves of an object
 # fmt: off
 _DEFORMING = {
     "ARMATURE", "CAST", "CLOTH", "CORRECTIVE_SMOOTH", "CURVE", "DISPLACE", "HOOK", "LAPLACIANDEFORM", "LAPLACIANSMOOTH",
@@ -26,7 +26,6 @@ _CHANGING = {
     "PARTICLE_INSTANCE", "SOFT_BODY", "WAVE",
 }
 # fmt: on
-_DEFORMING_PARENTS = {"ARMATURE", "LATTICE"}  # types of parenting
 _DEFORMING_NODES = {"GeometryNodeSetPosition", "GeometryNodeSetCurveHandlePositions"}
 _CHANGING_NODES = {"GeometryNodeInputSceneTime", "GeometryNodeSimulationInput"}
 
@@ -44,7 +43,7 @@ def _movers(obj: bpy.types.Object) -> Iterator[Message]:
         yield Message("animation")
     if animation and _any_of(animation.drivers, _TRANSFORMS):
         yield Message("a driver")
-    if any(not constraint.mute for constraint in obj.constraints):
+    if any(not (each.mute or sizes.is_own(each)) for each in obj.constraints):
         yield Message("a constraint")
     if obj.rigid_body and obj.rigid_body.type == "ACTIVE":  # a passive one is hit, and stays where it is
         yield Message("physics")
@@ -61,7 +60,7 @@ def _any_of(curves: Iterable[bpy.types.FCurve], paths: tuple[str, ...] | str) ->
 
 def what_deforms(obj: bpy.types.Object) -> Message | None:
     """Say what may move an object's points, of all that is shown, or return None if nothing does."""
-    if obj.parent and obj.parent_type in _DEFORMING_PARENTS:
+    if obj.parent and obj.parent_type in {"ARMATURE", "LATTICE"}:
         return Message("The parent of '{name}'", name=obj.name)
     shown = (each for each in obj.modifiers if each.show_viewport or each.show_render)
     first = next((each for each in shown if deforms(each)), None)
@@ -146,10 +145,17 @@ def _changes(obj: bpy.types.Object, relaxed: Sequence[bpy.types.Object], seen: s
         yield Message("animation of its shape")
     if obj.pose is not None and any(not each.mute for bone in obj.pose.bones for each in bone.constraints):
         yield Message("a constraint")
-    if obj.data is not None and changing(chain(_ingredients(obj.data), _metaballs(obj))):
+    stem = obj.name.partition(".")[0]  # metaballs with the same one form one surface
+    balls = (each for each in bpy.data.objects if each.type == obj.type == "META")
+    same = (each for each in balls if each.name.partition(".")[0] == stem)
+    if obj.data is not None and changing(chain(_ingredients(obj.data), same)):
         yield Message("an object that its shape is made with")
     for modifier in obj.modifiers:
-        if modifier.show_viewport and (_is_changing(modifier) or changing(_ingredients(modifier))):
+        if modifier.type == "PARTICLE_SYSTEM":
+            itself = modifier.particle_system.settings.type == "EMITTER"
+        else:
+            itself = _is_of(modifier, _CHANGING, _CHANGING_NODES)
+        if modifier.show_viewport and (itself or changing(_ingredients(modifier))):
             yield Message("the modifier '{modifier}'", modifier=modifier.name)
 
 
@@ -159,18 +165,19 @@ def _is_animated(block: bpy.types.ID | None) -> bool:
         return False
     animation = block.animation_data
     curves = [*(fcurves_of(block) if animation.action else ()), *animation.drivers]
-    return bool(animation.nla_tracks) or _any_of(curves, _SHAPING if block.id_type == "OBJECT" else "")
-
-
-def _is_changing(modifier: bpy.types.Modifier) -> bool:
-    if modifier.type == "PARTICLE_SYSTEM":
-        return bool(modifier.particle_system.settings.type == "EMITTER")
-    return _is_of(modifier, _CHANGING, _CHANGING_NODES)
+    return bool(animation.nla_tracks) or _any_of(curves, ("modifiers", "pose") if block.id_type == "OBJECT" else "")
 
 
 def _ingredients(block: bpy.types.bpy_struct) -> Iterator[bpy.types.ID]:
     """Yield what a modifier or other data refers to: objects, also those of collections, textures and node trees."""
-    for each in chain(_pointers(block), _inputs(block)):
+    values: Iterable[Any] = ()  # of sockets: of a node, and of a modifier, which before 5.2 has custom properties
+    if isinstance(block, bpy.types.Node):
+        values = (getattr(socket, "default_value", None) for socket in block.inputs)
+    elif isinstance(block, bpy.types.NodesModifier) and hasattr(block, "properties"):
+        values = (getattr(socket, "value", None) for socket in _pointers(block.properties.inputs))
+    elif isinstance(block, bpy.types.NodesModifier):
+        values = (value for _, value in block.items())
+    for each in chain(_pointers(block), values):
         if isinstance(each, bpy.types.Collection):
             yield from each.all_objects
         elif isinstance(each, bpy.types.Object | bpy.types.Texture):
@@ -183,20 +190,3 @@ def _ingredients(block: bpy.types.bpy_struct) -> Iterator[bpy.types.ID]:
 
 def _pointers(block: bpy.types.bpy_struct) -> "Iterator[Any]":
     return (getattr(block, each.identifier) for each in block.bl_rna.properties if each.type == "POINTER")
-
-
-def _inputs(block: bpy.types.bpy_struct) -> "Iterator[Any]":
-    """Values of sockets: of a node, and of a modifier, which before Blender 5.2 has them as custom properties."""
-    if isinstance(block, bpy.types.Node):
-        yield from (getattr(socket, "default_value", None) for socket in block.inputs)
-    elif isinstance(block, bpy.types.NodesModifier) and hasattr(block, "properties"):
-        yield from (getattr(socket, "value", None) for socket in _pointers(block.properties.inputs))
-    elif isinstance(block, bpy.types.NodesModifier):
-        yield from (value for _, value in block.items())
-
-
-def _metaballs(obj: bpy.types.Object) -> Iterator[bpy.types.Object]:
-    """Yield the metaballs that form one surface with a metaball: those with the same name up to the first dot."""
-    if obj.type == "META":
-        stem = obj.name.partition(".")[0]
-        yield from (each for each in bpy.data.objects if each.type == "META" and each.name.partition(".")[0] == stem)

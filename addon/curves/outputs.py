@@ -7,19 +7,18 @@ import bpy
 import numpy as np
 
 from ...core import Curve
-from ...core.tube import caps, quads, rings
-from ...core.types import FloatArray, IntArray
-from ..engine.placement import Frame, Placement
-from ..engine.smooth_fit import SmoothFit, bezier_points, fitted
+from ...core.base.types import FloatArray
+from ...core.curve.tube import caps, quads, rings
+from ...core.keys.smooth_fit import SmoothFit, bezier_points, fitted
 from . import bevel
 from .keyframes import FCurves
 from .recorded import Recorded
+from .sizes import placement
 from .splines import read
 from .surroundings import TUBE_OF
 
 COLOUR = "colour"  # attribute of vertices
 _LOOKS = ("bevel_mode", "bevel_depth", "bevel_resolution", "extrude", "offset", "taper_object", "bevel_object")
-_RESOLUTION = 12  # points drawn for each segment of a smooth spline
 # fmt: off
 _PLACE = (  # a matrix instead would be split into these anew, and lose shear and the last bits
     "rotation_mode", "location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale",
@@ -63,7 +62,17 @@ def tube_object(obj: bpy.types.Object, recorded: Recorded, radii: FloatArray, si
     curve, surface = recorded.mesh, rings(recorded.points, radii, recorded.mesh, sides)
     mesh = bpy.data.meshes.new(f"{obj.name} Tube")
     ends = caps(curve, sides)[: None if obj.data.use_fill_caps else 0]
-    _fill(mesh, surface[0], [quads(curve, sides), ends])
+    faces = [quads(curve, sides), ends]
+    round_ = np.concatenate([each.ravel() for each in faces])  # the corners of faces, one after the other
+    sizes = np.concatenate([np.full(len(each), each.shape[1]) for each in faces])
+    mesh.vertices.add(len(surface[0]))
+    mesh.vertices.foreach_set("co", surface[0].astype(np.float32).ravel())
+    mesh.loops.add(len(round_))
+    mesh.loops.foreach_set("vertex_index", round_.astype(np.int32))
+    mesh.polygons.add(len(sizes))
+    mesh.polygons.foreach_set("loop_start", (np.cumsum(sizes) - sizes).astype(np.int32))
+    mesh.polygons.foreach_set("use_smooth", np.arange(len(sizes)) < len(faces[0]))
+    mesh.update(calc_edges=True)
     made = _object_like(obj, mesh)
     made[TUBE_OF] = obj
     corners = np.concatenate([curve.tails.repeat(sides), curve.ends.ravel()])  # a curve vertex of each face
@@ -71,8 +80,15 @@ def tube_object(obj: bpy.types.Object, recorded: Recorded, radii: FloatArray, si
         mesh.materials.append(material)
     slots = np.array([spline.material_index for spline in obj.data.splines], dtype=np.int32)
     mesh.polygons.foreach_set("material_index", slots[curve.component[corners[: len(mesh.polygons)]]])
-    if len(surface) > 1:
-        _write_keys(made, surface, recorded.frames)
+    # relative shape keys, at most two active at a time: exporters support them, and motion is straight in between
+    if len(frames := recorded.frames) > 1:
+        for frame, shape in zip(frames, surface, strict=True):
+            block = made.shape_key_add(name=f"Frame {frame:g}", from_mix=False)
+            block.data.foreach_set("co", shape.astype(np.float32).ravel())
+        curves = FCurves(mesh.shape_keys, f"{made.name} Motion")
+        for k, block in enumerate(mesh.shape_keys.key_blocks[1:], 1):
+            near = frames[k - 1 : k + 2]
+            curves.add(f'key_blocks["{block.name}"].value', 0, near, np.array([0.0, 1.0, 0.0])[: len(near)])
     return made
 
 
@@ -100,33 +116,6 @@ def _on_rings(mesh: bpy.types.Mesh, values: FloatArray) -> FloatArray:
     return np.repeat(values, len(mesh.vertices) // len(values), axis=0).astype(np.float32)
 
 
-def _fill(mesh: bpy.types.Mesh, vertices: FloatArray, faces: Sequence[IntArray]) -> None:
-    """Fill a mesh with faces; each array holds faces with equally many corners."""
-    corners = np.concatenate([each.ravel() for each in faces])
-    sizes = np.concatenate([np.full(len(each), each.shape[1]) for each in faces])
-    mesh.vertices.add(len(vertices))
-    mesh.vertices.foreach_set("co", vertices.astype(np.float32).ravel())
-    mesh.loops.add(len(corners))
-    mesh.loops.foreach_set("vertex_index", corners.astype(np.int32))
-    mesh.polygons.add(len(sizes))
-    mesh.polygons.foreach_set("loop_start", (np.cumsum(sizes) - sizes).astype(np.int32))
-    mesh.polygons.foreach_set("use_smooth", np.arange(len(sizes)) < len(faces[0]))
-    mesh.update(calc_edges=True)
-
-
-def _write_keys(made: bpy.types.Object, surface: FloatArray, frames: FloatArray) -> None:
-    """Relative shape keys, at most two active at a time: exporters support them, and motion is straight in between."""
-    for frame, shape in zip(frames, surface, strict=True):
-        block = made.shape_key_add(name=f"Frame {frame:g}", from_mix=False)
-        block.data.foreach_set("co", shape.astype(np.float32).ravel())
-    keys = made.data.shape_keys
-    curves = FCurves(keys, f"{made.name} Motion")
-    for k in range(1, len(frames)):
-        near = slice(k - 1, k + 2)
-        weights = np.array([0.0, 1.0, 0.0])[: len(frames[near])]
-        curves.add(f'key_blocks["{keys.key_blocks[k].name}"].value', 0, frames[near], weights)
-
-
 # -- smooth splines --------------------------------------------------------------------------------------------------
 
 
@@ -141,48 +130,39 @@ def smooth_objects(
     wanted = iter(fitted(link, points).points)
     made, shown = [], []
     for obj in objects:
-        place = Placement.from_matrix(obj.matrix_world)
+        place = placement(obj)
         stored = [place.to_local(each).astype(np.float32) for each in islice(wanted, len(obj.data.splines))]
-        made.append(_smooth_object(obj, stored, kind))
+        data = bpy.data.curves.new(f"{obj.name} Smooth", "CURVE")
+        data.dimensions, data.resolution_u = "3D", 12
+        for name in _LOOKS:
+            setattr(data, name, getattr(obj.data, name))
+        if bevel.is_fitted(obj.data):
+            bevel.fit(data, data.bevel_depth)
+        for material in obj.data.materials:
+            data.materials.append(material)
+        for control, old in zip(stored, obj.data.splines, strict=True):
+            spline = data.splines.new(kind)
+            spline.use_cyclic_u = old.use_cyclic_u
+            spline.material_index = old.material_index
+            if kind == "NURBS":
+                spline.points.add(len(control) - 1)
+                spline.points.foreach_set("co", np.pad(control, ((0, 0), (0, 1)), constant_values=1.0).ravel())
+                spline.order_u, spline.use_endpoint_u = 4, not spline.use_cyclic_u
+                continue
+            bezier = bezier_points(control.astype(np.float64), bool(spline.use_cyclic_u))
+            middle, right, left = bezier[:, 0], bezier[:, 1], bezier[:, 2]
+            if spline.use_cyclic_u:
+                left = np.roll(left, 1, axis=0)
+            else:  # the outer handles mirror the inner ones
+                middle = np.concatenate([middle, bezier[-1:, 3]])
+                before, after = 2 * middle[:1] - right[:1], 2 * middle[-1:] - left[-1:]
+                right, left = np.concatenate([right, after]), np.concatenate([before, left])
+            points_of = spline.bezier_points
+            points_of.add(len(middle) - 1)
+            for point in points_of:  # aligned handles stay in line when somebody moves them
+                point.handle_left_type = point.handle_right_type = "ALIGNED"
+            for name, array in (("co", middle), ("handle_right", right), ("handle_left", left)):
+                points_of.foreach_set(name, array.astype(np.float32).ravel())
+        made.append(_object_like(obj, data))
         shown += [place.to_world(each.astype(np.float64)) for each in stored]
     return made, SmoothFit(link, tuple(shown))
-
-
-def _smooth_object(obj: bpy.types.Object, control: Sequence[Frame], kind: str) -> bpy.types.Object:
-    data = bpy.data.curves.new(f"{obj.name} Smooth", "CURVE")
-    data.dimensions, data.resolution_u = "3D", _RESOLUTION
-    for name in _LOOKS:
-        setattr(data, name, getattr(obj.data, name))
-    if bevel.is_fitted(obj.data):
-        bevel.fit(data, data.bevel_depth)
-    for material in obj.data.materials:
-        data.materials.append(material)
-    for points, old in zip(control, obj.data.splines, strict=True):
-        spline = data.splines.new(kind)
-        spline.use_cyclic_u = old.use_cyclic_u
-        (_fill_bezier if kind == "BEZIER" else _fill_nurbs)(spline, points)
-        spline.material_index = old.material_index
-    return _object_like(obj, data)
-
-
-def _fill_bezier(spline: bpy.types.Spline, control: Frame) -> None:
-    bezier = bezier_points(control.astype(np.float64), bool(spline.use_cyclic_u))
-    place, right, left = bezier[:, 0], bezier[:, 1], bezier[:, 2]
-    if spline.use_cyclic_u:
-        left = np.roll(left, 1, axis=0)
-    else:  # the outer handles mirror the inner ones
-        place = np.concatenate([place, bezier[-1:, 3]])
-        before, after = 2 * place[:1] - right[:1], 2 * place[-1:] - left[-1:]
-        right, left = np.concatenate([right, after]), np.concatenate([before, left])
-    points = spline.bezier_points
-    points.add(len(place) - 1)
-    for point in points:  # aligned handles stay in line when somebody moves them
-        point.handle_left_type = point.handle_right_type = "ALIGNED"
-    for name, array in (("co", place), ("handle_right", right), ("handle_left", left)):
-        points.foreach_set(name, array.astype(np.float32).ravel())
-
-
-def _fill_nurbs(spline: bpy.types.Spline, control: Frame) -> None:
-    spline.points.add(len(control) - 1)
-    spline.points.foreach_set("co", np.pad(control, ((0, 0), (0, 1)), constant_values=1.0).ravel())
-    spline.order_u, spline.use_endpoint_u = 4, not spline.use_cyclic_u

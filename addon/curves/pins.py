@@ -14,9 +14,9 @@ import bpy
 import numpy as np
 
 from ...core import CurveError, Mesh
-from ...core.messages import Message
-from ...core.types import BoolArray, IntArray
-from ..engine.placement import Frame
+from ...core.base.messages import Message
+from ...core.base.types import BoolArray, IntArray
+from ...core.keys.placement import Frame
 from .splines import control_points, coordinates, kind, read
 
 

@@ -1,26 +1,31 @@
 """Curve objects over time: their shapes at their keys, or their only shape, and where these are in the world."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import bpy
 import numpy as np
+from mathutils import Matrix
 
-from ...core import Curve
+from ...core import Curve, MobiusFlowError
+from ...core.base.messages import Message
+from ...core.base.types import FloatArray
+from ...core.collision import is_free
 from ...core.curve import Mesh
-from ...core.types import FloatArray
-from ..engine.interpolation import along, interpolated
-from ..engine.placement import Placement
-from . import bake
-from .exchange import closed, key_points, key_radii, read_splines, stretch
+from ...core.curve.refine import along, interpolated
+from ...core.driver.words import named
+from ...core.keys.placement import Frame, Link, Measure, Similarity, Turn, orthonormal
+from . import bake, pins
 from .keyframes import coordinate_curves, fcurves_of
 from .moving import what_moves
-from .splines import radii
+from .sizes import placement, resume, suspend
+from .splines import closed, key_points, radii, read, read_link, read_splines, stretch, write_points
 
 
 @dataclass(frozen=True, eq=False)
 class Recorded:
-    """The shapes of one curve object, linear in between, in its own coordinates."""
+    """The shapes of one curve object as they are shown, linear in between, in its own coordinates."""
 
     mesh: Mesh  # its splines as polygons, a component each
     frames: FloatArray  # scene frames of the shapes, (keys,); a curve that was not baked here has one shape at frame 0
@@ -38,7 +43,18 @@ class Recorded:
             mesh, points = Mesh(tuple(map(len, splines)), closed(data)), np.concatenate(splines)[None]
             return cls(mesh, np.zeros(1), points, _radii(data, mesh)[None], points)
         mesh = Mesh(tuple(len(spline.points) for spline in data.splines), closed(data))
-        return cls(mesh, *(_from_shape_keys(data) if data.shape_keys else _from_fcurves(data, mesh)))
+        if data.shape_keys:
+            (curve,) = fcurves_of(data.shape_keys)
+            frames = _frames([curve])
+            keyed = list(zip(bake.sizes(data), data.shape_keys.key_blocks, strict=True))
+            points = np.stack([size.of(key_points(block).astype(np.float64)) for size, block in keyed])
+            thickness = np.stack([size.factor * read(block.data, "radius").astype(np.float64) for size, block in keyed])
+            place = np.array([curve.evaluate(frame) for frame in frames]).clip(0, len(points) - 1)
+            return cls(mesh, frames, interpolated(points, place), interpolated(thickness, place), points)
+        frames = _frames(curves := coordinate_curves(data))
+        values = np.array([[curve.evaluate(frame) for curve in curves] for frame in frames])
+        points = values.reshape(len(frames), -1, 3)
+        return cls(mesh, frames, points, np.tile(_radii(data, mesh), (len(frames), 1)), points[-1:])
 
     def at(self, places: FloatArray) -> "Recorded":
         """The shapes at places among the keys, see `interpolated`."""
@@ -49,29 +65,11 @@ class Recorded:
 def in_world(objects: Sequence[bpy.types.Object], recorded: Sequence[Recorded], shapes: Sequence[FloatArray]) -> Curve:
     """Shapes of several objects as one link in world space; (n, 3) each."""
     components = [
-        Placement.from_matrix(obj.matrix_world).to_world(points[piece])
+        placement(obj).to_world(points[piece])
         for obj, each, points in zip(objects, recorded, shapes, strict=True)
         for piece in each.mesh.slices
     ]
     return Curve.from_components(components, [flag for each in recorded for flag in each.mesh.closed])
-
-
-def _from_shape_keys(data: bpy.types.Curve) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    (curve,) = fcurves_of(data.shape_keys)
-    frames, blocks = _frames([curve]), data.shape_keys.key_blocks
-    points, thickness = (
-        np.stack([read(block) for block in blocks]).astype(np.float64) for read in (key_points, key_radii)
-    )
-    place = np.array([curve.evaluate(frame) for frame in frames]).clip(0, len(points) - 1)
-    return frames, interpolated(points, place), interpolated(thickness, place), points
-
-
-def _from_fcurves(data: bpy.types.Curve, mesh: Mesh) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    curves = coordinate_curves(data)
-    frames = _frames(curves)
-    values = np.array([[curve.evaluate(frame) for curve in curves] for frame in frames])
-    points = values.reshape(len(frames), -1, 3)
-    return frames, points, np.tile(_radii(data, mesh), (len(frames), 1)), points[-1:]
 
 
 def _frames(curves: Sequence[bpy.types.FCurve]) -> FloatArray:
@@ -108,35 +106,192 @@ class WorldMotion:
         keyed = [each.frames for each in recorded if len(each.frames) > 1]
         every = [np.arange(scene.frame_start, scene.frame_end + 1, dtype=np.float64)] if moving else []
         frames = np.unique(np.concatenate([*keyed, *every] or [np.array([float(scene.frame_start)])]))
-        placements = _placements(scene, objects, frames if moving else frames[:1])
+        # places of objects by their names, at each frame where something moves them
+        placements = {obj.name: [placement(obj)] * len(frames) for obj in objects}
+        frame_shown = scene.frame_current, scene.frame_subframe
+        try:
+            for k, frame in enumerate(frames if moving and len(frames) > 1 else ()):
+                scene.frame_set(int(frame // 1), subframe=float(frame % 1))
+                for obj in objects:
+                    placements[obj.name][k] = placement(obj)
+        finally:
+            if (scene.frame_current, scene.frame_subframe) != frame_shown:
+                scene.frame_set(frame_shown[0], subframe=frame_shown[1])
         points, thickness = [], []
         for obj, each in zip(objects, recorded, strict=True):
             shown = each.at(np.interp(frames, each.frames, np.arange(len(each.frames))))
-            there = placements[obj.name] if moving else placements[obj.name] * len(frames)
-            points.append([place.to_world(shape) for place, shape in zip(there, shown.points, strict=True)])
+            there = zip(placements[obj.name], shown.points, strict=True)
+            points.append([place.to_world(shape) for place, shape in there])
             thickness.append(drawn_radius(obj) * shown.radii.max(axis=1))
         return cls(frames, [np.concatenate(shapes) for shapes in zip(*points, strict=True)], np.max(thickness, axis=0))
-
-
-def _placements(
-    scene: bpy.types.Scene, objects: Sequence[bpy.types.Object], frames: FloatArray
-) -> dict[str, list[Placement]]:
-    """Places of objects by their names, at each of some frames; for a single frame, as they are now."""
-    found: dict[str, list[Placement]] = {obj.name: [] for obj in objects}
-    shown, subframe = scene.frame_current, scene.frame_subframe
-    try:
-        for frame in frames:
-            if len(frames) > 1:
-                scene.frame_set(int(frame // 1), subframe=float(frame % 1))
-            for obj in objects:
-                found[obj.name].append(Placement.from_matrix(obj.matrix_world))
-    finally:
-        if (scene.frame_current, scene.frame_subframe) != (shown, subframe):
-            scene.frame_set(shown, subframe=subframe)
-    return found
 
 
 def drawn_radius(obj: bpy.types.Object) -> float:
     """How far what is drawn around an object's curve reaches from it where the radius is 1, in the world."""
     data = obj.data
     return float((data.bevel_depth + data.extrude + abs(data.offset)) * stretch(obj))
+
+
+class BakedKeys:
+    """Baked curve objects, their transforms evaluated, at each of their keys.
+
+    ``frames``: points as stored, (n, 3); ``sizes``: how they are shown, in each object's coordinates. Raises
+    MobiusFlowError if their numbers of keys differ: then they were not baked together.
+    """
+
+    def __init__(self, objects: Sequence[bpy.types.Object]) -> None:
+        self._objects = objects
+        sizes = [[len(spline.points) for spline in obj.data.splines] for obj in objects]
+        open_too = tuple(flag for obj in objects for flag in closed(obj.data))
+        self.mesh = Mesh(tuple(size for each in sizes for size in each), open_too)
+        self.link = Link(tuple(map(placement, objects)), tuple(map(len, sizes)))
+        self.sizes = [bake.sizes(obj.data) for obj in objects]
+        keys = [keyed_points(obj.data) for obj in objects]
+        if len({len(each) for each in keys}) > 1:
+            title = named([obj.name for obj in objects])
+            raise MobiusFlowError(Message("{names} were not baked together; select one of them at a time", names=title))
+        self.frames: list[Frame] = [np.concatenate(each) for each in zip(*keys, strict=True)]
+
+    @property
+    def curves(self) -> list[Curve]:
+        """The link at each key as it is shown, in the world."""
+        pieces = list(zip(self.link.placements, self.link.slices(self.mesh), self.sizes, strict=True))
+        stored = enumerate(frame.astype(np.float64) for frame in self.frames)
+        shown = ([place.to_world(sizes[k % len(sizes)].of(p[s])) for place, s, sizes in pieces] for k, p in stored)
+        return [Curve(np.concatenate(world), self.mesh) for world in shown]
+
+    def resize(self, changes: Sequence[Similarity]) -> None:
+        """Show the keys in other sizes: by similarities of the world, on top of those that they have."""
+        pieces = zip(self._objects, self.link.placements, self.link.slices(self.mesh), self.sizes, strict=True)
+        for obj, place, s, shown in pieces:
+            local = [place.similarity(change) for change in changes]
+            if obj.data.shape_keys:
+                bake.resize(obj, [more.after(size) for more, size in zip(local, shown, strict=True)])
+            else:  # only points are keyed
+                frames = [more.of(frame[s].astype(np.float64)) for more, frame in zip(local, self.frames, strict=True)]
+                _move_keys(obj.data, [frame.astype(np.float32) for frame in frames])
+                bake.scale_bevel(obj.data, changes[-1].factor)
+                bake.update(obj.data)
+
+    def turn(self, turn: Turn) -> None:
+        """Turn the keyed points themselves, of a single object."""
+        (obj,), (place,), (shown,) = self._objects, self.link.placements, self.sizes
+        local = [place.to_local(turn.of(place.to_world(frame.astype(np.float64)))) for frame in self.frames]
+        _move_keys(obj.data, [points.astype(np.float32) for points in local])
+        if obj.data.shape_keys:
+            world = [place.in_world(size) for size in shown]
+            about = [turn.of(each.shift / (1.0 - each.factor)) if each.factor != 1.0 else each.shift for each in world]
+            turned = [Similarity.about(c, each.factor) for c, each in zip(about, world, strict=True)]
+            bake.resize(obj, [place.similarity(each) for each in turned])
+        bake.update(obj.data)
+
+    @property
+    def unproved(self) -> int:
+        """Number of straight motions from key to key, as stored, that are not proved free of contact."""
+        common = [self.link.to_common(self.mesh, frame) for frame in self.frames]
+        return sum(not is_free(self.mesh, a, b) for a, b in pairwise(common))
+
+
+def keep_size(objects: Sequence[bpy.types.Object], measure: Measure, reference: int) -> BakedKeys:
+    """Show all keys scaled about their barycenters to the size of one of them, and the tubes drawn around them alike.
+
+    `core.keys.placement` says why that makes no contact; keyed points that are scaled have to be proved again. Raises
+    MobiusFlowError if the objects were not baked together, or points of them are pinned.
+    """
+    if any(pins.count(obj.data) for obj in objects):
+        raise MobiusFlowError(Message("Scaling would move pinned points; unpin them first"))
+    curves = (keys := BakedKeys(objects)).curves
+    keys.resize([Similarity.giving(measure, measure.of(curves[reference]), curve) for curve in curves])
+    return BakedKeys(objects)
+
+
+def keyed_points(data: bpy.types.Curve) -> list[Frame]:
+    """Points of a curve at each of its keys, (n, 3)."""
+    if data.shape_keys:
+        return [key_points(block) for block in data.shape_keys.key_blocks]
+    columns = [read(curve.keyframe_points, "co", 2)[:, 1] for curve in coordinate_curves(data)]
+    if len({len(column) for column in columns}) > 1:
+        raise MobiusFlowError(Message("Keys of '{name}' were edited; undo that, or Bake Again", name=data.name))
+    return list(np.stack(columns, axis=1).reshape(len(columns[0]), -1, 3))
+
+
+def _move_keys(data: bpy.types.Curve, frames: Sequence[Frame]) -> None:
+    """Move the points at each key, (n, 3), but not the key in time; the curve itself gets the last key's points."""
+    if data.shape_keys:
+        for block, frame in zip(data.shape_keys.key_blocks, frames, strict=True):
+            block.data.foreach_set("co", frame.ravel())
+    else:
+        values = np.stack(frames).reshape(len(frames), -1)
+        for curve, column in zip(coordinate_curves(data), values.T, strict=True):
+            places = read(curve.keyframe_points, "co", 2)  # frames and values
+            places[:, 1] = column
+            curve.keyframe_points.foreach_set("co", places.ravel())
+            curve.update()
+    write_points(data, frames[-1])
+
+
+def lay_flat(objects: Sequence[bpy.types.Object]) -> int:
+    """Turn curves so that they extend least upwards; one that is animated, least along its own Z axis.
+
+    Returns the number of motions of keys that are not proved any more. Raises MobiusFlowError if something moves one
+    of them, or its parent's scale would shear it, and it is not alone, or has no keys; or if all points are the same.
+    """
+    flat = placement(objects[0]).linear.T if what_moves(objects[0]) else np.eye(3)
+    return _turn(objects, orthonormal(flat))
+
+
+def face_camera(objects: Sequence[bpy.types.Object], camera: bpy.types.Object) -> int:
+    """Turn curves so that a camera sees their widest side, its longest axis across the picture; as `lay_flat`."""
+    view = np.array(camera.matrix_world, dtype=np.float64)
+    axes = view[:3, :3].T.copy()
+    if camera.data.type != "ORTHO":
+        axes[2] = view[:3, 3] - Turn.onto(_shape(objects), np.eye(3)).center
+    return _turn(objects, orthonormal(axes))
+
+
+def _turn(objects: Sequence[bpy.types.Object], wanted: FloatArray) -> int:
+    turn = Turn.onto(_shape(objects), wanted)
+    why = None
+    for obj in objects:
+        if mover := what_moves(obj):
+            why = why or Message("'{name}' is moved by {mover}", name=obj.name, mover=mover)
+        elif obj.parent and not any(each in objects for each in _ancestors(obj)):
+            # whether a location, rotation and scale under the parent give the turned object; angles of matrices that
+            # Blender has rounded count as right to 1e-5
+            matrix, own = (np.array(each, dtype=np.float64)[:3, :3] for each in (obj.matrix_world, obj.matrix_basis))
+            columns = np.linalg.solve(matrix @ np.linalg.inv(own), turn.rotation @ matrix)
+            columns /= np.linalg.norm(columns, axis=0)
+            if not np.allclose(columns.T @ columns, np.eye(3), atol=1e-5):
+                uneven = "'{name}' would change its shape, as its parent's scale is uneven"
+                why = why or Message(uneven, name=obj.name)
+    if why:
+        if len(objects) > 1 or not bake.is_baked(objects[0].data):
+            raise MobiusFlowError(Message("{why}; remove that, or bake it and turn it alone", why=why))
+        if bake.is_edited(objects[0].data):
+            raise MobiusFlowError(Message("{why}, and its keys were edited; undo one or the other", why=why))
+        BakedKeys(objects).turn(turn)
+        return BakedKeys(objects).unproved
+    for obj in objects:
+        suspend(obj)
+    turned = {obj: Matrix(turn.matrix.tolist()) @ obj.matrix_world for obj in objects}
+    for obj in sorted(objects, key=lambda each: sum(1 for _ in _ancestors(each))):  # parents carry their children along
+        obj.matrix_world = turned[obj]
+        bpy.context.view_layer.update()
+    for obj in objects:
+        resume(obj)
+    bpy.context.view_layer.update()
+    # a single object may go anywhere; the positions of several relative to each other are rounded anew
+    proved = len(objects) > 1 and all(bake.is_baked(obj.data) for obj in objects)
+    return BakedKeys(objects).unproved if proved else 0
+
+
+def _shape(objects: Sequence[bpy.types.Object]) -> Curve:
+    """The curves in the world, at the end of their animation if they are baked."""
+    if all(bake.is_baked(obj.data) for obj in objects):
+        return BakedKeys(objects).curves[-1]
+    return read_link(objects)[0]
+
+
+def _ancestors(obj: bpy.types.Object) -> Iterator[bpy.types.Object]:
+    while obj.parent is not None:
+        yield (obj := obj.parent)

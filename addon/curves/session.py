@@ -4,6 +4,7 @@ A plain class: a blocking operator runs it, a modal one hands it the iterates of
 What it knows lives here and never in the file.
 """
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -13,22 +14,21 @@ import bpy
 import numpy as np
 
 from ...core import Curve, Hand, Iterate, Obstacle, Outcome, RelaxOptions, Status, Task, WithOutcome
+from ...core.base.errors import CurveError, MobiusFlowError, OptionError
+from ...core.base.messages import Message, Sentence
+from ...core.base.types import FloatArray
 from ...core.collision import is_free
-from ...core.errors import CurveError, MobiusFlowError, OptionError
-from ...core.messages import Message, Sentence
-from ...core.types import FloatArray
-from ..engine.key_options import KeyOptions, Output
-from ..engine.motion import Key, Keys, Motion, Proof
-from ..engine.obstacles import in_common_space
-from ..engine.placement import Frame
-from ..engine.size import Measure
-from ..engine.words import named
-from ..engine.worker import begun
+from ...core.driver.words import named
+from ...core.keys.key_options import Course, KeyOptions, Output
+from ...core.keys.motion import Key, Keys, Kind, Proof, Recording
+from ...core.keys.placement import Frame, Measure
+from ...core.keys.tube import eased
+from ..engine.worker import begun, in_common_space
 from . import bake, bevel
-from .blends import Goals
-from .exchange import stretch
-from .group import Group
+from .goals import Goals
+from .group import CurveGroup
 from .pins import FREE, Held
+from .splines import stretch
 from .surroundings import NOTHING, Surroundings
 
 
@@ -39,8 +39,10 @@ class Report:
     names: tuple[str, ...]  # the objects' names
     outcome: Outcome  # how the relaxation ended
     keys: int  # number of keys of the relaxed curves; 1 without animation
+    kinds: Counter[Kind]  # how many new ones there are of each kind
     continues: bool  # whether the first of them is the last of those that were there
-    last_frame: float  # scene frame of the last key
+    replaced: int  # number of keys that were there before, and are not any more
+    last_frame: float  # scene frame of the last key, or the last one on the way back
     scene_range: tuple[int, int] | None  # first and last frame of the animation with its rests, if there is one
     # whether every motion shown was proved free of contact, of each curve with itself, of all with each other, and
     # with what they avoid
@@ -51,25 +53,31 @@ class Report:
 
     @property
     def sentence(self) -> Message:
-        facts: dict[str, Any] = {"names": named(self.names), "outcome": self.outcome.message, "proof": self._proof}
-        if self.keys == 1:
-            return Message("{names} {outcome}; {proof}", **facts)
-        facts |= {"count": self.keys - self.continues, "frame": self.last_frame}
-        if self.continues and facts["count"] == 1:
-            return Message("{names} {outcome}; 1 new key up to frame {frame:g}, {proof}", **facts)
-        if self.continues:
-            return Message("{names} {outcome}; {count} new keys up to frame {frame:g}, {proof}", **facts)
-        return Message("{names} {outcome}; {count} keys up to frame {frame:g}, {proof}", **facts)
-
-    @property
-    def _proof(self) -> Message:
-        if not self.certified:
-            return Message("NOT proved free of contact everywhere")
         # only the relaxed curves, and what they avoid, are examined
         alone = Message("proved free of contact with itself")
-        whom = alone if len(self.names) == 1 else Message("proved free of contact with themselves and each other")
-        whom = Message("{proof}, and with {avoided}", proof=whom, avoided=named(self.avoided)) if self.avoided else whom
-        return Message("{proof}, before modifiers", proof=whom) if self.modified else whom
+        proof = alone if len(self.names) == 1 else Message("proved free of contact with themselves and each other")
+        if self.avoided:
+            proof = Message("{proof}, and with {avoided}", proof=proof, avoided=named(self.avoided))
+        if self.modified:
+            proof = Message("{proof}, before modifiers", proof=proof)
+        if not self.certified:
+            proof = Message("NOT proved free of contact everywhere")
+        facts: dict[str, Any] = {"names": named(self.names), "outcome": self.outcome.message, "proof": proof}
+        if self.keys == 1:
+            return Message("{names} {outcome}; {proof}", **facts)
+        count = self.keys - self.continues
+        if self.continues:
+            said = Message("1 new key") if count == 1 else Message("{count} new keys", count=count)
+        else:
+            said = Message("{count} keys", count=count)
+            if self.replaced:
+                said = Message("{keys} in place of {count}", keys=said, count=self.replaced)
+        if self.kinds[Kind.STEP] < count:
+            mixed = "{keys} ({steps} iterates, {moves} strand moves, {meshes} changes of mesh, {added} in between)"
+            names = ("steps", "moves", "meshes", "added")
+            said = Message(mixed, keys=said, **{name: self.kinds[kind] for name, kind in zip(names, Kind, strict=True)})
+        facts |= {"keys": said, "frame": self.last_frame}
+        return Message("{names} {outcome}; {keys} up to frame {frame:g}, {proof}", **facts)
 
     @property
     def clean(self) -> bool:
@@ -83,11 +91,12 @@ class Prepared:
 
     keys: Keys
     frames: FloatArray
+    course: Course
     radii: FloatArray | None  # of the tube, in the common space of `Link`, if it is fitted
 
 
 class Session:
-    """A relaxation of curve objects as one link; ``objects`` and ``continues`` as for `Group`.
+    """A relaxation of curve objects as one link; ``objects`` and ``continues`` as for `CurveGroup`.
 
     ``goals``: curve objects that it is to become, one after the other; by default it is relaxed alone.
     ``outcome``: how the relaxation ended, once it has.  Raises MobiusFlowError if the curves cannot be relaxed, or
@@ -107,30 +116,32 @@ class Session:
         key_options.check_room(options.max_iterations)
         self.surroundings = surroundings
         self._key_options = key_options
-        self.group = Group(objects, continues)
+        self.group = CurveGroup(objects, continues)
         try:
             self.goals = Goals(goals, self.group.curve)
-            self.task, self.options = self._task(held, options.balance), options
+            pins, obstacles = tuple(sorted({*held.points, *self.group.pins})), surroundings.obstacles
+            tangents = held.tangents and bool(pins)
+            self.task = Task(curve=self.group.curve, obstacles=obstacles, pins=pins, pin_tangents=tangents)
+            if self.task.pins or obstacles:
+                key_options.check_place()
+            if obstacles and options.balance:
+                raise OptionError(Message("Balance does not go with what is avoided; leave it out, or avoid nothing"))
+            self.options = options
             if continues:  # the keys that are there have as many points as the curves have now
                 self.options = replace(options, vertices=len(self.group.curve), mesh="fixed", untangle="never")
         except BaseException:
             self.group.discard()
             raise
-        self.motion = Motion(self.group.link, self.group.stored if continues else None, self._measure)
+        first = self.group.stored if continues else None
+        # what of the size stays constant, or changes evenly between goals
+        stays = self.task.pins or obstacles or self.options.grow != 1.0
+        # a taper may leave no radii at points, which make up for the size
+        stays = stays or any(o.data.taper_object and o.data.taper_radius_mode == "OVERRIDE" for o in objects)
+        measure = key_options.keep_size or (Measure.LENGTH if stays else Measure.RADIUS)
+        self.motion = Recording(self.group.link, first, measure, self.group.size, not self._shape_keys)
         self._last: Iterate | None = None
         self._repinned = False  # whether a hand has left pins
         self.outcome: Outcome | None = None
-
-    def _task(self, held: Held, balance: bool) -> Task:
-        """The curves with what is pinned and avoided; raises MobiusFlowError if they do not go together."""
-        pins = tuple(sorted({*held.points, *self.group.pins}))
-        curve, obstacles = self.group.curve, self.surroundings.obstacles
-        task = Task(curve=curve, obstacles=obstacles, pins=pins, pin_tangents=held.tangents and bool(pins))
-        if task.pins or task.obstacles:
-            self._key_options.check_place()
-        if obstacles and balance:
-            raise OptionError(Message("Balance does not go with what is avoided; leave it out, or avoid nothing"))
-        return task
 
     def run(self, drag: Callable[[Hand, Iterate], object] | None = None) -> Report:
         """Do the whole job; raises MobiusFlowError if the curves cannot be relaxed, or an object is gone.
@@ -138,29 +149,26 @@ class Session:
         ``drag`` gets a hand, and the iterates in the world, between which it may tell the hand what to do.
         """
         try:
-            prepared = self._relaxed(drag)
+            hand = Hand()
+            try:
+                relaxation = WithOutcome(begun(self.task, self.options, self.goals.curves, hand))
+                for iterate in relaxation:
+                    self.take(iterate)
+                    if drag is not None:
+                        drag(hand, iterate)
+            except CurveError as error:
+                raise self.reworded(error) from error
+            assert relaxation.outcome is not None, "the loop is through"
+            self.end(relaxation.outcome)
+            prepared = self.prepare(partial(is_free, obstacles=self._avoided))
             if reason := self.lost():
                 raise MobiusFlowError(Message("{reason} during the relaxation; nothing was written", reason=reason))
-            for _ in self.writing(prepared):
-                pass
+            *_, report = self.bake(prepared)
         except BaseException:
             self.group.discard()
             raise
-        return self.report(prepared)
-
-    def _relaxed(self, drag: Callable[[Hand, Iterate], object] | None) -> Prepared:
-        hand = Hand()
-        try:
-            run = WithOutcome(begun(self.task, self.options, self.goals.curves, hand))
-            for iterate in run:
-                self.take(iterate)
-                if drag is not None:
-                    drag(hand, iterate)
-        except CurveError as error:
-            raise self.reworded(error) from error
-        assert run.outcome is not None, "the loop is through"
-        self.end(run.outcome)
-        return self.prepare(partial(is_free, obstacles=self._avoided))
+        assert report is not None, "it comes last"
+        return report
 
     @cached_property
     def _avoided(self) -> tuple[Obstacle, ...]:
@@ -180,20 +188,19 @@ class Session:
         self.outcome = replace(outcome, clauses=tuple(map(self.group.reworded, outcome.clauses)))
 
     @property
-    def _measure(self) -> Measure:
-        """The measure of size that stays constant."""
-        if self.goals.curves:  # which have sizes of their own
-            return Measure.LENGTH
-        stays = self.task.pins or self.task.obstacles or self.options.grow != 1.0
-        return self._key_options.keep_size or (Measure.LENGTH if stays else Measure.RADIUS)
+    def _shape_keys(self) -> bool:
+        """Whether shape keys are written; an animation that goes on may have them whatever is asked for."""
+        return self._key_options.output is Output.SHAPE_KEYS or self.group.continues
 
     def take(self, iterate: Iterate) -> None:
-        """Record an iterate as it is shown, in the size that is to be kept."""
+        """Record an iterate."""
         before, self._last = self._last, iterate
         if before is not None and before.curve.mesh == iterate.curve.mesh:
             self._repinned |= before.pins != iterate.pins
         self.motion.add(iterate)
         self.goals.note(iterate)
+        if self.goals.curves:
+            self.motion.natural = sorted({0, *self.goals.iterates, iterate.index})
 
     def show(self, there: Key | None = None) -> None:
         """Show a shape, by default the last iterate with the pins that a hand left, its tube as thick as at a key."""
@@ -211,7 +218,8 @@ class Session:
         if self._repinned and (last := self.motion.last) is not None:
             link, curve = self.group.link, last.curve
             shown = link.to_common(self.motion.start.mesh, self.motion.frame)
-            pins = link.to_common(curve.mesh, link.to_stored(curve.mesh, curve.vertices))[list(last.pins)]
+            seen = self.motion.size.of(curve.vertices)
+            pins = link.to_common(curve.mesh, link.to_stored(curve.mesh, seen))[list(last.pins)]
             self.group.mark_pins([int(np.linalg.norm(shown - pin, axis=1).argmin()) for pin in pins])
 
     def prepare(self, proof: Proof) -> Prepared:
@@ -219,17 +227,17 @@ class Session:
         motion = self.motion
         timing = self._key_options.timing.shortened(motion.way) if self.group.continues else self._key_options.timing
         animated, limit = self._key_options.animated, self._key_options.max_keys
-        keys = motion.keys(proof, limit, timing.pace) if animated else motion.result(proof)
-        radii = self._radii(keys) if self.group.fits(self._key_options) else None
-        return Prepared(keys, timing.frames(motion.course(keys)), radii)
-
-    def _radii(self, keys: Keys) -> FloatArray:
-        """Radii of the tube at the keys, in the common space; without shape keys the last one only."""
-        # an animation that goes on may have shape keys whatever is asked for, see `Member.writing`
-        shape_keys = self._key_options.output is Output.SHAPE_KEYS or self.group.continues
-        shown = keys.keys if shape_keys else keys.keys[-1:]
-        radii = np.array([self._radius(key.points) for key in shown])
-        return np.full_like(radii, radii.min()) if self._key_options.constant_radius else radii
+        keys = motion.keys(proof, limit, timing) if animated else motion.result(proof)
+        course = motion.course(keys)
+        frames = timing.frames(course)
+        radii = None
+        if self.group.fits(self._key_options):
+            shown = slice(None) if self._shape_keys else slice(-1, None)  # without shape keys the last one only
+            factors = np.array([key.size.factor for key in keys.keys[shown]])
+            fitting = factors * [self._radius(key.points) for key in keys.keys[shown]]
+            radii = eased(fitting, frames[shown], keys.moves[shown])
+            radii = (radii.min() if self._key_options.constant_radius else radii) / factors
+        return Prepared(keys, frames, course, radii)
 
     def _radius(self, frame: Frame) -> float:
         """Radius of the tube, as thick as free of contact allows, in the common space."""
@@ -237,38 +245,44 @@ class Session:
         return bevel.fitting_radius(Curve(self.group.link.to_common(mesh, frame), mesh), self._avoided)
 
     def reopen(self) -> None:
-        """Go on after `Group.discard`; raises MobiusFlowError if the curves are not what they were at the start."""
+        """Go on after `CurveGroup.discard`; raises MobiusFlowError if the curves are not as they were at first."""
         changed = Message("{names} changed since the relaxation ended; relax anew", names=self.group.title)
         objects = self.group.objects
         if len(objects) < len(self.group.names) or self.surroundings.lost():
             raise MobiusFlowError(changed)
-        group = Group(objects, self.group.continues)
+        group = CurveGroup(objects, self.group.continues)
         if not group.equals(self.group):
             group.discard()
             raise MobiusFlowError(changed)
         self.group = group
 
-    def writing(self, prepared: Prepared) -> Iterator[None]:
-        """Write in short pieces, so that a window can be drawn in between; all objects must be there."""
-        self.group.make_polygons(self.motion.start)
-        self._mark_pins()
-        yield from self.group.writing(
-            self.motion.start.mesh, prepared.keys, prepared.frames, self._key_options, prepared.radii
-        )
-        self.goals.paint(self.group.objects, prepared.keys, prepared.frames, self._key_options.timing)
+    def bake(self, prepared: Prepared) -> Iterator[Report | None]:
+        """Write in short pieces, so that a window can be drawn in between, and report at last; no object may be gone.
 
-    def report(self, prepared: Prepared) -> Report:
+        What is written becomes final with the last piece: until then `CurveGroup.discard` takes all of it back.
+        """
         assert self.outcome is not None, "what is written has ended"
-        keys, frames, group = prepared.keys, prepared.frames, self.group
-        return Report(
+        keys, frames, radii = prepared.keys, prepared.frames, prepared.radii
+        group, options = self.group, self._key_options
+        group.make_polygons(self.motion.start)
+        self._mark_pins()
+        yield from group.writing(self.motion.start.mesh, keys, frames, options, radii)
+        self.goals.paint(group.objects, keys, frames, options.timing)
+        group.keep(keys, frames, options, prepared.course)
+        self.goals.hide(group.objects)
+        played = bake.scene_range(group.objects)
+        shown = keys.keys[-1].size.factor * stretch(group.objects[0])
+        yield Report(
             names=group.names,
             outcome=self.outcome,
             keys=len(keys.keys),
+            kinds=replace(keys, keys=keys.keys[group.continues :]).kinds,
             continues=group.continues,
-            last_frame=float(frames[-1]),
-            scene_range=bake.scene_range(group.objects),
+            replaced=group.replaced,
+            last_frame=float(played[1] if played and options.timing.loop else frames[-1]),
+            scene_range=played,
             certified=keys.certified,
-            radius=None if prepared.radii is None else float(prepared.radii[-1]) * stretch(group.objects[0]),
+            radius=None if radii is None else float(radii[-1]) * shown,
             modified=group.modified,
             avoided=self.surroundings.names,
         )

@@ -9,15 +9,14 @@ import bpy
 import numpy as np
 import numpy.typing as npt
 
-from ...core import Curve, CurveError
-from ...core.messages import Message
-from ..engine.interpolation import along, on_refined
-from ..engine.placement import Frame
+from ...core import Curve, CurveError, Mesh
+from ...core.base.messages import Message
+from ...core.base.types import FloatArray
+from ...core.curve.refine import along, on_refined
+from ...core.keys.placement import Frame, Link
+from .sizes import placement
 
 _TYPES: dict[str, Any] = {"BOOLEAN": np.int32, "INT": np.int32, "FLOAT": np.float32, "ENUM": np.int32}
-_POINT_VALUES = ("radius", "tilt", "weight_softbody")
-_KINDS = {"BEZIER": "Bézier", "NURBS": "NURBS"}
-_MAX_QUESTIONS = 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,26 +27,6 @@ class _Spline:
     count: int
     settings: dict[str, Any]
     points: dict[str, npt.NDArray[Any]]
-
-    @classmethod
-    def of(cls, spline: bpy.types.Spline) -> "_Spline":
-        points = control_points(spline)
-        arrays = {}
-        for prop in _properties(points[0]) if len(points) else ():
-            width = max(getattr(prop, "array_length", 1), 1)  # only vectors have several numbers
-            arrays[prop.identifier] = read(points, prop.identifier, width, _TYPES[prop.type])
-        settings = {prop.identifier: getattr(spline, prop.identifier) for prop in _properties(spline)}
-        if spline.type != "NURBS":
-            del settings["order_u"]  # means nothing, and is made valid when it is set
-        return cls(spline.type, len(points), settings, arrays)
-
-    def put(self, spline: bpy.types.Spline) -> None:
-        points = control_points(spline)
-        points.add(self.count - len(points))
-        for name, array in self.points.items():
-            points.foreach_set(name, array.ravel())
-        for name, value in self.settings.items():
-            setattr(spline, name, value)
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +39,17 @@ class Splines:
     @classmethod
     def of(cls, data: bpy.types.Curve) -> "Splines":
         active = next((k for k, spline in enumerate(data.splines) if spline == data.splines.active), None)
-        return cls([_Spline.of(spline) for spline in data.splines], active)
+        each = []
+        for spline in data.splines:
+            points, arrays = control_points(spline), {}
+            for prop in _properties(points[0]) if len(points) else ():
+                width = max(getattr(prop, "array_length", 1), 1)  # only vectors have several numbers
+                arrays[prop.identifier] = read(points, prop.identifier, width, _TYPES[prop.type])
+            settings = {prop.identifier: getattr(spline, prop.identifier) for prop in _properties(spline)}
+            if spline.type != "NURBS":
+                del settings["order_u"]  # means nothing, and is made valid when it is set
+            each.append(_Spline(spline.type, len(points), settings, arrays))
+        return cls(each, active)
 
     def polygons(self, drawn: Curve, refined: Curve) -> "Splines":
         """The same as poly splines with the vertices of a refined curve; the positions of their points are left open.
@@ -74,7 +63,7 @@ class Splines:
             old, new = (curve.edge_lengths[curve.mesh.edge_slices[k]] for curve in (drawn, refined))
             points = {
                 name: on_refined(along(spline.points[name], size, closed), old, new, closed).astype(np.float32)
-                for name in _POINT_VALUES
+                for name in ("radius", "tilt", "weight_softbody")
             }
             settings = {name: value for name, value in spline.settings.items() if name != "order_u"}
             made.append(_Spline("POLY", refined.mesh.component_sizes[k], settings, points))
@@ -83,8 +72,14 @@ class Splines:
     def fill(self, data: bpy.types.Curve) -> None:
         """Give these splines to curve data in place of its own."""
         data.splines.clear()
-        for spline in self.each:
-            spline.put(data.splines.new(spline.type))
+        for each in self.each:
+            spline = data.splines.new(each.type)
+            points = control_points(spline)
+            points.add(each.count - len(points))
+            for name, array in each.points.items():
+                points.foreach_set(name, array.ravel())
+            for name, value in each.settings.items():
+                setattr(spline, name, value)
         if self.active is not None:
             data.splines.active = data.splines[self.active]
         data.update_tag()
@@ -143,7 +138,7 @@ def _properties(owner: bpy.types.bpy_struct) -> list[bpy.types.Property]:
 
 def kind(spline: bpy.types.Spline) -> str:
     """Name of a spline's type, as messages show it."""
-    return _KINDS.get(spline.type, str(spline.type))
+    return {"BEZIER": "Bézier"}.get(spline.type, str(spline.type))
 
 
 def smooth_splines(data: bpy.types.Curve) -> list[bpy.types.Spline]:
@@ -153,22 +148,21 @@ def smooth_splines(data: bpy.types.Curve) -> list[bpy.types.Spline]:
 
 def questions(objects: Sequence[bpy.types.Object]) -> list[str]:
     """Ask whether the smooth splines of objects may become polygons, a line each; raises as `sampled` does."""
-    smooth = [obj for obj in objects if smooth_splines(obj.data)]
-    lines = [_question(obj) for obj in smooth[:_MAX_QUESTIONS]]
+    smooth, lines = [obj for obj in objects if smooth_splines(obj.data)], list[str]()
+    for obj in smooth[:5]:
+        splines = smooth_splines(obj.data)
+        kinds = sorted({kind(spline) for spline in splines})
+        drawn = zip(sampled(obj), obj.data.splines, strict=True)
+        points = sum(len(points) for points, spline in drawn if spline in splines)
+        if len(splines) == 1:
+            one = "'{name}' has a {kind} spline; it becomes a polygon of {points} points"
+            lines.append(Message(one, name=obj.name, kind=kinds[0], points=points))
+            continue
+        several = "'{name}' has {count} {kinds} splines; they become polygons of {points} points in all"
+        both = Message("{names} and {last}", names=kinds[0], last=kinds[-1]) if kinds[1:] else kinds[0]
+        lines.append(Message(several, name=obj.name, count=len(splines), kinds=both, points=points))
     more = len(smooth) - len(lines)
     return [*lines, Message("{count} more objects have smooth splines too", count=more)] if more else lines
-
-
-def _question(obj: bpy.types.Object) -> str:
-    smooth = smooth_splines(obj.data)
-    kinds = sorted({kind(spline) for spline in smooth})
-    points = sum(len(points) for points, spline in zip(sampled(obj), obj.data.splines, strict=True) if spline in smooth)
-    if len(smooth) == 1:
-        one = "'{name}' has a {kind} spline; it becomes a polygon of {points} points"
-        return Message(one, name=obj.name, kind=kinds[0], points=points)
-    several = "'{name}' has {count} {kinds} splines; they become polygons of {points} points in all"
-    both = Message("{names} and {last}", names=kinds[0], last=kinds[-1])
-    return Message(several, name=obj.name, count=len(smooth), kinds=both if kinds[1:] else kinds[0], points=points)
 
 
 def sampled(obj: bpy.types.Object) -> list[Frame]:
@@ -209,3 +203,104 @@ def _drawn(data: bpy.types.Curve) -> list[Frame]:
         bare.to_mesh_clear()
         bpy.data.objects.remove(bare)
         bpy.data.curves.remove(copy)
+
+
+def read_link(objects: Sequence[bpy.types.Object]) -> tuple[Curve, Link]:
+    """Read the splines of curve objects in world space, one component each, and where they are stored.
+
+    Splines that are not cyclic are open components, smooth ones the polygons drawn for them. Raises CurveError if a
+    coordinate is not finite, or as good as infinite, or no polygon is drawn.
+    """
+    placements = tuple(placement(obj) for obj in objects)
+    components = [read_splines(obj) for obj in objects]
+    link = Link(placements, tuple(len(each) for each in components))
+    world = [place.to_world(c) for place, each in zip(placements, components, strict=True) for c in each]
+    return Curve.from_components(world, [flag for obj in objects for flag in closed(obj.data)]), link
+
+
+def closed(data: bpy.types.Curve) -> tuple[bool, ...]:
+    """Whether each spline is closed; those that are not cyclic are open."""
+    return tuple(bool(spline.use_cyclic_u) for spline in data.splines)
+
+
+def read_splines(obj: bpy.types.Object) -> list[FloatArray]:
+    """The polygons of all splines in the object's coordinates, (n, 3) each; raises as `read_link` does."""
+    smooth = smooth_splines(obj.data)
+    frames = sampled(obj) if smooth else [coordinates(spline) for spline in obj.data.splines]
+    for k, frame in enumerate(frames, 1):
+        bad = np.flatnonzero(~(np.abs(frame) < 1e30).all(axis=1))  # Blender clamps infinite ones to the largest number
+        if bad.size:
+            sentence = (
+                "Point {point} of spline {spline} of '{name}' is not finite, or further away than anything; repair or"
+                " delete it"
+            )
+            raise CurveError(Message(sentence, point=bad[0] + 1, spline=k, name=obj.name))
+    return [frame.astype(np.float64) for frame in frames]
+
+
+def stretch(obj: bpy.types.Object) -> float:
+    """The largest factor by which an object's coordinates are stretched on the way to the world."""
+    return placement(obj).stretch
+
+
+def box(obj: bpy.types.Object) -> tuple[FloatArray, FloatArray]:
+    """The least and the greatest coordinates of the corners of an object's box in the world."""
+    matrix = np.array(obj.matrix_world)
+    with np.errstate(invalid="ignore"):  # where points are not finite
+        corners = np.array(obj.bound_box) @ matrix[:3, :3].T + matrix[:3, 3]
+    return corners.min(axis=0), corners.max(axis=0)
+
+
+def length(scene: bpy.types.Scene, value: float) -> str:
+    """Format a length with its unit, to about four digits."""
+    units = scene.unit_settings
+    text = bpy.utils.units.to_string(
+        units.system, "LENGTH", value * units.scale_length, precision=4, split_unit=units.use_separate
+    )
+    return str(text).strip()
+
+
+def key_points(block: bpy.types.ShapeKey) -> Frame:
+    """Coordinates of all points at a shape key; shape (n, 3)."""
+    return read(block.data, "co", 3)
+
+
+def write_points(data: bpy.types.Curve, frame: Frame) -> None:
+    """Move the points of all splines; shape (n, 3), the object's coordinates."""
+    first = 0
+    for spline in data.splines:
+        count = len(spline.points)
+        points = np.ones((count, 4), dtype=np.float32)
+        points[:, :3] = frame[first : first + count]
+        spline.points.foreach_set("co", points.ravel())
+        first += count
+    data.update_tag()
+
+
+def new_curve_data(name: str, mesh: Mesh) -> bpy.types.Curve:
+    """Make curve data of poly splines, one for each component, with all points still at the origin."""
+    data = bpy.data.curves.new(name, "CURVE")
+    data.dimensions = "3D"
+    for size, is_closed in zip(mesh.component_sizes, mesh.closed, strict=True):
+        spline = data.splines.new("POLY")
+        spline.points.add(size - 1)
+        spline.use_cyclic_u = is_closed
+    return data
+
+
+class Reference:
+    """An object or curve data, whatever it is called now; after undo, Python's own references dangle."""
+
+    def __init__(self, block: bpy.types.ID) -> None:
+        self.name = block.name  # when it was last looked up
+        self._uid, self._blocks = block.session_uid, "objects" if block.id_type == "OBJECT" else "curves"
+
+    def get(self) -> Any:
+        """The datablock, or None if it is gone; it is looked up by its last name first, as there may be thousands."""
+        blocks = getattr(bpy.data, self._blocks)
+        block = blocks.get(self.name)
+        if block is None or block.session_uid != self._uid:
+            block = next((block for block in blocks if block.session_uid == self._uid), None)
+        if block is not None:
+            self.name = block.name
+        return block

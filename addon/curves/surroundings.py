@@ -9,21 +9,46 @@ from itertools import chain
 
 import bpy
 import numpy as np
+import numpy.typing as npt
 
-from ...core import MobiusFlowError, Obstacle
-from ...core.messages import Message
-from ..engine.obstacles import Surface, obstacles
-from ..engine.placement import Placement
-from ..engine.words import named
-from .exchange import Reference
+from ...core import CurveError, MobiusFlowError, Obstacle
+from ...core.base.messages import Message
+from ...core.base.types import FloatArray, IntArray
+from ...core.driver.words import named
+from ...core.keys.placement import Frame, Placement
 from .moving import unsteady, unsteady_object
-from .splines import read
+from .splines import Reference, read
 
 STAGE = "mobius_flow_stage"  # custom property of objects that only surround curves, to be seen with them
 TUBE_OF = "mobius_flow_tube_of"  # custom property of a tube's mesh: the curve object that it was made of
-_MARGIN = 0.1  # of the diagonal of the curves' box
 SOLID = {"CURVE", "MESH", "SURFACE", "META", "FONT"}  # what Blender makes meshes of
 WITHOUT_SHAPE = {"ARMATURE", "CAMERA", "LATTICE", "LIGHT", "LIGHT_PROBE", "SPEAKER"}
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """Triangles, and edges that belong to none of them, in the world."""
+
+    vertices: FloatArray  # positions, shape (k, 3)
+    triangles: IntArray  # indices of their corners, shape (f, 3)
+    edges: IntArray  # indices of the ends of those edges, shape (e, 2)
+
+    @classmethod
+    def of_mesh(
+        cls, points: Frame, triangles: npt.NDArray[np.int32], edges: npt.NDArray[np.int32], placement: Placement
+    ) -> "Surface":
+        """What a mesh shows at a place: all its triangles, edges (e, 2), and points, (k, 3) in its own coordinates."""
+        faces, ends = triangles.astype(np.intp), edges.astype(np.intp)
+        sides = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+        low, high = np.sort(ends, axis=1).T
+        count = 1 + max(sides.max(initial=0), ends.max(initial=0))
+        loose = ends[~np.isin(low * count + high, sides[:, 0] * count + sides[:, 1])]
+        return cls(placement.to_world(points.astype(np.float64)), faces, loose)
+
+    def equals(self, other: "Surface") -> bool:
+        """Whether both are the same, bit for bit."""
+        pairs = ((self.vertices, other.vertices), (self.triangles, other.triangles), (self.edges, other.edges))
+        return all(np.array_equal(a, b) for a, b in pairs)
 
 
 def avoidable(
@@ -53,30 +78,12 @@ def add(scene: bpy.types.Scene, objects: Sequence[bpy.types.Object]) -> bpy.type
     return settings.avoid
 
 
-@dataclass(frozen=True)
-class _Place:
-    """Where an object was."""
-
-    reference: Reference
-    placement: Placement
-
-    def lost(self) -> Message | None:
-        obj = self.reference.get()
-        if obj is None or not obj.users_scene:
-            return Message("'{name}' was deleted", name=self.reference.name)
-        if obj.mode != "OBJECT":
-            return Message("'{name}' is being edited", name=obj.name)
-        if not Placement.from_matrix(obj.matrix_world).equals(self.placement):
-            return Message("'{name}' was moved against the others", name=obj.name)
-        return None
-
-
 @dataclass(frozen=True, eq=False)
 class Surroundings:
     """Objects that are avoided; nothing of them is touched."""
 
     obstacles: tuple[Obstacle, ...] = ()  # what they show, in the world
-    _places: tuple[_Place, ...] = ()
+    _places: tuple[tuple[Reference, Placement], ...] = ()  # where they were
 
     @classmethod
     def of(cls, avoided: Sequence[bpy.types.Object], relaxed: Sequence[bpy.types.Object]) -> "Surroundings":
@@ -90,16 +97,24 @@ class Surroundings:
             raise MobiusFlowError(reason)
         shown = surfaces(bpy.context.evaluated_depsgraph_get(), others, relaxed) if others else []
         each = (obstacles(obj.name, pieces) for obj, pieces in zip(others, shown, strict=True))
-        places = (_Place(Reference(obj), Placement.from_matrix(obj.matrix_world)) for obj in others)
+        places = ((Reference(obj), Placement.from_matrix(obj.matrix_world)) for obj in others)
         return cls(tuple(chain.from_iterable(each)), tuple(places))
 
     @property
     def names(self) -> tuple[str, ...]:
-        return tuple(place.reference.name for place in self._places)
+        return tuple(reference.name for reference, _ in self._places)
 
     def lost(self) -> Message | None:
         """Say what was done to one of the objects that makes the proofs about them pointless."""
-        return next((reason for place in self._places if (reason := place.lost())), None)
+        for reference, placement in self._places:
+            obj = reference.get()
+            if obj is None or not obj.users_scene:
+                return Message("'{name}' was deleted", name=reference.name)
+            if obj.mode != "OBJECT":
+                return Message("'{name}' is being edited", name=obj.name)
+            if not Placement.from_matrix(obj.matrix_world).equals(placement):
+                return Message("'{name}' was moved against the others", name=obj.name)
+        return None
 
 
 NOTHING = Surroundings()
@@ -133,7 +148,7 @@ def near(
     corners = read(everything, "bound_box", 24).reshape(-1, 8, 3) @ matrices[:, :3, :3] + matrices[:, 3:, :3]
     low, high = corners.min(axis=1), corners.max(axis=1)
     lowest, highest = low[mine].min(axis=0), high[mine].max(axis=0)
-    margin = _MARGIN * np.linalg.norm(highest - lowest)
+    margin = 0.1 * np.linalg.norm(highest - lowest)
     overlap = (low <= highest + margin).all(axis=1) & (high >= lowest - margin).all(axis=1)
     candidates = (everything[int(k)] for k in np.flatnonzero(overlap & ~mine))
     others = (obj for obj in candidates if obj.type in SOLID and obj not in avoided)
@@ -165,38 +180,45 @@ def surfaces(
             looked_at.add(source.session_uid)
             if said := unsteady_object(source, relaxed):
                 raise MobiusFlowError(said)
-        _check_kind(source, instance.object.type)
-        piece = _surface(instance)
+        # geometry nodes can give an object parts of other types, such as points; curves among them are not made meshes
+        evaluated, kind = instance.object, instance.object.type
+        unknown = kind not in SOLID | WITHOUT_SHAPE | {"EMPTY"}
+        if unknown or kind not in (source.type, "MESH"):
+            title = source.bl_rna.properties["type"].enum_items[kind].name
+            sentence = "'{name}' is of type {type}, which cannot be avoided; convert it to a mesh, or leave it out"
+            beside = "'{name}' shows a {type} too, which cannot be avoided; convert it to a mesh, or leave it out"
+            raise MobiusFlowError(Message(sentence if kind == source.type else beside, name=source.name, type=title))
+        mesh = evaluated.to_mesh() if kind in SOLID else None
+        if mesh is None:
+            continue
+        try:
+            mesh.calc_loop_triangles()
+            points = read(mesh.vertices, "co", 3)
+            triangles = read(mesh.loop_triangles, "vertices", 3, np.int32)
+            edges = read(mesh.edges, "vertices", 2, np.int32)
+            piece = Surface.of_mesh(points, triangles, edges, Placement.from_matrix(instance.matrix_world))
+        finally:
+            evaluated.to_mesh_clear()
         # curves, texts and so on are shown a second time, as the meshes that are made of them
-        if piece is not None and not any(map(piece.equals, pieces)):
+        if not any(map(piece.equals, pieces)):
             pieces.append(piece)
     return [shown[obj.session_uid] for obj in objects]
 
 
-def _check_kind(obj: bpy.types.Object, shown: str) -> None:
-    """Refuse the type of an object, or of a part that it shows besides, if it is not a mesh and cannot be made one.
+def obstacles(name: str, surfaces: Sequence[Surface]) -> Iterator[Obstacle]:
+    """Yield what an object shows, all of its parts together: its triangles, and its edges that belong to none.
 
-    Geometry nodes can give an object parts of other types, such as points; curves among them are not made into meshes.
+    Raises CurveError if there is nothing, or a coordinate is not finite, or as good as infinite.
     """
-    unknown = shown not in SOLID | WITHOUT_SHAPE | {"EMPTY"}
-    if unknown or shown not in (obj.type, "MESH"):
-        kind = obj.bl_rna.properties["type"].enum_items[shown].name
-        sentence = "'{name}' is of type {type}, which cannot be avoided; convert it to a mesh, or leave it out"
-        beside = "'{name}' shows a {type} too, which cannot be avoided; convert it to a mesh, or leave it out"
-        raise MobiusFlowError(Message(sentence if shown == obj.type else beside, name=obj.name, type=kind))
-
-
-def _surface(instance: bpy.types.DepsgraphObjectInstance) -> Surface | None:
-    """The mesh that is shown at one place; None if there is none."""
-    obj = instance.object
-    mesh = obj.to_mesh() if obj.type in SOLID else None
-    if mesh is None:
-        return None
-    try:
-        mesh.calc_loop_triangles()
-        points = read(mesh.vertices, "co", 3)
-        triangles = read(mesh.loop_triangles, "vertices", 3, np.int32)
-        edges = read(mesh.edges, "vertices", 2, np.int32)
-        return Surface.of_mesh(points, triangles, edges, Placement.from_matrix(instance.matrix_world))
-    finally:
-        obj.to_mesh_clear()
+    ends = np.cumsum([0, *(len(each.vertices) for each in surfaces)])
+    vertices = np.concatenate([np.empty((0, 3)), *(each.vertices for each in surfaces)])
+    kinds = [each.triangles for each in surfaces], [each.edges for each in surfaces]
+    found = [np.concatenate([a + k for a, k in zip(kind, ends, strict=False)]) for kind in kinds if any(map(len, kind))]
+    if not found:
+        raise CurveError(Message("'{name}' shows neither faces nor edges; leave it out of what is avoided", name=name))
+    for simplices in found:
+        used, corners = np.unique(simplices, return_inverse=True)
+        if not (np.abs(vertices[used]) < 1e30).all():  # Blender clamps infinite ones to the largest 32-bit number
+            sentence = "A point of '{name}' is not finite, or further away than anything; repair or delete it"
+            raise CurveError(Message(sentence, name=name))
+        yield Obstacle(vertices[used], corners.reshape(simplices.shape), name)

@@ -1,53 +1,16 @@
-"""Where a relaxation leads: the least energy that there can be, whether it is at rest there, and a plot of the way."""
+"""Where a relaxation leads: the least energy that there can be, and a plot of the way."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from ...core import Curve, CurveError, RelaxOptions, Status, Task, minimize
-from ...core.diagrams import quick_invariants
-from ...core.messages import Message
-from ...core.types import FloatArray
+from ...core import Curve, RelaxOptions, Task
+from ...core.base.messages import Message
+from ...core.base.types import FloatArray
+from ...core.knots.diagrams import quick_invariants
 
 CIRCLE = 4.0  # Möbius energy of the round circle, the least of any closed curve: Freedman, He and Wang (1994)
-SEGMENT = 0.0  # that of the straight segment, the least of any arc
-_MOST = 2000  # most vertices of a curve whose type is identified: a tenth of a second
-MAX_POINTS = 1500  # some ten seconds
-_ITERATIONS = 100  # that lead from points rounded to Blender's numbers back to a critical point
-_DECADE = 10.0  # ratio of energies from which they are drawn on a logarithmic scale
-_ROOM = 0.06  # of the height, kept free above and below
-
-
-@dataclass(frozen=True)
-class Rest:
-    """Where a curve rests."""
-
-    index: int | None  # number of independent directions that lead down, None if it is not at rest
-    words: str  # the same in words
-
-    @classmethod
-    def of(cls, curve: Curve | Task, options: RelaxOptions) -> "Rest":
-        """Look at the end of a relaxation that was done with these options.
-
-        Raises MobiusFlowError if the curve has too many points, or the options leave no way to tell.
-        """
-        task = Task.of(curve)
-        if len(task.curve) > MAX_POINTS:
-            sentence = "The curves have {count} points; minimum or saddle is decided up to {most}"
-            raise CurveError(Message(sentence, count=len(task.curve), most=MAX_POINTS))
-        options = replace(options.at_rest(task.curve), max_iterations=_ITERATIONS, stability=True)
-        result = minimize(task, options)
-        index = result.outcome.negative_eigenvalues
-        if result.status is Status.ITERATION_LIMIT:
-            return cls(None, Message("not at rest yet; press Continue first"))
-        if index is None:
-            return cls(None, result.message)
-        if not index:
-            return cls(0, Message("at a minimum, no small motion lowers the energy"))
-        if index == 1:
-            return cls(1, Message("at a saddle, one way leads down; press Leave Saddle"))
-        return cls(index, Message("at a saddle, {count} independent ways lead down; press Leave Saddle", count=index))
 
 
 @dataclass(frozen=True)
@@ -58,12 +21,13 @@ class Target:
     label: Message
 
 
-def target_of(curve: Curve | Task, options: RelaxOptions) -> Target | None:
+def target_of(curve: Curve | Task, options: RelaxOptions, most: int = 2000) -> Target | None:
     """The least energy that a curve may come down to; None if nothing useful is known.
 
     A closed component has at least the energy of a circle, and a knotted one far more: a curve whose Alexander
     polynomial shows that it is knotted has no target. An arc has at least the energy of a segment, and comes near it
-    if its ends are free. Pins and obstacles keep curves far above that.
+    if its ends are free. Pins and obstacles keep curves far above that. The type of curves with more than ``most``
+    vertices, which takes a tenth of a second, is left open.
     """
     task = Task.of(curve)
     if options.energy != "moebius" or options.terms or task.pins or task.obstacles:
@@ -71,11 +35,11 @@ def target_of(curve: Curve | Task, options: RelaxOptions) -> Target | None:
     curve = task.curve
     closed = curve.mesh.closed
     if closed == (False,):
-        return Target(SEGMENT, Message("straight = {energy:g}", energy=SEGMENT))
+        return Target(0.0, Message("straight = {energy:g}", energy=0.0))
     if len(closed) > 1:
         floor = CIRCLE * sum(closed)
         return Target(floor, Message("floor = {energy:g}", energy=floor))
-    knotted = len(curve) <= _MOST and not quick_invariants(curve).is_trivial
+    knotted = len(curve) <= most and not quick_invariants(curve).is_trivial
     return None if knotted else Target(CIRCLE, Message("circle = {energy:g}", energy=CIRCLE))
 
 
@@ -93,12 +57,12 @@ def plot(energies: Sequence[float], target: Target | None, width: float, height:
     chosen = np.unique(np.linspace(0, count - 1, min(count, max(2 * int(width), 2))).round().astype(np.intp))
     values = np.asarray(energies, dtype=np.float64)[chosen]
     low = min(values.min(), np.inf if target is None else target.energy)
-    scale = np.log if low > 0.0 and _DECADE * low < values.max() else np.positive
+    scale = np.log if low > 0.0 and 10.0 * low < values.max() else np.positive
     bottom, top = scale(np.array([low, values.max()]))
 
     def heights(of: FloatArray) -> FloatArray:
         share = (scale(of) - bottom) / (top - bottom) if top > bottom else np.full(of.shape, 0.5)
-        return np.asarray(height * (_ROOM + (1.0 - 2.0 * _ROOM) * share))
+        return np.asarray(height * (0.06 + 0.88 * share))
 
     x = width * chosen / max(count - 1, 1)
     level = None if target is None else float(heights(np.array([target.energy]))[0])

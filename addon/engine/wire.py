@@ -10,11 +10,11 @@ from typing import IO, Any
 
 import numpy as np
 
-from ...core import Curve, Hand, Iterate, Mesh, Obstacle, Outcome, RelaxOptions, Status, Task
-from ...core.errors import CurveError, MobiusFlowError, OptionError, Place
-from ...core.messages import Message
-from ...core.types import FloatArray
-from .placement import Link, Placement
+from ...core import Curve, Iterate, Mesh, Obstacle, Outcome, RelaxOptions, Status, Task
+from ...core.base.errors import CurveError, MobiusFlowError, OptionError, Place
+from ...core.base.messages import Message
+from ...core.base.types import FloatArray
+from ...core.keys.placement import Link, Placement
 
 Packet = tuple[dict[str, Any], list[FloatArray]]
 
@@ -87,16 +87,6 @@ def unpack_goals(message: Packet) -> dict[str, Curve]:
     meshes = header["goals"].items()
     last = arrays[len(arrays) - len(meshes) :]
     return {name: Curve(each, _unpack_mesh(mesh)) for each, (name, mesh) in zip(last, meshes, strict=True)}
-
-
-def pack_deed(deed: str, *facts: Any) -> Packet:
-    """An action of the hand: a method of `Hand`, and its arguments."""
-    return {"deed": deed, "facts": facts}, []
-
-
-def unpack_deed(message: Packet, hand: Hand) -> None:
-    """Perform it with the hand."""
-    getattr(hand, message[0]["deed"])(*message[0]["facts"])
 
 
 def _pack_mesh(mesh: Mesh) -> dict[str, Any]:

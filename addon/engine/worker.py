@@ -11,7 +11,8 @@ import queue
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from types import MappingProxyType
@@ -22,20 +23,15 @@ import scipy
 import threadpoolctl
 
 from ...core import Curve, Hand, Iterate, MobiusFlowError, Obstacle, Outcome, RelaxOptions, Task, WithOutcome, relax
+from ...core.base.messages import Message
+from ...core.base.types import FloatArray
 from ...core.collision import is_free
 from ...core.curve import Mesh
 from ...core.driver import Relaxation
-from ...core.messages import Message
-from ...core.morphing import morphing
-from ...core.types import FloatArray
+from ...core.keys.motion import frames_of
+from ...core.keys.placement import Frame, Link, Placement
+from ...core.morph import morphing
 from . import wire
-from .motion import frames_of
-from .obstacles import in_common_space
-from .placement import Frame, Link
-
-_AHEAD = 64  # iterates that wait to be taken in while Blender draws; then the worker waits too
-_PATIENCE = 0.1  # seconds between checks whether anybody still wants the next iterate
-
 
 Inbox = queue.SimpleQueue[wire.Packet | None]
 
@@ -57,29 +53,24 @@ def messages(inbox: Inbox) -> Iterator[wire.Packet]:
         run = WithOutcome(begun(task, options, goals, hand))
         for iterate in run:
             frames = frames_of(link, iterate)
-            proved = _proved(iterate, link, [*([] if last is None else [last]), *frames], obstacles)
+            shapes, mesh = [*([] if last is None else [last]), *frames], iterate.curve.mesh
+            last, proved = frames[-1], []  # names of the motions that are free of contact, in the common space
+            if all(len(shape) == mesh.size for shape in shapes):
+                common = pairwise(link.to_common(mesh, shape) for shape in shapes)
+                proved = [wire.digest(a, b) for a, b in common if is_free(mesh, a, b, obstacles)]
             yield wire.pack_iterate(iterate, proved)
-            last = frames[-1]
             while paused or hand.rests or not inbox.empty():
                 if (said := inbox.get()) is None:
                     return
-                if said[0]["deed"] == "pause":
-                    (paused,) = said[0]["facts"]
+                deed, facts = said[0]["deed"], said[0]["facts"]
+                if deed == "pause":
+                    (paused,) = facts
                 else:
-                    wire.unpack_deed(said, hand)
+                    getattr(hand, deed)(*facts)
         assert run.outcome is not None, "the loop is through"
         yield wire.pack_outcome(run.outcome)
     except MobiusFlowError as error:
         yield wire.pack_error(error)
-
-
-def _proved(iterate: Iterate, link: Link, frames: list[Frame], obstacles: tuple[Obstacle, ...]) -> list[str]:
-    """Names of the motions from frame to frame that are free of contact, in the common space."""
-    mesh = iterate.curve.mesh
-    if any(len(frame) != mesh.size for frame in frames):
-        return []
-    common = [link.to_common(mesh, frame) for frame in frames]
-    return [wire.digest(a, b) for a, b in pairwise(common) if is_free(mesh, a, b, obstacles)]
 
 
 def begun(task: Task, options: RelaxOptions, goals: Mapping[str, Curve], hand: Hand) -> Relaxation:
@@ -89,6 +80,12 @@ def begun(task: Task, options: RelaxOptions, goals: Mapping[str, Curve], hand: H
     return morphing(
         (task, *map(Task.of, goals.values())), options, (Message("the curve that moves"), *map("'{}'".format, goals))
     )
+
+
+def in_common_space(avoid: Iterable[Obstacle], link: Link) -> tuple[Obstacle, ...]:
+    """The world's obstacles in the space where motions of a link are proved: vertices are mapped there in doubles."""
+    there = Placement(np.eye(3), np.zeros(3)).relative_to(link.placements[0])
+    return tuple(Obstacle(there.to_world(each.vertices), each.faces, each.name) for each in avoid)
 
 
 class WorkerError(MobiusFlowError):
@@ -114,7 +111,7 @@ class Worker:
         self._inbox.put(wire.pack_job(task, options, link, stays, goals))
         self._obstacles = in_common_space(task.obstacles, link)
         self._proved: set[str] = set()
-        self._queue: queue.Queue[wire.Packet | None] = queue.Queue(_AHEAD)
+        self._queue: queue.Queue[wire.Packet | None] = queue.Queue(64)  # wait while Blender draws; then the worker does
         self._closed = threading.Event()
         self.process = _start()
         self._thread = threading.Thread(target=self._feed, name="Möbius Flow", daemon=True)
@@ -127,7 +124,7 @@ class Worker:
 
         ``pause`` is for the worker itself: whether it waits there.
         """
-        self._inbox.put(wire.pack_deed(deed, *facts))
+        self._inbox.put(({"deed": deed, "facts": facts}, []))
 
     def poll(self) -> Iterate | Outcome | None:
         """Take the next iterate if there is one; after the last one comes the outcome.
@@ -163,12 +160,13 @@ class Worker:
             with contextlib.suppress(queue.Empty):
                 while True:
                     self._queue.get_nowait()
-        self._thread.join(timeout=2 * _PATIENCE if self.process is not None else 0.0)
+        self._thread.join(timeout=0.2 if self.process is not None else 0.0)
 
     def _feed(self) -> None:
         """Pass messages on until there are no more or nobody wants them."""
         try:
-            for message in messages(self._inbox) if self.process is None else _replies(self.process):
+            from_worker = None if self.process is None else partial(wire.read, _pipes(self.process)[1])
+            for message in messages(self._inbox) if from_worker is None else iter(from_worker, None):
                 if not self._put(message):
                     return
             self._put(None)
@@ -181,16 +179,11 @@ class Worker:
     def _put(self, message: wire.Packet | None) -> bool:
         while not self._closed.is_set():
             try:
-                self._queue.put(message, timeout=_PATIENCE)
+                self._queue.put(message, timeout=0.1)  # seconds, and then see whether anybody still wants it
             except queue.Full:
                 continue
             return True
         return False
-
-
-def _replies(process: "subprocess.Popen[bytes]") -> Iterator[wire.Packet]:
-    while True:
-        yield wire.read(_pipes(process)[1])
 
 
 def _send(process: "subprocess.Popen[bytes]", inbox: Inbox) -> None:

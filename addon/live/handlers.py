@@ -6,11 +6,11 @@ from typing import Any
 import bpy
 from bpy.app.handlers import persistent
 
-from ...core.messages import Message
+from ...core.base.messages import Message
 from ..curves.member import show_originals
 from . import registry
 from .modal import clear_status
-from .run import Run
+from .run import LiveRun
 
 
 def _forget() -> None:
@@ -19,7 +19,7 @@ def _forget() -> None:
     show_originals()
 
 
-def _before_undo(run: Run, others: int) -> None:
+def _before_undo(run: LiveRun, others: int) -> None:
     """Undo must find the originals; the run goes on only if something else is undone or redone."""
     if others and run.endures:
         run.group.hide()
@@ -27,21 +27,21 @@ def _before_undo(run: Run, others: int) -> None:
         run.cancel(Message("Undone; the relaxation of {names} has ended", names=run.name))
 
 
-def _after_undo(run: Run, count: int) -> None:
+def _after_undo(run: LiveRun, count: int) -> None:
     drag = registry.history.undo(count)
     run.group.resume()
     if drag:
         run.take_back()
 
 
-def _before_saving(run: Run) -> None:
+def _before_saving(run: LiveRun) -> None:
     """A file holds curves as they were or with all their keys, and nothing in between."""
     run.complete()
     if not run.state.over:
         run.group.hide()
 
 
-def _handler(handle: Callable[[Run], None], otherwise: Callable[[], None] = lambda: None) -> Any:
+def _handler(handle: Callable[[LiveRun], None], otherwise: Callable[[], None] = lambda: None) -> Any:
     def handler(*_: Any) -> None:
         run = registry.current()
         handle(run) if run else otherwise()

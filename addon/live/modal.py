@@ -3,24 +3,24 @@
 from typing import Any
 
 import bpy
+import numpy as np
 
-from ...core.messages import Message
+from ...core.base.messages import Message
 from ..curves.session import Report
+from ..curves.splines import stretch
 from ..translations import iface_, rpt_
-from . import drag, registry
-from .run import Run, State
-
-_INTERVAL = 1 / 60  # seconds
-_PASS = {"PASS_THROUGH"}
+from . import registry
+from .drag import Drag, corner, size
+from .run import LiveRun, RunState
 
 
 class Loop:
     """The event loop: a timer in the window where a run was started and a line in its status bar, while it goes on."""
 
-    def __init__(self, run: Run, context: bpy.types.Context) -> None:
+    def __init__(self, run: LiveRun, context: bpy.types.Context) -> None:
         self.run = run
         self._manager = context.window_manager
-        self._timer = self._manager.event_timer_add(_INTERVAL, window=context.window)
+        self._timer = self._manager.event_timer_add(1 / 60, window=context.window)
         self._shown: tuple[object, ...] = ()
         self._abandoned = False
         run.on_end = self.close
@@ -28,43 +28,80 @@ class Loop:
 
     def handle(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Handle an event; most do not concern the relaxation, and Blender stays usable."""
-        handled = _PASS
+        handled = {"PASS_THROUGH"}
         registry.history.look()
         registry.history.push(self.run)
         if self.run.state.over:
             pass  # ended by a handler, such as the one for undo
         elif event.type == "TIMER":
             self.run.tick()
-        elif not self.run.waits and drag.handle(self.run, context, event):
+        elif not self.run.waits and self._drag(context, event):
             handled = {"RUNNING_MODAL"}
         elif event.value == "PRESS" and not self.run.waits and _is_meant(context, event):
-            handled = self._key(event)
+            handled, undo = {"RUNNING_MODAL"}, event.type == "Z" and (event.ctrl or event.oskey) and not event.shift
+            if event.type == "ESC" and self.run.drag:
+                self.run.take_back()
+            elif event.type == "ESC" or (undo and not registry.history.others):
+                self.run.cancel()
+            elif event.type in {"RET", "NUMPAD_ENTER"}:
+                self.run.keep()
+            else:
+                handled = {"PASS_THROUGH"}
         if self._visible() != self._shown:
             self._show(context)
         if self.run.state.over:
-            return {"FINISHED"} if self.run.state is State.DONE else {"CANCELLED"}
+            return {"FINISHED"} if self.run.state is RunState.DONE else {"CANCELLED"}
         return handled
 
-    def _visible(self) -> tuple[object, ...]:
-        return (
-            self.run.state,
-            self.run.shown,
-            self.run.looked_at,
-            self.run.waits,
-            id(self.run.drag and self.run.drag.target),
-        )
+    def _drag(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
+        """Let the mouse drag what is relaxed; return whether the event was about that.
 
-    def _key(self, event: bpy.types.Event) -> set[str]:
-        undo = event.type == "Z" and (event.ctrl or event.oskey) and not event.shift
-        if self.run.drag and event.type == "ESC":
-            self.run.take_back()
-        elif event.type == "ESC" or (undo and not registry.history.others):
-            self.run.cancel()
-        elif event.type in {"RET", "NUMPAD_ENTER"}:
-            self.run.keep()
+        A press with another modifier than Ctrl belongs to Blender; Ctrl, at the press or when letting go, leaves a pin.
+        """
+        run, mouse = self.run, np.array([event.mouse_x, event.mouse_y], dtype=np.float64)
+        if event.type == "LEFTMOUSE" and event.value == "PRESS":
+            if run.drag is not None:  # the release got lost, in another window
+                run.let_go()
+            if event.shift or event.alt or event.oskey or run.state.name != "RUNNING" or run.shown is None:
+                return False
+            # the region of a 3D view that has the mouse, unless a sidebar, a header or the navigation gizmo has it
+            found, curve = [], run.group.in_view
+            areas = context.window.screen.areas if context.window else []
+            for region in (region for area in areas if area.type == "VIEW_3D" for region in area.regions):
+                place, extent = mouse - corner(region), size(region)
+                if (extent > 1).all() and (place >= 0).all() and (place < extent).all():
+                    found.append(region)
+            region = next((each for each in found if each.type == "WINDOW"), None)
+            if (
+                curve is None
+                or region is None
+                or any(each.type in {"UI", "TOOLS", "HEADER", "TOOL_HEADER"} for each in found)
+            ):
+                return False
+            view, system = context.preferences.view, context.preferences.system
+            gizmo = np.array([1.2, 4.0]) * view.gizmo_size_navigate_v3d * system.ui_scale
+            if view.show_navigate_ui and (corner(region) + size(region) - mouse < gizmo).all():
+                return False
+            near = 15.0 * system.ui_scale  # pixels
+            radius = max(stretch(each) * each.data.bevel_depth for each in run.group.objects)
+            drag = Drag.at(curve, region, mouse - corner(region), near, radius)
+            if drag is not None:
+                drag.pins = event.ctrl
+                run.grab(drag)
+            return drag is not None
+        if run.drag is None:
+            return False
+        if event.type == "MOUSEMOVE":
+            run.pull(run.drag.under(mouse - corner(run.drag.region)))
+        elif event.type == "LEFTMOUSE" and event.value == "RELEASE":
+            run.let_go(pin=run.drag.pins or event.ctrl)
         else:
-            return _PASS
-        return {"RUNNING_MODAL"}
+            return False
+        return True
+
+    def _visible(self) -> tuple[object, ...]:
+        run = self.run
+        return run.state, run.shown, run.looked_at, run.waits, id(run.drag and run.drag.target)
 
     def close(self) -> None:
         """Take the timer and the line in the status bar away; the run calls this when it ends."""
@@ -96,17 +133,17 @@ def clear_status() -> None:
             window.workspace.status_text_set(None)
 
 
-def status_line(run: Run) -> str:
+def status_line(run: LiveRun) -> str:
     if run.waits:
         return iface_("{names}: waiting for the render", names=run.name)
-    if run.state is State.FINISHING:
+    if run.state is RunState.FINISHING:
         return iface_("{names}: proving and writing keys   |   Esc: put all back", names=run.name)
     where = Message("starting")
     if run.last is not None:
-        where = Message("iterate {index}, energy {energy:.4f}", index=run.last.index, energy=run.last.energy)
+        where = Message("step {index}, energy {energy:.4f}", index=run.last.index, energy=run.last.energy)
     if run.looked_at is not None and run.last is not None:
-        where = Message("looking back at iterate {index:.0f} of {last}", index=run.looked_at, last=run.last.index)
-    elif run.state is State.PAUSED:
+        where = Message("looking back at step {index:.0f} of {last}", index=run.looked_at, last=run.last.index)
+    elif run.state is RunState.PAUSED:
         where = Message("paused") if run.last is None else Message("paused at {where}", where=where)
     keys = Message("Drag: pull a strand, Ctrl pins it   |   Enter: keep this shape   |   Esc: put all back")
     return iface_("{names}: {where}   |   {keys}", names=run.name, where=where, keys=keys)
@@ -137,7 +174,7 @@ class Listening:
 
     events: Loop | None = None  # `loop` is a setting
 
-    def listen(self, context: bpy.types.Context, run: Run) -> set[str]:
+    def listen(self, context: bpy.types.Context, run: LiveRun) -> set[str]:
         self.events = Loop(run, context)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
@@ -155,9 +192,9 @@ class Listening:
             self.events.abandon()
 
 
-def report_end(operator: Any, scene: bpy.types.Scene, run: Run) -> None:
+def report_end(operator: Any, scene: bpy.types.Scene, run: LiveRun) -> None:
     """Report how a run ended, and go to the frame of the shape that was kept."""
-    if run.state is State.DONE and run.report is not None:
+    if run.state is RunState.DONE and run.report is not None:
         if run.report.keys > 1:
             whole = int(run.report.last_frame // 1)
             scene.frame_set(whole, subframe=run.report.last_frame - whole)
@@ -182,11 +219,5 @@ def unseen(scene: bpy.types.Scene, animation: tuple[int, int] | None) -> Message
     helps = Message("press Set Scene Range to see all of it")
     if first < scene.bl_rna.properties["frame_start"].hard_min:
         helps = Message("no scene plays negative frames, so bake again with a later Start Frame")
-    return Message(
-        "The scene plays frames {start} to {end} only, the animation has {first} to {last}: {helps}",
-        start=scene.frame_start,
-        end=scene.frame_end,
-        first=first,
-        last=last,
-        helps=helps,
-    )
+    sentence = "The scene plays frames {start} to {end} only, the animation has {first} to {last}: {helps}"
+    return Message(sentence, start=scene.frame_start, end=scene.frame_end, first=first, last=last, helps=helps)

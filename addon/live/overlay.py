@@ -12,26 +12,17 @@ import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from gpu_extras.batch import batch_for_shader
 
-from ...core.types import FloatArray
+from ...core.base.types import FloatArray
+from ...core.keys.colours import Colour, legible
 from ..curves import pins
-from ..engine.colours import Colour, legible
 from ..engine.rest import dashes, plot
 from ..translations import iface_
 from . import registry
 from .requirements import curves_at_hand
-from .run import Run
+from .run import LiveRun
 
-_SIZE = np.array([280.0, 120.0])  # of the plot, at the usual scale of the interface
-_MARGIN = 16.0
-_PADDING = 10.0
-_CAPTION = 18.0  # height of the line of text above the plot
-_LINE = 2.0
-_DASH = 8.0
-_RADIUS = 14.0  # of marks
+_LINE = 2.0  # this and other sizes in pixels, at the usual scale of the interface
 _FONT = 0  # Blender's own
-_FONT_SHARE = 0.9  # of the interface's size of text
-_OPACITY = 0.85
-_RED = (0.95, 0.25, 0.2)
 GOLD = (1.0, 0.75, 0.1)
 _DIAMOND = 7.0 * np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])  # around pinned points
 _log = logging.getLogger(__name__)
@@ -57,7 +48,15 @@ def _draw() -> None:
         _pins(context)
         if run is not None:
             _marks(context, run)
-            _hand(context, run)
+            curve = run.group.in_view if run.drag is not None else None
+            if run.drag is not None and curve is not None:
+                # mark the strand that is held, and draw a line from there to the place it is pulled to
+                places = run.drag.held(curve), run.drag.target
+                held, target = (_in_region(context, place.tolist()) for place in places)
+                scale = context.preferences.system.ui_scale
+                if held is not None and target is not None:
+                    line(held + scale * _ring(7.0), GOLD, scale * _LINE)
+                    line(np.stack([held, target]), GOLD, scale * _LINE)
             if context.scene.mobius_flow_panel.show_plot and run.energies:
                 _plot(context, run)
     except Exception:  # whatever happens to windows, files and graphics cards must not interrupt anybody
@@ -78,7 +77,7 @@ class _Style:
     def of(cls, preferences: bpy.types.Preferences) -> "_Style":
         theme, scale = preferences.themes[0], preferences.system.ui_scale
         ground, words = theme.user_interface.wcol_tooltip.inner, theme.user_interface.wcol_tooltip.text
-        font = _FONT_SHARE * scale * preferences.ui_styles[0].widget.points
+        font = 0.9 * scale * preferences.ui_styles[0].widget.points
         return cls(scale, font, ground, words, legible(theme.view_3d.object_active, ground))
 
 
@@ -86,65 +85,44 @@ def label(words: str, place: FloatArray) -> None:
     """Write words right of a place in the region, on the ground that tooltips have."""
     style = _Style.of(bpy.context.preferences)
     blf.size(_FONT, style.font)
-    gap, size = style.scale * _PADDING, np.array(blf.dimensions(_FONT, words))
+    gap, size = style.scale * 10.0, np.array(blf.dimensions(_FONT, words))
     low = place + gap
-    area(tuple(low), tuple(low + size + 2 * gap), (*style.ground[:3], _OPACITY))
+    area(tuple(low), tuple(low + size + 2 * gap), (*style.ground[:3], 0.85))
     text(words, tuple(low + gap), style.words, style.font)
 
 
-def _plot(context: bpy.types.Context, run: Run) -> None:
+def _plot(context: bpy.types.Context, run: LiveRun) -> None:
     """Draw the plot in the lower right corner, unless the view is too small for anything else."""
     style = _Style.of(context.preferences)
-    size, padding, caption = style.scale * _SIZE, style.scale * _PADDING, style.scale * _CAPTION
+    size, padding, caption = style.scale * np.array([280.0, 120.0]), style.scale * 10.0, style.scale * 18.0
     outer = size + 2 * padding + np.array([0.0, caption])
-    low = style.scale * _MARGIN * np.array([-1.0, 1.0]) + np.array([_right(context) - outer[0], 0.0])
-    if low[0] < 0 or 2 * outer[1] > context.region.height:
+    region = context.region
+    sidebars = [each for each in context.area.regions if each.type == "UI" and each.width > 1]  # may lie over the view
+    right = min([region.width, *(each.x - region.x for each in sidebars if each.x > region.x)])
+    low = style.scale * 16.0 * np.array([-1.0, 1.0]) + np.array([right - outer[0], 0.0])
+    if low[0] < 0 or 2 * outer[1] > region.height:
         return
-    area(tuple(low), tuple(low + outer), (*style.ground[:3], _OPACITY))
-    _curve(style, run, low + padding, size)
-    assert run.last is not None, "it has energies"
-    x, y = (low + padding + np.array([0.0, size[1] + 0.5 * caption])).tolist()
-    text(iface_("Energy {energy:.4f}", energy=run.energies[-1]), (x, y), style.words, style.font)
-    text(iface_("Iteration {index}", index=run.last.index), (x + size[0], y), style.words, style.font, share=1.0)
-
-
-def _curve(style: _Style, run: Run, origin: FloatArray, size: FloatArray) -> None:
-    drawn = plot(run.energies, run.target, *size)
+    area(tuple(low), tuple(low + outer), (*style.ground[:3], 0.85))
+    origin, drawn = low + padding, plot(run.energies, run.target, *size)
     if run.target is not None and drawn.target is not None:
         # draw a dashed line with its label above it, at the left, where the energy is still high
-        start = origin + np.array([0.0, drawn.target])
-        across = dashes(size[0], style.scale * _DASH)
+        start, across = origin + np.array([0.0, drawn.target]), dashes(size[0], style.scale * 8.0)
         pale = [0.5 * (a + b) for a, b in zip(style.ground[:3], style.words[:3], strict=True)]
         line(start + np.column_stack([across, np.zeros(len(across))]), pale, style.scale, kind="LINES")
         text(iface_(run.target.label), (start[0], start[1] + 4 * style.scale), style.words, style.font)
     line(origin + drawn.line, style.accent, style.scale * _LINE)
+    assert run.last is not None, "it has energies"
+    x, y = (origin + np.array([0.0, size[1] + 0.5 * caption])).tolist()
+    text(iface_("Energy {energy:.4f}", energy=run.energies[-1]), (x, y), style.words, style.font)
+    text(iface_("Step {index}", index=run.last.index), (x + size[0], y), style.words, style.font, share=1.0)
 
 
-def _right(context: bpy.types.Context) -> float:
-    """The right end of the view, or the beginning of the sidebar that lies over it."""
-    region = context.region
-    sidebars = [each for each in context.area.regions if each.type == "UI" and each.width > 1]
-    return float(min([region.width, *(each.x - region.x for each in sidebars if each.x > region.x)]))
-
-
-def _marks(context: bpy.types.Context, run: Run) -> None:
+def _marks(context: bpy.types.Context, run: LiveRun) -> None:
     scale = context.preferences.system.ui_scale
-    ring = scale * _ring(_RADIUS)
+    ring = scale * _ring(14.0)
     marks = [(obj, mark) for obj, spot in run.spots.items() for mark in spot.marks]
     for there in _seen(context, marks):
-        line(there + ring, _RED, scale * _LINE)
-
-
-def _hand(context: bpy.types.Context, run: Run) -> None:
-    """Mark the strand that is held, and draw a line from there to the place it is pulled to."""
-    curve = run.group.in_view if run.drag is not None else None
-    if run.drag is None or curve is None:
-        return
-    scale = context.preferences.system.ui_scale
-    held, target = (_in_region(context, place.tolist()) for place in (run.drag.held(curve), run.drag.target))
-    if held is not None and target is not None:
-        line(held + scale * _ring(0.5 * _RADIUS), GOLD, scale * _LINE)
-        line(np.stack([held, target]), GOLD, scale * _LINE)
+        line(there + ring, (0.95, 0.25, 0.2), scale * _LINE)
 
 
 def _ring(radius: float) -> FloatArray:

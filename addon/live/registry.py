@@ -7,12 +7,12 @@ import bpy
 from ..translations import iface_
 
 if TYPE_CHECKING:
-    from .run import Run
+    from .run import LiveRun
 
-_latest: "list[Run]" = []
+_latest: "list[LiveRun]" = []
 
 
-class History:
+class ActionCount:
     """Counts other actions during a run, such as selecting or moving an object: undo takes these back before the run.
 
     ``others`` were done and not undone, ``undone`` may be redone. Drags share one undo step among them, made anew after
@@ -26,7 +26,7 @@ class History:
         self.others = self.undone = self._step = 0
         self._seen = _last_operation()
 
-    def push(self, run: "Run") -> None:
+    def push(self, run: "LiveRun") -> None:
         """Make an undo step if there are drags; the originals are in the file for that moment."""
         if run.drags and not self._step and run.endures:
             run.group.hide()
@@ -57,28 +57,28 @@ def _last_operation() -> int:
     return int(done[-1].as_pointer()) if len(done) else 0
 
 
-history = History()
+history = ActionCount()
 
 
-def begin(run: "Run") -> None:
+def begin(run: "LiveRun") -> None:
     """Make a run the current one; there is only one at a time."""
     assert current() is None, "`requirements.idle` says so before"
     _latest[:] = [run]
     history.begin()
 
 
-def current() -> "Run | None":
+def current() -> "LiveRun | None":
     """The run in progress, if there is one."""
     run = latest()
     return None if run is None or run.state.over else run
 
 
-def latest() -> "Run | None":
+def latest() -> "LiveRun | None":
     """The run in progress, or else the last one."""
     return _latest[0] if _latest else None
 
 
-def shown(obj: bpy.types.Object | None) -> "Run | None":
+def shown(obj: bpy.types.Object | None) -> "LiveRun | None":
     """The run in progress, or else the last one if an object is still as the run left it."""
     run = latest()
     return run if run is not None and run.concerns(obj) else None

@@ -1,29 +1,33 @@
 """Requirements of operators on curves and scenes: a failed one gives a sentence, and a remedy if there is one."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Any
 
 import bpy
+import numpy as np
 
 from ...core import MobiusFlowError
-from ...core.messages import Message
-from ..curves.exchange import box
+from ...core.base.messages import Message
+from ..curves import bake, bevel, splines
+from ..curves.moving import what_deforms, what_moves
+from ..curves.splines import box
 from ..curves.surroundings import TUBE_OF, avoidable
 from . import registry
 
 
 class Remedy(Enum):
-    """A remedy for a refusal; the values are operators of `buttons.mending`."""
+    """A remedy for a refusal, which the operator *Mend* applies; the values say on its button what it does."""
 
-    OBJECT_MODE = "curve.mobius_flow_object_mode"
-    MAKE_LOCAL = "curve.mobius_flow_make_local"
-    SINGLE_USER = "curve.mobius_flow_single_user"
-    TO_CURVE = "curve.mobius_flow_to_curve"
-    TO_POLY = "curve.mobius_flow_to_poly"
-    MAKE_3D = "curve.mobius_flow_make_3d"
-    COPY = "curve.mobius_flow_copy"
+    OBJECT_MODE = "Back to Object Mode"
+    MAKE_LOCAL = "Make Local"
+    SINGLE_USER = "Make Single User"
+    TO_CURVE = "Convert to Curve"
+    TO_POLY = "Convert to Poly"
+    MAKE_3D = "Make 3D"
+    COPY = "Make Still Copy"
+    CLOSE = "Close Splines"
 
 
 @dataclass(frozen=True)
@@ -95,7 +99,18 @@ class Curves:
 
     def __call__(self, context: bpy.types.Context) -> Refusal | None:
         objects = self._among(context)
-        return idle(context) or (self.of(objects) if objects else _no_curve(context))
+        if objects or idle(context):
+            return idle(context) or self.of(objects)
+        # say what is wrong with the active object; hiding deselects
+        obj = context.active_object
+        if obj is not None and obj.type == "CURVE" and not obj.visible_get():
+            return Refusal(Message("'{name}' is hidden; show it first", name=obj.name))
+        if obj is None or obj.type == "CURVE" or not obj.select_get():
+            return Refusal(Message("Select a curve object first"))
+        kind = obj.bl_rna.properties["type"].enum_items[obj.type].name
+        sentence = "'{name}' is of type {type}; select a curve object, or convert it with Object > Convert > Curve"
+        remedy = Remedy.TO_CURVE if obj.mode == "OBJECT" and convertible(context) else None
+        return Refusal(Message(sentence, name=obj.name, type=kind), remedy)
 
     def of(self, objects: Sequence[bpy.types.Object]) -> Refusal | None:
         several = len(objects) > 1
@@ -117,21 +132,6 @@ def idle(_context: bpy.types.Context | None = None) -> Refusal | None:
     """Require that nothing is being relaxed."""
     run = registry.current()
     return Refusal(Message("{names} is being relaxed; stop that first", names=run.name)) if run else None
-
-
-def _no_curve(context: bpy.types.Context) -> Refusal:
-    """Say what is wrong with the active object where no curve is selected; hiding deselects."""
-    obj = context.active_object
-    if obj is not None and obj.type == "CURVE" and not obj.visible_get():
-        return Refusal(Message("'{name}' is hidden; show it first", name=obj.name))
-    if obj is None or obj.type == "CURVE" or not obj.select_get():
-        return Refusal(Message("Select a curve object first"))
-    kind = obj.bl_rna.properties["type"].enum_items[obj.type].name
-    sentence = "'{name}' is of type {type}; select a curve object, or convert it with Object > Convert > Curve"
-    return Refusal(
-        Message(sentence, name=obj.name, type=kind),
-        Remedy.TO_CURVE if obj.mode == "OBJECT" and convertible(context) else None,
-    )
 
 
 def convertible(context: bpy.types.Context) -> list[bpy.types.Object]:
@@ -162,3 +162,161 @@ def container(context: bpy.types.Context) -> bpy.types.Object | None:
         return None
     (low, high), boxes = box(outer), map(box, curves)
     return outer if all((low <= least).all() and (most <= high).all() for least, most in boxes) else None
+
+
+def _short_spline(obj: bpy.types.Object) -> dict[str, int] | None:
+    for number, spline in enumerate(obj.data.splines, 1):
+        fewest = 3 if spline.use_cyclic_u and spline.type != "BEZIER" else 2
+        if len(spline.bezier_points if spline.type == "BEZIER" else spline.points) < fewest:
+            return {"number": number, "fewest": fewest}
+    return None
+
+
+def _smooth_spline(obj: bpy.types.Object) -> dict[str, Any] | None:
+    numbered = enumerate(obj.data.splines, 1)
+    return next(({"number": k, "kind": splines.kind(each)} for k, each in numbered if each.type != "POLY"), None)
+
+
+def _unless_baked(failure: Callable[[bpy.types.Object], Any]) -> Callable[[bpy.types.Object], Any]:
+    return lambda obj: not bake.is_baked(obj.data) and failure(obj)
+
+
+def _is_flat(obj: bpy.types.Object) -> bool:
+    matrix = np.array(obj.matrix_world, dtype=np.float64)
+    scales = np.linalg.svd(matrix[:3, :3], compute_uv=False) if np.isfinite(matrix).all() else np.zeros(3)
+    return not scales[2] > 1e-6 * scales[0]  # matrices of smaller ratios cannot be inverted in 32 bits
+
+
+_OBJECT_MODE = Check(
+    "'{name}' is being edited; go back to Object Mode first", lambda obj: obj.mode != "OBJECT", Remedy.OBJECT_MODE
+)
+_OWN = (
+    Check(
+        "'{name}' is linked from another file; make it local first (Object > Relations > Make Local)",
+        lambda obj: obj.library or obj.data.library,
+        Remedy.MAKE_LOCAL,
+    ),
+    Check(
+        "'{name}' is a library override; make it local first (Object > Relations > Make Local)",
+        lambda obj: obj.override_library or obj.data.override_library,
+        Remedy.MAKE_LOCAL,
+    ),
+    Check(
+        "'{name}' shares its curve data '{data}' with other objects; make it single-user first "
+        "(Object > Relations > Make Single User)",
+        lambda obj: obj.data.name if obj.data.users - obj.data.use_fake_user > 1 else None,
+        Remedy.SINGLE_USER,
+        "data",
+    ),
+)
+_SPLINES = (
+    Check(
+        "'{name}' is a 2D curve; set its Shape to 3D first (Object Data properties)",
+        lambda obj: obj.data.dimensions != "3D",
+        Remedy.MAKE_3D,
+    ),
+    Check("'{name}' has no splines; give it at least one poly spline", lambda obj: not obj.data.splines),
+    Check("Spline {number} of '{name}' has fewer than {fewest} points; give it more, or delete it", _short_spline),
+)
+_KEYS = (
+    Check(
+        "'{name}' has shape keys; remove them or relax a copy without them",
+        _unless_baked(lambda obj: obj.data.shape_keys),
+        Remedy.COPY,
+    ),
+    Check(
+        "The curve data of '{name}' is animated; remove the animation or relax a copy without it",
+        _unless_baked(lambda obj: (own := obj.data.animation_data) and (own.action or own.nla_tracks)),
+        Remedy.COPY,
+    ),
+    Check(
+        "Points of '{name}' are driven; remove the drivers or relax a copy without them",
+        _unless_baked(
+            lambda obj: (
+                (own := obj.data.animation_data) and any(each.data_path.startswith("splines") for each in own.drivers)
+            )
+        ),
+        Remedy.COPY,
+    ),
+)
+_UNCHANGED = Check(
+    "'{name}' has other keys or points than it was baked with; undo that, or relax a copy",
+    _unless_baked(lambda obj: bake.was_baked(obj.data)),
+    Remedy.COPY,
+)
+_OWN_KEYS = (
+    # a curve that was baked, and has no keys any more, is like any other
+    replace(_UNCHANGED, failure=lambda obj: _UNCHANGED.failure(obj) and any(each.failure(obj) for each in _KEYS)),
+    *_KEYS,
+)
+_BAKED = (
+    _UNCHANGED,
+    Check("'{name}' has no keys of Möbius Flow; press Relax first", lambda obj: not bake.was_baked(obj.data)),
+)
+_UNKEYED = Curves(_OBJECT_MODE, *_OWN, *_OWN_KEYS)
+
+RELAXABLE = Curves(
+    *(_OBJECT_MODE, *_OWN, *_SPLINES, *_OWN_KEYS),
+    Check(
+        "{deformer} moves its points, so that strands may be seen to cross; remove it, or relax a copy without it",
+        what_deforms,
+        Remedy.COPY,
+        "deformer",
+    ),
+    Check("'{name}' is scaled to nothing in some direction; give it a scale other than 0", _is_flat),
+    Check(
+        "'{name}' is moved by {mover}, and curves relaxed together must keep their places; "
+        "remove that, or relax each curve alone",
+        what_moves,
+        Remedy.COPY,
+        "mover",
+        together=True,
+    ),
+)
+READABLE = Curves(_OBJECT_MODE, *_SPLINES)
+FILMABLE = Curves(*READABLE.checks, among=shown_curves)
+PAINTABLE = Curves(*READABLE.checks, *_OWN)
+FITTABLE = Curves(
+    *PAINTABLE.checks,
+    Check(
+        "'{name}' has a profile, taper, extrusion, offset or point radii of its own; remove them first",
+        lambda obj: not bevel.can_fit(obj.data),
+    ),
+)
+PINNABLE = Curves(*_OWN, among=curves_at_hand)
+BAKED = Curves(*_BAKED)
+CLEARABLE = Curves(*_BAKED, _OBJECT_MODE, *_OWN)
+UNEDITED = Curves(
+    Check(
+        "Keys of '{name}' were edited; undo that, or remove the keys to relax the curve as it is",
+        lambda obj: bake.is_baked(obj.data) and bake.is_edited(obj.data),
+        Remedy.COPY,
+    )
+)
+POLYGONS = Curves(
+    Check(
+        "Spline {number} of '{name}' is a {kind} spline; convert it to Poly first "
+        "(Edit Mode, Curve > Set Spline Type > Poly), or set Sample Splines",
+        _smooth_spline,
+        Remedy.TO_POLY,
+    )
+)
+
+
+def needing(objects: Sequence[bpy.types.Object], remedy: Remedy) -> Iterator[bpy.types.Object]:
+    """Yield the curve objects whose first refusal has this remedy, examining each in its turn."""
+    several = len(objects) > 1
+    checks = [*RELAXABLE.checks, *POLYGONS.checks]
+    alone = Curves(*(replace(check, together=check.together and not several) for check in checks))
+    for obj in objects:
+        refusal = alone.of([obj])
+        if refusal is not None and refusal.remedy is remedy:
+            yield obj
+
+
+def closable(objects: Sequence[bpy.types.Object]) -> Iterator[bpy.types.Object]:
+    """Yield the curve objects with open splines that may be closed: a baked curve's keys are made for open ones."""
+    for obj in objects:
+        is_open = not all(spline.use_cyclic_u for spline in obj.data.splines)
+        if is_open and not bake.is_baked(obj.data) and not _UNKEYED.of([obj]):
+            yield obj

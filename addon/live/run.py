@@ -3,9 +3,11 @@
 The objects show what has been reached; their originals come back unless the run is kept.
 """
 
+import contextlib
 import math
+import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from enum import Enum
 from functools import cached_property
 
@@ -13,25 +15,114 @@ import bpy
 import numpy as np
 
 from ...core import CurveError, Iterate, MobiusFlowError, Outcome, Status
+from ...core.base.errors import Place
+from ...core.base.messages import Message
+from ...core.base.types import FloatArray
+from ...core.curve import Mesh
 from ...core.driver import TimeLeft
-from ...core.errors import Place
-from ...core.messages import Message
-from ...core.types import FloatArray
-from ..curves.group import Group
-from ..curves.session import Report, Session
+from ...core.keys.motion import Proof
+from ...core.keys.placement import Spot
+from ..curves.group import CurveGroup
+from ..curves.session import Prepared, Report, Session
 from ..curves.splines import digest
-from ..engine.placement import Spot
 from ..engine.rest import Target, target_of
 from ..engine.worker import Worker, WorkerError
 from ..pictures.rendering import is_rendering
 from .drag import Drag
-from .viewing import KeyWriter, Refresh, looks_back
-
-_CANCELLED = Message("Cancelled; all is as it was")
-_SLICE = 0.02  # seconds of taking in iterates at a time
 
 
-class State(Enum):
+def looks_back() -> bool:
+    """Whether somebody plays or scrubs the timeline."""
+    screens = (window.screen for window in bpy.context.window_manager.windows)
+    return any(screen.is_animation_playing or screen.is_scrubbing for screen in screens)
+
+
+class Refresh:
+    """Decides which iterates are shown: one in every so many, or for 0 as many as take a third of the time to draw."""
+
+    def __init__(self, every: int = 0, clock: Callable[[], float] = time.perf_counter) -> None:
+        self._every, self._clock = every, clock
+        self._shown: float | None = None
+        self._next = clock()
+        self._waited = False  # whether the next iterate is the first one after a pause
+
+    def wait(self) -> None:
+        """Let the very next iterate be shown, whatever follows it."""
+        self._waited = True
+
+    def shown(self) -> None:
+        """Note that an iterate is being shown; Blender draws it before it sends the next event."""
+        self._shown, self._waited = self._clock(), False
+
+    def drawn(self) -> None:
+        """Note that an event has come: what was shown last has been drawn."""
+        if self._shown is not None:
+            now = self._clock()
+            self._next = now + 2.0 * (now - self._shown)  # a pause, so that drawing gets a third of the time
+            self._shown = None
+
+    def ends_batch(self, index: int) -> bool:
+        """Whether an iterate must be shown before the next one is taken in."""
+        return self._waited or (self._every > 0 and index % self._every == 0)
+
+    def due(self, index: int) -> bool:
+        """Whether an iterate, the last one taken in, is to be shown now."""
+        return self.ends_batch(index) or (not self._every and self._clock() >= self._next)
+
+
+class _AbandonedError(Exception):
+    """The keys are no longer wanted."""
+
+
+class KeyWriter:
+    """Chooses, proves and writes the keys of a session without ever blocking for long; the proof runs in a thread."""
+
+    slice = 0.02  # seconds of writing at a time
+
+    def __init__(self, session: Session, proof: Proof) -> None:
+        self._session = session
+        self._proof = proof
+        self._thread = threading.Thread(target=self._prepare, name="Möbius Flow keys", daemon=True)
+        self._abandoned = False
+        self._prepared: Prepared | None = None
+        self._pieces: Iterator[Report | None] | None = None
+
+    def start(self) -> None:
+        self._thread.start()
+
+    def abandon(self) -> None:
+        """End the thread at its next proof; harmless if there is none."""
+        self._abandoned = True
+
+    @property
+    def has_begun(self) -> bool:
+        """Whether some keys have been written, though perhaps not all."""
+        return self._pieces is not None
+
+    def advance(self, seconds: float | None = None) -> Report | None:
+        """Write for a time, by default a moment, if the keys are ready, and report once all are written."""
+        if self._thread.is_alive():
+            return None
+        if self._prepared is None:
+            raise MobiusFlowError("The keys could not be prepared; all is as it was")
+        self._pieces = self._pieces or self._session.bake(self._prepared)
+        until = time.perf_counter() + (self.slice if seconds is None else seconds)
+        for report in self._pieces:
+            if report is not None or time.perf_counter() >= until:
+                return report
+        return None
+
+    def _prepare(self) -> None:
+        def prove(mesh: Mesh, start: FloatArray, end: FloatArray) -> bool:
+            if self._abandoned:
+                raise _AbandonedError
+            return self._proof(mesh, start, end)
+
+        with contextlib.suppress(_AbandonedError):
+            self._prepared = self._session.prepare(prove)
+
+
+class RunState(Enum):
     RUNNING = Message("Running")
     PAUSED = Message("Paused")
     FINISHING = Message("Finishing")
@@ -41,14 +132,16 @@ class State(Enum):
 
     @property
     def over(self) -> bool:
-        return self in (State.DONE, State.CANCELLED, State.LOST)
+        return self in (RunState.DONE, RunState.CANCELLED, RunState.LOST)
 
 
-class Run:
+class LiveRun:
     """A session that is fed by a worker, while its curves are shown."""
 
+    slice = 0.02  # seconds of taking in iterates at a time
+
     def __init__(self, session: Session, refresh: Refresh, stays: bool = False) -> None:
-        self.state = State.RUNNING
+        self.state = RunState.RUNNING
         self.message, self.failed = "", False  # the message about its end
         self.on_end: Callable[[], None] = lambda: None
         self.last: Iterate | None = None
@@ -61,6 +154,7 @@ class Run:
         self.trouble: list[Spot] = []  # where it failed or got stuck, if the reason has a place
         self._left: dict[int, bytes] | None = None  # what the objects were at its end, by their identities
         self._session, self._refresh = session, refresh
+        self.avoided = session.surroundings.names
         self.time_left = TimeLeft(session.options)
         try:
             self._worker = Worker(session.task, session.options, self.group.link, stays, session.goals.curves)
@@ -70,16 +164,17 @@ class Run:
         self._keys = KeyWriter(self._session, self._worker.is_free)
 
     @property
-    def group(self) -> Group:
+    def group(self) -> CurveGroup:
         return self._session.group
+
+    @property
+    def objects(self) -> list[bpy.types.Object]:
+        """The objects that it is about: those that move, and those that they become."""
+        return [*self.group.objects, *self._session.goals.objects]
 
     @property
     def name(self) -> str:
         return self.group.title
-
-    @property
-    def avoided(self) -> tuple[str, ...]:
-        return self._session.surroundings.names
 
     @cached_property
     def target(self) -> Target | None:
@@ -105,7 +200,7 @@ class Run:
     @property
     def endures(self) -> bool:
         """Whether it survives an undo of something else."""
-        return self.state in (State.RUNNING, State.PAUSED)
+        return self.state in (RunState.RUNNING, RunState.PAUSED)
 
     def toggle_pause(self) -> None:
         """Stop, or go on with the next iterate; during a pause the worker waits too."""
@@ -113,8 +208,8 @@ class Run:
             self._show()
             self._refresh.wait()
             self.time_left.restart()
-            self.state = State.PAUSED if self.state is State.RUNNING else State.RUNNING
-            self._worker.tell("pause", self.state is State.PAUSED)
+            self.state = RunState.PAUSED if self.state is RunState.RUNNING else RunState.RUNNING
+            self._worker.tell("pause", self.state is RunState.PAUSED)
 
     def look(self) -> None:
         """Show the shape that the scene's frame would have if the run ended here, while the timeline is used."""
@@ -137,7 +232,7 @@ class Run:
         """Pull what is held to a place in view, shape (3,)."""
         if self.drag is not None and self.group.in_view is not None and np.isfinite(target).all():
             self.drag.target = target
-            place = self._session.motion.unsized(self.group.unmoved(self.drag.component, target))
+            place = self._session.motion.size.undone(self.group.unmoved(self.drag.component, target))
             self._worker.tell("move", place.tolist())
 
     def let_go(self, pin: bool = False) -> None:
@@ -155,7 +250,7 @@ class Run:
 
     def keep(self, reason: str = "") -> None:
         """Keep the curve as it is now: stop computing, then prove and write the keys."""
-        if self.state not in (State.RUNNING, State.PAUSED):
+        if self.state not in (RunState.RUNNING, RunState.PAUSED):
             return
         if self.last is None:
             self.cancel(Message("Stopped before anything had moved"))
@@ -163,26 +258,26 @@ class Run:
         self.looked_at = self.drag = None
         self._show()
         if self._session.outcome is None:
-            reason = reason or Message("stopped after {count} iterations", count=self.last.index)
+            reason = reason or Message("stopped after {count} steps", count=self.last.index)
             self._session.outcome = Outcome(Status.INTERRUPTED, (reason,))
-        self.state = State.FINISHING
+        self.state = RunState.FINISHING
         self._worker.close()
         self._keys.start()
 
-    def cancel(self, message: str = _CANCELLED) -> None:
+    def cancel(self, message: str = Message("Cancelled; all is as it was")) -> None:
         if not self.state.over:
-            self._close(State.CANCELLED, message)
+            self._close(RunState.CANCELLED, message)
 
     @property
     def recoverable(self) -> bool:
         """Whether it ended with the curves put back, while its iterates are still known."""
-        return self.state in (State.CANCELLED, State.LOST) and self.last is not None
+        return self.state in (RunState.CANCELLED, RunState.LOST) and self.last is not None
 
     def recover(self) -> None:
         """Keep what a cancelled run had reached; raises MobiusFlowError if the curves have changed since."""
         self._session.reopen()
         self._keys = KeyWriter(self._session, self._worker.is_free)
-        self.state, self.message, self.failed, self.shown = State.RUNNING, "", False, None
+        self.state, self.message, self.failed, self.shown = RunState.RUNNING, "", False, None
         self.trouble, self._left = [], None
         self.keep()
 
@@ -194,18 +289,26 @@ class Run:
 
     def complete(self) -> None:
         """Finish writing keys once begun: a saved file must not hold half of them."""
-        if self.state is State.FINISHING and self._keys.has_begun:
+        if self.state is RunState.FINISHING and self._keys.has_begun:
             self._advance(math.inf)
 
     def _advance(self, seconds: float | None = None) -> None:
         """Take in some iterates, or write keys for so long, by default a moment; end the run if that fails."""
         try:
             if reason := self._session.lost():
-                self._lose(reason)
-            elif self.state is State.RUNNING:
+                # an object was changed from outside; the others are put back
+                ended = Message("{reason}; the relaxation has ended", reason=reason)
+                restored = self._close(RunState.LOST, ended)
+                more = Message("and every curve is as it was" if restored else "and the others are as they were")
+                if restored or len(self.group.names) > 1:
+                    self.message = Message("{ended}, {more}", ended=ended, more=more)
+            elif self.state is RunState.RUNNING:
                 self._take()
-            elif self.state is State.FINISHING:
-                self._write(self._keys.advance(seconds))
+            elif self.state is RunState.FINISHING:
+                self.report = self._keys.advance(seconds)
+                if self.report is not None and self.last is not None:
+                    self.trouble = self.group.spots(self.report.outcome.place, self.last.curve)
+                    self._close(RunState.DONE, self.report.sentence, discard=False)
         except MobiusFlowError as error:
             self._fail(str(error), error.place if isinstance(error, CurveError) else None)
         except MemoryError:
@@ -217,9 +320,18 @@ class Run:
     def _take(self) -> None:
         """Take in all iterates that have arrived up to the next one to be shown; the last of them is shown."""
         self._refresh.drawn()
-        until = time.perf_counter() + _SLICE
-        while self.state is State.RUNNING and time.perf_counter() < until:
-            arrived = self._poll()
+        until = time.perf_counter() + self.slice
+        while self.state is RunState.RUNNING and time.perf_counter() < until:
+            try:
+                arrived = self._worker.poll()
+            except CurveError as error:
+                raise self._session.reworded(error) from error
+            except WorkerError as error:
+                if self.last is None:
+                    raise
+                self.failed = True
+                self.keep(str(error))
+                break
             if arrived is None:
                 break
             if isinstance(arrived, Outcome):
@@ -235,45 +347,18 @@ class Run:
         if self.last is not None and self._refresh.due(self.last.index):
             self._show()
 
-    def _poll(self) -> Iterate | Outcome | None:
-        try:
-            return self._worker.poll()
-        except CurveError as error:
-            raise self._session.reworded(error) from error
-        except WorkerError as error:
-            if self.last is None:
-                raise
-            self.failed = True
-            self.keep(str(error))
-            return None
-
     def _show(self) -> None:
         if self.last is not None and self.last is not self.shown and self.looked_at is None:
             self._session.show()
             self.shown = self.last
             self._refresh.shown()
 
-    def _write(self, report: Report | None) -> None:
-        self.report = report
-        if report is not None:
-            assert self.last is not None, "it was kept"
-            self.trouble = self.group.spots(report.outcome.place, self.last.curve)
-            self._close(State.DONE, report.sentence, discard=False)
-
     def _fail(self, message: str, place: Place | None = None) -> None:
         self.failed = True
         self.trouble = self.group.spots(place, self.group.curve)
         self.cancel(message)
 
-    def _lose(self, reason: Message) -> None:
-        """End because an object was changed from outside; the others are put back."""
-        ended = Message("{reason}; the relaxation has ended", reason=reason)
-        restored = self._close(State.LOST, ended)
-        more = Message("and every curve is as it was") if restored else Message("and the others are as they were")
-        if restored or len(self.group.names) > 1:
-            self.message = Message("{ended}, {more}", ended=ended, more=more)
-
-    def _close(self, state: State, message: str, discard: bool = True) -> bool:
+    def _close(self, state: RunState, message: str, discard: bool = True) -> bool:
         """End, putting the curves back or not; return whether all are as they were."""
         self.state, self.message, self.drag = state, message, None
         self._worker.close()

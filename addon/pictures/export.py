@@ -14,14 +14,13 @@ from typing import Any
 import numpy as np
 
 from ...core import Curve, Iterate, Mesh, MobiusFlowError
+from ...core.base.deadline import termination_raises
+from ...core.base.errors import OutputError
+from ...core.base.files import atomic_write
 from ...core.collision import is_free
-from ...core.deadline import termination_raises
-from ...core.errors import OutputError
-from ...core.files import atomic_write
-from ..engine.motion import Key, Keys
-from ..engine.playing import Origin, Playing, check_dimension, recorded, spatial
-from ..engine.size import Measure
-from ..engine.tube import rounded
+from ...core.keys.motion import Key, Keys, Playing, check_dimension, recorded, spatial
+from ...core.keys.placement import Measure, Origin
+from ...core.keys.tube import rounded
 from .looks import DEFAULT, LOOKS
 
 ONCE = Playing()
@@ -32,7 +31,6 @@ _PICTURE = (800, 450)  # width, height
 _FILM = (640, 360)
 _FILM_SAMPLES = 12
 _FILM_WITHOUT_DRIVER = (384, 216, 3)
-_TERMINATED = 143  # the status that a shell gives to a process ended by SIGTERM
 
 
 def require_blender() -> None:
@@ -81,7 +79,7 @@ def write_movie(
             rendering.use_workbench(scene, *_FILM)
         else:
             rendering.use_cycles(scene, LOOKS[DEFAULT], *_FILM_WITHOUT_DRIVER)
-            rendering.skip_frames(scene)
+            scene.frame_step, scene.render.fps = 2, rendering.FRAME_RATE // 2
 
     scene, certified = _played(iterates, set_up, playing)
     _make(path, lambda temporary: movie.render_movie(scene, temporary, progress))
@@ -100,7 +98,7 @@ def _played(
     motion, origin = recorded(iterates, Measure.LENGTH if in_place else Measure.RADIUS)
     playing = playing.timed(motion)
     timing = playing.timing
-    keys, mesh = motion.keys(is_free, timing.length, timing.pace), motion.start.mesh
+    keys, mesh = motion.keys(is_free, timing.length, timing), motion.start.mesh
     frames = timing.frames(motion.course(keys))
     if not in_place:
         mesh, keys = rounded(mesh, keys, is_free)
@@ -162,7 +160,7 @@ def _make(path: Target, write: Callable[[Path], None]) -> None:
     """Let Blender write a file in a directory of its own, and move it to its place when it is whole."""
     try:
         with (
-            termination_raises(SystemExit(_TERMINATED)),
+            termination_raises(SystemExit(143)),  # what a shell gives to a process ended by SIGTERM
             atomic_write(path) as temporary,
             tempfile.TemporaryDirectory(dir=temporary.parent) as room,
         ):

@@ -1,27 +1,23 @@
 """An empty scene filled with a relaxation: the keyed curve as a tube, and a stage around it."""
 
-from collections.abc import Sequence
 from pathlib import Path
 
 import bpy
 import numpy as np
 
 from ...core import Curve
+from ...core.base.types import FloatArray
 from ...core.curve import Mesh
-from ...core.types import FloatArray
+from ...core.keys.key_options import Output
+from ...core.keys.motion import Keys, Playing
+from ...core.keys.placement import Origin
+from ...core.keys.tube import tube_radii
 from ..curves import keyframes
-from ..curves.exchange import new_curve_data
 from ..curves.keyframes import all_fcurves, mirror
-from ..engine.key_options import Output
-from ..engine.motion import Keys
-from ..engine.placement import Frame
-from ..engine.playing import Origin, Playing
-from ..engine.tube import tube_radii
+from ..curves.splines import new_curve_data
 from . import rendering, stage
 from .looks import DEFAULT, LOOKS
 from .materials import colour_components
-
-_BEVEL_RESOLUTION = 5
 
 
 def empty_scene() -> bpy.types.Scene:
@@ -53,7 +49,7 @@ def compose(
     radii = tube_radii(mesh, [each.astype(np.float64) for each in points], frames)
     radii = np.full_like(radii, radii.min()) if playing.constant_radius else radii
     data = new_curve_data("Curve", mesh)
-    data.bevel_depth, data.bevel_resolution = float(radii.max()), _BEVEL_RESOLUTION
+    data.bevel_depth, data.bevel_resolution = float(radii.max()), 5
     data.use_fill_caps = True  # at the ends of arcs
     obj = stage.add(scene.collection, "Curve", data)
     obj.select_set(True)
@@ -61,12 +57,19 @@ def compose(
     output = Output.SHAPE_KEYS if len(points) > 1 else Output.RESULT
     for _ in keyframes.writing(obj, keys, frames, output, radii / radii.max()):
         pass
-    alone = len(mesh.component_sizes) == 1
-    colour_components(data, look=look, along=_mean_shares(mesh, points) if alone else None)
+    along = None
+    if len(mesh.component_sizes) == 1:
+        # the share of the length at each vertex, and at its end; the mean of all keys
+        lengths = np.array([Curve(each.astype(np.float64), mesh).edge_lengths for each in points])
+        passed = np.cumsum((lengths / lengths.sum(axis=1, keepdims=True)).mean(axis=0))
+        along = np.concatenate([[0.0], passed / passed[-1]])
+    colour_components(data, look=look, along=along)
     if cut_out:
         ground = stage.Stage.from_above(points)
     else:
-        ground = stage.Stage.around(points, stage.flat_up(points[-1].astype(np.float64)))
+        # up is where the last shape extends least, rather up than down
+        least = np.linalg.svd(points[-1] - points[-1].mean(axis=0, dtype=np.float64), full_matrices=False)[2][2]
+        ground = stage.Stage.around(points, least * np.sign(least[np.abs(least).argmax()]))
     size = scene.render.resolution_x, scene.render.resolution_y
     floor = stage.build(scene.collection, ground, LOOKS[look])
     floor.is_shadow_catcher = scene.render.film_transparent = cut_out
@@ -74,34 +77,21 @@ def compose(
     if playing.timing.loop:
         for curve in all_fcurves():
             mirror(curve, frames[-1] + playing.timing.hold_end)
-    scene.world = scene.world or bpy.data.worlds.new("World")
-    stage.add_sky(scene.world, LOOKS[look])
-    stage.light_workbench(scene, stage.towards_key(ground, LOOKS[look]))
-    if origin is not None:
-        _put(scene, origin)
+    scene.world = stage.sky(LOOKS[look], "World")
+    key = next(each for each in scene.collection.objects if each.type == "LIGHT")
+    stage.light_workbench(scene, key.matrix_world.col[2][:3])
+    if origin is not None and (origin.scale != 1.0 or origin.location.any()):
+        # move and scale everything from the curve's coordinates to the world's
+        objects = list(scene.objects)
+        root = stage.add(scene.collection, "Stage", None)
+        root.location, root.scale = origin.location, 3 * [origin.scale]
+        for each in objects:
+            each.parent = root
+            if each.type == "LIGHT":
+                each.data.energy *= origin.scale**2
+            elif each.type == "CAMERA":
+                each.data.clip_start *= origin.scale
+                each.data.clip_end *= origin.scale
+                each.data.dof.aperture_fstop /= origin.scale
     scene.frame_start, scene.frame_end = round(frames[0]), int(np.ceil(frames[-1]))
     scene.frame_set(scene.frame_start)
-
-
-def _mean_shares(mesh: Mesh, points: Sequence[Frame]) -> FloatArray:
-    """The share of the length at each vertex of a closed or open component, and at its end; the mean of all keys."""
-    lengths = np.array([Curve(each.astype(np.float64), mesh).edge_lengths for each in points])
-    passed = np.cumsum((lengths / lengths.sum(axis=1, keepdims=True)).mean(axis=0))
-    return np.concatenate([[0.0], passed / passed[-1]])
-
-
-def _put(scene: bpy.types.Scene, origin: Origin) -> None:
-    """Move and scale everything in a scene from the curve's coordinates to the world's."""
-    if origin.scale == 1.0 and not origin.location.any():
-        return
-    objects = list(scene.objects)
-    root = stage.add(scene.collection, "Stage", None)
-    root.location, root.scale = origin.location, 3 * [origin.scale]
-    for obj in objects:
-        obj.parent = root
-        if obj.type == "LIGHT":
-            obj.data.energy *= origin.scale**2
-        elif obj.type == "CAMERA":
-            obj.data.clip_start *= origin.scale
-            obj.data.clip_end *= origin.scale
-            obj.data.dof.aperture_fstop /= origin.scale

@@ -1,41 +1,66 @@
-"""Icons of the table's knots, drawn when they are first asked for."""
+"""Icons of the table's knots, cut from the sheet that tools/knot_icons.py draws, when they are first asked for."""
 
+import zlib
 from functools import cache
+from pathlib import Path
 
 import bpy
 import bpy.utils.previews
 import numpy as np
+import numpy.typing as npt
 
-from ...core.knots import smooth_knot
-from ...core.types import FloatArray
-from ..engine.knot_list import thumbnail
-from ..engine.placement import Frame
+from ...core.base.types import FloatArray
+from ...core.knots import KNOTS
 
-_ICON, _IMAGE = 32, 96  # pixels, in menus and in galleries
+SHEET = Path(__file__).parents[1] / "assets" / "knots.png"
+COLUMNS, SIDE = 16, 96  # squares in a row of the sheet, and pixels of a square's sides
 
 
 def icon(name: str) -> int:
     """Number of the icon of a knot of the table; 0, which is no icon, where Blender has no window."""
-    drawn = _drawn()
-    if name not in drawn:
-        preview, curve = drawn.new(name), smooth_knot(name)
-        preview.icon_size, preview.image_size = (_ICON, _ICON), (_IMAGE, _IMAGE)
-        preview.icon_pixels_float.foreach_set(_pixels(thumbnail(curve, _ICON)))
-        preview.image_pixels_float.foreach_set(_pixels(thumbnail(curve, _IMAGE)))
-    return int(drawn[name].icon_id)
+    made = _made()
+    if name not in made:
+        preview, picture = made.new(name), cut(name)
+        small = picture.reshape(SIDE // 3, 3, SIDE // 3, 3, 4).mean(axis=(1, 3))  # menus' icons have 32 pixels
+        small[..., :3] /= np.maximum(small[..., 3:], 1.0 / 9.0)
+        preview.icon_size, preview.image_size = small.shape[:2], picture.shape[:2]
+        preview.icon_pixels_float.foreach_set(small.astype(np.float32).ravel())
+        preview.image_pixels_float.foreach_set(picture.astype(np.float32).ravel())
+    return int(made[name].icon_id)
+
+
+def cut(name: str) -> FloatArray:
+    """The picture of a knot of the table: RGBA in [0, 1], black where it is transparent, bottom row first."""
+    numbers, colours = _sheet()
+    down, right = divmod(list(KNOTS).index(name), COLUMNS)
+    return np.asarray(colours[numbers[SIDE * down : SIDE * (down + 1), SIDE * right : SIDE * (right + 1)][::-1]])
 
 
 def forget() -> None:
     """Remove all icons: Blender does not do so by itself."""
-    if _drawn.cache_info().currsize:
-        bpy.utils.previews.remove(_drawn())
-        _drawn.cache_clear()
+    if _made.cache_info().currsize:
+        bpy.utils.previews.remove(_made())
+        _made.cache_clear()
+        _sheet.cache_clear()
 
 
 @cache
-def _drawn() -> bpy.utils.previews.ImagePreviewCollection:
+def _made() -> bpy.utils.previews.ImagePreviewCollection:
     return bpy.utils.previews.new()
 
 
-def _pixels(picture: FloatArray) -> Frame:
-    return picture.astype(np.float32).ravel()
+@cache
+def _sheet() -> tuple[npt.NDArray[np.uint8], FloatArray]:
+    """Numbers of colours, and the colours, RGBA (n, 4), of the sheet.
+
+    It is a PNG with a palette, whose first colour is the transparent one, and without filters of rows. Blender itself
+    would add an image to the user's file, which it does not allow while menus are drawn.
+    """
+    data, at, chunks = SHEET.read_bytes(), 8, dict[bytes, bytes]()
+    while at < len(data):
+        length, kind = int.from_bytes(data[at : at + 4], "big"), data[at + 4 : at + 8]
+        chunks[kind] = chunks.get(kind, b"") + data[at + 8 : at + 8 + length]
+        at += length + 12
+    rows = np.frombuffer(zlib.decompress(chunks[b"IDAT"]), dtype=np.uint8).reshape(-1, COLUMNS * SIDE + 1)
+    colours = np.frombuffer(chunks[b"PLTE"], dtype=np.uint8).reshape(-1, 3) / 255.0
+    return rows[:, 1:], np.column_stack([colours, np.arange(len(colours)) > 0])

@@ -1,18 +1,17 @@
-"""The materials of looks, built from their descriptions, and one that shows the colours of a mesh's vertices."""
+"""The materials of looks, which are in a bundled file, and one that shows the colours of a mesh's vertices."""
 
-from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import bpy
 import numpy as np
 
-from ...core.types import FloatArray
-from ..engine.colours import flatly_lit
-from .looks import ALONG, DEFAULT, LOOKS, SHADER, STRAND, TINT, TURNS, YARN, Nodes, Tint
+from ...core.base.types import FloatArray
+from ...core.keys.colours import flatly_lit
+from .looks import DEFAULT, LOOKS
 
-_NONE: Mapping[str, Any] = {}
+_ASSETS = Path(__file__).parents[1] / "assets" / "looks.blend"  # made by tools/make_looks.py
 _PIXELS = 1024  # of what changes along a component
-_PITCH = 1.55  # of a rope's strands, in its radii
 
 
 def colour_components(
@@ -44,27 +43,38 @@ def _glaze(data: bpy.types.Curve, look: str, hue: int, along: FloatArray | None)
     name = f"{made_of.label} {hue + 1}"
     if name in bpy.data.materials:
         return bpy.data.materials[name]
+    made = bundled("materials", made_of.label)
+    made.name, nodes = name, made.node_tree.nodes
     share = np.linspace(0.0, 1.0, 2) if along is None else along
     places = np.interp(np.arange(_PIXELS) / _PIXELS, np.linspace(0.0, 1.0, len(share)), share)
     length = sum(spline.calc_length() for spline in data.splines) / len(data.splines)
     radius = data.bevel_depth or length / 60.0
-    turns = 0.2 * np.pi * max(round(length / (_PITCH * radius)), 3)
-    nodes, words = dict(made_of.nodes), {ALONG: "place.Vector", TURNS: (turns, 0.6 * np.pi, 0.0)}
-    words |= {STRAND: 0.5 * radius, YARN: 0.08 * radius}
+    tint = made_of.palette[hue % len(made_of.palette)]
+    made.diffuse_color = (*flatly_lit(np.array(tint)), 1.0)
     if hue == len(made_of.palette):
         stops = np.array((*made_of.gradient, made_of.gradient[0]))
         colours = [np.interp(places * (len(stops) - 1), np.arange(len(stops)), channel) for channel in stops.T]
-        nodes |= {"gradient": ("ShaderNodeTexImage", {}, {"image": _table(f"{name} Colors", np.array(colours).T)})}
-        words[TINT] = "gradient.Color"
-    if made_of.uses_place:
-        table = {"image": _table(f"{name} Places", np.column_stack(3 * [places])), "extension": "EXTEND"}
-        nodes |= {
-            "share": ("ShaderNodeTexImage", {}, table),
-            "uv": ("ShaderNodeUVMap", {}, {}),
-            "sides": ("ShaderNodeSeparateXYZ", {"Vector": "uv.UV"}, {}),
-            "place": ("ShaderNodeCombineXYZ", {"X": "share.Color", "Y": "sides.Y"}, {}),
-        }
-    return material(name, made_of.palette[hue % len(made_of.palette)], made_of.shader, nodes, words)
+        nodes["gradient"].image = _table(f"{name} Colors", np.array(colours).T)
+        _tint_by(made, nodes["gradient"])
+    else:
+        tinted = [link.to_socket for link in nodes["tint"].outputs[0].links]
+        for node in ("tint", "gradient"):
+            if node in nodes:
+                nodes.remove(nodes[node])
+        for socket in tinted:
+            socket.default_value = (*tint, 1.0)[: len(socket.default_value)]
+    if "share" in nodes:
+        nodes["share"].image = _table(f"{name} Places", np.column_stack(3 * [places]))
+    if "lay" in nodes:  # of a rope
+        turns = 0.2 * np.pi * max(round(length / (1.55 * radius)), 3)  # the pitch of its strands, in its radii
+        nodes["lay"].inputs["Scale"].default_value = (turns, 0.6 * np.pi, 0.0)
+        # how far strands and their yarns stand out
+        for bump, distance in (("bump", 0.5 * radius), ("fine", 0.08 * radius)):
+            inputs = nodes[bump].inputs
+            inputs["Distance"].default_value = distance
+            if "Filter Width" in inputs:  # Blender 5.0 and later, which give files of 4.2 a wider one
+                inputs["Filter Width"].default_value = 0.1  # pixels
+    return made
 
 
 def vertex_colours(attribute: str) -> bpy.types.Material:
@@ -72,46 +82,36 @@ def vertex_colours(attribute: str) -> bpy.types.Material:
     name = f"Glaze {attribute}"
     if name in bpy.data.materials:
         return bpy.data.materials[name]
-    colours: Nodes = {"colors": ("ShaderNodeVertexColor", {}, {"layer_name": attribute})}
-    return material(name, (0.2, 0.2, 0.2), LOOKS[DEFAULT].shader, colours, {TINT: "colors.Color"})
-
-
-def material(
-    name: str,
-    tint: Tint,
-    shader: Mapping[str, Any],
-    nodes: Nodes = _NONE,
-    words: Mapping[str, Any] = _NONE,
-) -> bpy.types.Material:
-    """A new material: inputs of its shader, and nodes that feed them; ``words`` is what words among the inputs mean."""
-    made = bpy.data.materials.new(name)
-    made.diffuse_color = (*flatly_lit(np.array(tint)), 1.0)
-    made.roughness = shader["Roughness"]
-    if made.node_tree is None:  # from Blender 5.0 on there is one from the start, and the switch is deprecated
-        made.use_nodes = True
-    tree = made.node_tree
-    found = {SHADER: next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")}
-    for k, (title, (kind, _, settings)) in enumerate(nodes.items(), 1):
-        found[title] = tree.nodes.new(kind)
-        found[title].name, found[title].location = title, (-220 * k, 300)
-        for setting, value in settings.items():
-            setattr(found[title], setting, value)
-    meant = {TINT: (*tint, 1.0)} | dict(words)
-    for title, inputs in {SHADER: shader, **{title: inputs for title, (_, inputs, _) in nodes.items()}}.items():
-        for socket, value in inputs.items():
-            known = isinstance(value, str) and value in meant
-            _feed(tree, found[title].inputs[socket], meant[value] if known else value)
-    if TINT in words:
-        tree.nodes.active = found[words[TINT].split(".")[0]]  # Workbench shows it
+    made = bundled("materials", LOOKS[DEFAULT].label)
+    made.name, nodes = name, made.node_tree.nodes
+    nodes.remove(nodes["gradient"])
+    colours = nodes.new("ShaderNodeVertexColor")
+    colours.name, colours.layer_name = "colors", attribute
+    _tint_by(made, colours)
     return made
 
 
-def _feed(tree: bpy.types.NodeTree, socket: Any, value: Any) -> None:
-    if isinstance(value, str):
-        title, output = value.split(".")
-        tree.links.new(tree.nodes[title].outputs[output], socket)
-    else:
-        socket.default_value = value[: len(socket.default_value)] if isinstance(value, tuple) else value
+def bundled(kind: str, name: str) -> Any:
+    """A new copy of what assets/looks.blend has of a kind, such as "worlds", under a look's name.
+
+    Raises OSError if the file is missing.
+    """
+    libraries = set(bpy.data.libraries)
+    with bpy.data.libraries.load(str(_ASSETS)) as (_, wanted):
+        setattr(wanted, kind, [name])
+    (made,) = getattr(wanted, kind)
+    made.use_fake_user = False
+    bpy.data.batch_remove(set(bpy.data.libraries) - libraries)  # nothing is linked to the file
+    return made
+
+
+def _tint_by(made: bpy.types.Material, node: bpy.types.Node) -> None:
+    """Let a node tint a look's material, and be what Workbench shows."""
+    tree = made.node_tree
+    for link in list(tree.nodes["tint"].outputs[0].links):
+        tree.links.new(node.outputs["Color"], link.to_socket)
+    tree.nodes.remove(tree.nodes["tint"])
+    tree.nodes.active = node
 
 
 def _table(name: str, rows: FloatArray) -> bpy.types.Image:

@@ -8,15 +8,15 @@ import secrets
 import subprocess
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
 import bpy
 
 from ...core import MobiusFlowError
-from ...core.errors import OutputError, choice
-from ...core.messages import Message
+from ...core.base.errors import OutputError, choice
+from ...core.base.messages import Message
 from ..curves.keyframes import all_fcurves
 from . import rendering, stage, staging
 from .looks import LOOKS
@@ -25,6 +25,7 @@ from .rendering import is_rendering
 Progress = Callable[[int, int], None]
 
 _MARK = "mobius_flow_copy"  # custom property of scenes made here; before Blender 5 settings of scenes are such, too
+_FILM = "mobius_flow_film_bytes"  # custom property of a scene: the size of the last film that it made
 SUFFIX = ".mp4"
 # how films are rendered: their labels and descriptions
 CHOICES = {
@@ -64,14 +65,17 @@ class Reel:
             raise OSError(rendering.NOT_WHOLE)
 
     def start(self) -> None:
-        """Begin to render in Blender's own window, and return at once; call `finish` when that is over."""
+        """Begin to render in Blender's own window, and return at once; call `finish` when that is over.
+
+        Raises MobiusFlowError.
+        """
         self._began = time.monotonic()
         bpy.app.handlers.render_write.append(self._count)
         try:
             bpy.ops.render.render("INVOKE_DEFAULT", animation=True, scene=self._scene)
-        except RuntimeError:
+        except RuntimeError as error:
             self.finish()
-            raise
+            raise OutputError(self.path, error) from error
 
     @property
     def seconds_left(self) -> float | None:
@@ -107,17 +111,20 @@ def render_movie(scene: bpy.types.Scene, path: Path, progress: Progress | None =
     """
     try:
         with tempfile.TemporaryDirectory(dir=path.absolute().parent) as room:
-            pictures = list(_pictures(scene, Path(room), progress or (lambda *_: None)))
+            frames, curves = frames_of(scene), list(all_fcurves())
+            drawn, pictures = dict[tuple[str, ...], Path](), list[Path]()
+            for k, frame in enumerate(frames, 1):
+                pose = tuple(f"{curve.evaluate(frame):.6g}" for curve in curves)  # on the way back the last bits differ
+                if pose not in drawn:
+                    drawn[pose] = Path(room) / f"{frame:06}.jpg"
+                    scene.frame_set(frame)
+                    rendering.render_still(scene, drawn[pose])
+                pictures.append(drawn[pose])
+                if progress is not None:
+                    progress(k, len(frames))
             Reel(_spliced(scene, pictures), path).render()
     finally:
         sweep()
-
-
-def copied(scene: bpy.types.Scene) -> bpy.types.Scene:
-    """A copy of a scene with the same objects, to be rendered with other settings; `sweep` removes it."""
-    copy = scene.copy()
-    copy.name, copy[_MARK] = "Film", True
-    return copy
 
 
 def sweep() -> None:
@@ -139,19 +146,6 @@ def length_of(path: Path) -> int:
     length = int(clip.frame_duration)
     bpy.data.movieclips.remove(clip)
     return length
-
-
-def _pictures(scene: bpy.types.Scene, room: Path, progress: Progress) -> Iterator[Path]:
-    frames = frames_of(scene)
-    curves, pictures = list(all_fcurves()), dict[tuple[str, ...], Path]()
-    for k, frame in enumerate(frames, 1):
-        pose = tuple(f"{curve.evaluate(frame):.6g}" for curve in curves)  # on the way back the last bits differ
-        if pose not in pictures:
-            pictures[pose] = room / f"{frame:06}.jpg"
-            scene.frame_set(frame)
-            rendering.render_still(scene, pictures[pose])
-        yield pictures[pose]
-        progress(k, len(frames))
 
 
 def _spliced(scene: bpy.types.Scene, pictures: Sequence[Path]) -> bpy.types.Scene:
@@ -183,9 +177,28 @@ class Filming(Reel):
         if look not in CHOICES:
             raise MobiusFlowError(f"{look!r} is not a look for films; {choice(look, CHOICES)}")
         place = target(path)
-        _check(scene, place, overwrite)
+        # say now what would go wrong after minutes of rendering
+        render = scene.render
+        sides = [side * render.resolution_percentage // 100 for side in (render.resolution_x, render.resolution_y)]
+        if is_rendering():
+            raise MobiusFlowError(Message("Blender is rendering; wait until it is done, or stop it with Esc"))
+        if scene.camera is None:
+            raise MobiusFlowError(Message("The scene has no camera; press Set Up Stage first, or add one"))
+        if any(side % 2 for side in sides):
+            sentence = "Frames are {width} × {height} pixels, but films need even numbers; change Size of Pictures"
+            raise MobiusFlowError(Message(sentence, width=sides[0], height=sides[1]))
+        if place.exists() and not overwrite:
+            sentence = "{path} is there already; give the film another name, or let it be overwritten"
+            raise MobiusFlowError(Message(sentence, path=place))
+        if not place.parent.is_dir():
+            sentence = "{path} is not a directory; choose another place for the film"
+            raise MobiusFlowError(Message(sentence, path=place.parent))
+        if not os.access(place if place.exists() else place.parent, os.W_OK):
+            raise MobiusFlowError(Message("{path} cannot be written; choose another place for the film", path=place))
         sweep()
-        copy = copied(scene)
+        self._filmed, copy = str(scene.name), scene.copy()  # with the same objects; `sweep` removes it
+        copy.name, copy[_MARK] = "Film", True
+        self._undress = staging.dress(copy, scene, look)
         if look in LOOKS:
             rendering.look_fine(copy, LOOKS[look])
         elif look == "QUICK":
@@ -204,12 +217,13 @@ class Filming(Reel):
             sentence = "{path}: Blender did not finish rendering the film; is the disk full?"
             raise MobiusFlowError(Message(sentence, path=self.path)) from error
 
-    def start(self) -> None:
-        """Begin to render in Blender's own window; raises MobiusFlowError."""
-        try:
-            super().start()
-        except RuntimeError as error:
-            raise OutputError(self.path, error) from error
+    def finish(self) -> bool:
+        """Put the film in its place if it is whole; the scene remembers it, for another one may come there."""
+        self._undress()
+        whole = super().finish()
+        if whole and self._filmed in bpy.data.scenes:
+            bpy.data.scenes[self._filmed][_FILM] = str(self.path.stat().st_size)
+        return whole
 
 
 def play(path: Path) -> None:
@@ -221,6 +235,14 @@ def play(path: Path) -> None:
             bpy.ops.wm.path_open(filepath=str(path))
     except (OSError, RuntimeError) as error:
         raise OutputError(path, error) from error
+
+
+def is_there(scene: bpy.types.Scene, path: str) -> bool:
+    """Whether the film at a path is the one that a scene made, and not another project's."""
+    try:
+        return bool(scene.get(_FILM) == str(target(path).stat().st_size))
+    except (MobiusFlowError, OSError):
+        return False
 
 
 def target(path: str) -> Path:
@@ -237,23 +259,3 @@ def target(path: str) -> Path:
         sentence = "{name} does not end in {suffix}, as films do here; give it another name"
         raise MobiusFlowError(Message(sentence, name=found.name, suffix=SUFFIX))
     return found if found.suffix else found.with_suffix(SUFFIX)
-
-
-def _check(scene: bpy.types.Scene, path: Path, overwrite: bool) -> None:
-    """Raise a MobiusFlowError for what would go wrong after minutes of rendering."""
-    render = scene.render
-    sides = [side * render.resolution_percentage // 100 for side in (render.resolution_x, render.resolution_y)]
-    if is_rendering():
-        raise MobiusFlowError(Message("Blender is rendering; wait until it is done, or stop it with Esc"))
-    if scene.camera is None:
-        raise MobiusFlowError(Message("The scene has no camera; press Set Up Stage first, or add one"))
-    if any(side % 2 for side in sides):
-        sentence = "Frames are {width} × {height} pixels, but films need even numbers; change Size of Pictures"
-        raise MobiusFlowError(Message(sentence, width=sides[0], height=sides[1]))
-    if path.exists() and not overwrite:
-        sentence = "{path} is there already; give the film another name, or let it be overwritten"
-        raise MobiusFlowError(Message(sentence, path=path))
-    if not path.parent.is_dir():
-        raise MobiusFlowError(Message("{path} is not a directory; choose another place for the film", path=path.parent))
-    if not os.access(path if path.exists() else path.parent, os.W_OK):
-        raise MobiusFlowError(Message("{path} cannot be written; choose another place for the film", path=path))

@@ -10,13 +10,11 @@ from pathlib import Path
 
 import bpy
 
-from ...core.deadline import signals_wait
+from ...core.base.deadline import signals_wait
 from .looks import Look
 
 FRAME_RATE = 24
 NOT_WHOLE = "Blender did not finish writing it; is the disk full?"
-_PATIENCE = 60  # seconds
-_CLAMP = 4.0  # of light along paths seldom found: without it single pixels stay bright
 _TRIAL = """
 import bpy
 bpy.ops.wm.read_factory_settings()
@@ -44,7 +42,7 @@ def look_fine(scene: bpy.types.Scene, look: Look, samples: int | None = None) ->
     cycles.samples = samples or look.samples
     cycles.adaptive_threshold = 0.05
     cycles.max_bounces = cycles.transmission_bounces = look.bounces
-    cycles.sample_clamp_indirect = _CLAMP
+    cycles.sample_clamp_indirect = 4.0  # of light along paths seldom found: without it single pixels stay bright
     cycles.caustics_reflective = cycles.caustics_refractive = False
     cycles.use_denoising = True  # by OpenImageDenoise, which all builds have
     cycles.denoising_quality = "BALANCED" if samples else "HIGH"
@@ -75,10 +73,6 @@ def look_plain(scene: bpy.types.Scene) -> None:
     shading.show_shadows, shading.shadow_intensity = True, 0.2
 
 
-def skip_frames(scene: bpy.types.Scene) -> None:
-    scene.frame_step, scene.render.fps = 2, FRAME_RATE // 2
-
-
 def _set_size(scene: bpy.types.Scene, width: int, height: int) -> None:
     render = scene.render
     render.resolution_x, render.resolution_y, render.resolution_percentage = width, height, 100
@@ -94,7 +88,7 @@ def workbench_works() -> bool:
         options = ["--background", "--factory-startup", "--python-exit-code", "1", "--python-expr"]
         command = [blender, *options, trial] if blender else [sys.executable, "-I", "-c", trial]
         try:
-            done = subprocess.run(command, capture_output=True, timeout=_PATIENCE, check=False)
+            done = subprocess.run(command, capture_output=True, timeout=60, check=False)
         except (OSError, subprocess.TimeoutExpired):
             return False
         return done.returncode == 0 and bool(os.listdir(room))

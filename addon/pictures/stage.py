@@ -4,32 +4,21 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import bpy
-import mathutils
 import numpy as np
 import numpy.typing as npt
 from mathutils import Matrix
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
-from ...core.types import FloatArray
+from ...core.base.types import FloatArray
+from ...core.curve.refine import interpolated
+from ...core.keys.placement import Frame
 from ..curves.keyframes import FCurves
-from ..engine.interpolation import interpolated
-from ..engine.placement import Frame
-from .looks import TINT, Look
-from .materials import material
+from .looks import Look
+from .materials import bundled
 
-_WIDTH = 60.0  # of the floor: the camera sees no end of it
-_ELEVATIONS = np.arange(36.0, 69.0, 4.0)  # degrees: over the horizon, and not so steep that shadows hide
-_ABOVE = np.radians(89.5)  # a camera at 90 would not know what is upright
-_WIDE = 1.7  # for shadows
-_STEP = 10.0  # degrees, from one direction that is tried to the next
-_ACROSS = 0.2  # the weight of how wide a motion is in the picture
-_TINY = 1e-300
 _LENS = 60.0  # mm
 _SENSOR = 36.0  # mm
 _CALM = 25  # frames over which the camera's way is smoothed
-_LIFT = 1.02  # of the tube's radius: how far the lowest point stays above the floor
-_ORBIT = np.radians(24.0)  # to either side, once in a film
-_APERTURE = 0.03  # width of the lens in sizes of the stage: what is a size off the focus is softened by so much
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +39,8 @@ class Stage:
     @classmethod
     def from_above(cls, shown: Sequence[Frame | FloatArray]) -> "Stage":
         """Take in everything shown as it lies, seen down the third axis."""
-        return replace(cls._around(shown, np.eye(3), _ABOVE), margin=_WIDE)
+        elevation = np.radians(89.5)  # a camera at 90 would not know what is upright
+        return replace(cls._around(shown, np.eye(3), elevation), margin=1.7)  # wide, for shadows
 
     @classmethod
     def _around(cls, shown: Sequence[Frame | FloatArray], axes: FloatArray, elevation: float) -> "Stage":
@@ -59,12 +49,6 @@ class Stage:
         middle = 0.5 * (low + np.max([each.max(axis=0) for each in along], axis=0))
         size = max(float(np.linalg.norm(each - middle, axis=1).max()) for each in along)
         return cls(axes, middle @ axes, size, elevation)
-
-
-def flat_up(points: FloatArray) -> FloatArray:
-    """The direction, (3,), in which points extend least, rather up than down."""
-    _, _, axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)
-    return np.asarray(axes[2] * np.sign(axes[2][np.abs(axes[2]).argmax()]))
 
 
 def facing(shapes: Sequence[Frame | FloatArray], up: FloatArray) -> tuple[FloatArray, float]:
@@ -77,32 +61,41 @@ def facing(shapes: Sequence[Frame | FloatArray], up: FloatArray) -> tuple[FloatA
     weights[[0, -1]] += 0.5
     sides = np.cross(up, np.eye(3)[np.abs(up).argmin()])
     level = np.array([sides, np.cross(up, sides), up]) / [[np.linalg.norm(sides)], [np.linalg.norm(sides)], [1.0]]
-    turns, heights = (each.ravel() for each in np.meshgrid(np.arange(0.0, 360.0, _STEP), _ELEVATIONS))
-    turns, heights = np.radians(turns), np.radians(heights)
+    tried = np.arange(0.0, 360.0, 10.0), np.arange(36.0, 69.0, 4.0)  # not so steep that shadows hide
+    turns, heights = (np.radians(each.ravel()) for each in np.meshgrid(*tried))
     rights = np.column_stack([-np.sin(turns), np.cos(turns)]) @ level[:2]
     views = np.column_stack([np.cos(turns) * np.cos(heights), np.sin(turns) * np.cos(heights), np.sin(heights)]) @ level
     seen = np.zeros(len(views))
     for shape, weight in zip(shapes, weights, strict=True):
         covariance = np.cov(shape.T.astype(np.float64))
-        (a, b, c), axes = np.linalg.eigh(covariance / max(np.trace(covariance), _TINY))
+        (a, b, c), axes = np.linalg.eigh(covariance / max(np.trace(covariance), 1e-300))
         areas = np.sqrt((views @ axes) ** 2 @ np.array([b * c, a * c, a * b]).clip(0.0))
-        seen += weight * (areas + _ACROSS * np.sqrt((rights @ axes) ** 2 @ np.array([a, b, c]).clip(0.0)))
+        seen += weight * (areas + 0.2 * np.sqrt((rights @ axes) ** 2 @ np.array([a, b, c]).clip(0.0)))
     best = int(seen.argmax())
     return np.array([rights[best], np.cross(up, rights[best]), up]), float(heights[best])
 
 
 def build(collection: bpy.types.Collection, stage: Stage, look: Look) -> bpy.types.Object:
     """Add lights and a floor to a collection; return the floor, which is at the height of the middle."""
-    for k, light in enumerate(look.lights):
-        # add a square light
-        name = "Light" if k else "Key"
-        data = bpy.data.lights.new(name, "AREA")
-        data.size = light.width * stage.size
-        data.energy = light.power * stage.size**2
-        data.color = light.tint
-        at = stage.middle + stage.size * (np.array(light.at) @ stage.axes)
-        place(add(collection, name, data), at, stage.middle, stage.axes[2])
-    return _add_floor(collection, stage, look)
+    lights = bundled("collections", look.label)
+    frame = np.eye(4)
+    for light in list(lights.objects):  # the key light first
+        data, turned = light.data, np.array(light.matrix_basis)
+        turned[:3, 3] *= stage.size
+        frame[:3, :3], frame[:3, 3] = stage.axes.T, stage.middle
+        light.matrix_world = Matrix((frame @ turned).tolist())
+        data.size, data.energy = data.size * stage.size, data.energy * stage.size**2
+        light.name = data.name = data.name.partition(".")[0]
+        collection.objects.link(light)
+    bpy.data.collections.remove(lights)
+    x, y = 60.0 * stage.size * stage.axes[:2]  # the camera sees no end of it
+    mesh = bpy.data.meshes.new("Floor")
+    mesh.from_pydata([p.tolist() for p in (-x - y, x - y, x + y, y - x)], [], [(0, 1, 2, 3)])
+    mesh.materials.append(bundled("materials", f"{look.label} Floor"))
+    mesh.materials[0].name = "Floor"
+    floor = add(collection, "Floor", mesh)
+    floor.location = stage.middle
+    return floor
 
 
 def light_workbench(scene: bpy.types.Scene, direction: npt.ArrayLike) -> None:
@@ -111,42 +104,17 @@ def light_workbench(scene: bpy.types.Scene, direction: npt.ArrayLike) -> None:
     scene.display.light_direction = (x, z, -y)  # its second axis is the world's up
 
 
-def towards_key(stage: Stage, look: Look) -> FloatArray:
-    return np.asarray(np.array(look.lights[0].at) @ stage.axes)
-
-
 def add(collection: bpy.types.Collection, name: str, data: bpy.types.ID) -> bpy.types.Object:
     obj = bpy.data.objects.new(name, data)
     collection.objects.link(obj)
     return obj
 
 
-def place(obj: bpy.types.Object, at: FloatArray, towards: FloatArray, up: FloatArray) -> None:
-    """Put an object somewhere with its −z axis pointing at a target and its y axis up."""
-    backward = (at - towards) / np.linalg.norm(at - towards)
-    right = np.cross(up, backward)
-    right /= np.linalg.norm(right)
-    rotation = np.column_stack([right, np.cross(backward, right), backward])
-    obj.matrix_world = Matrix(np.block([[rotation, at[:, None]], [np.zeros((1, 3)), np.ones((1, 1))]]).tolist())
-
-
-def _add_floor(collection: bpy.types.Collection, stage: Stage, look: Look) -> bpy.types.Object:
-    x, y = _WIDTH * stage.size * stage.axes[:2]
-    data = bpy.data.meshes.new("Floor")
-    data.from_pydata([p.tolist() for p in (-x - y, x - y, x + y, y - x)], [], [(0, 1, 2, 3)])
-    data.materials.append(material("Floor", look.floor, {"Base Color": TINT, "Roughness": look.floor_roughness}))
-    floor = add(collection, "Floor", data)
-    floor.location = stage.middle
-    return floor
-
-
-def add_sky(world: bpy.types.World, look: Look) -> None:
-    """Light the world evenly."""
-    if world.node_tree is None:  # from Blender 5.0 on there is one from the start, and the switch is deprecated
-        world.use_nodes = True
-    background = next(node for node in world.node_tree.nodes if node.type == "BACKGROUND")
-    background.inputs["Color"].default_value = (*look.sky, 1.0)
-    background.inputs["Strength"].default_value = 1.0
+def sky(look: Look, name: str) -> bpy.types.World:
+    """A world of an even light."""
+    world = bundled("worlds", look.label)
+    world.name = name
+    return world
 
 
 def follow(
@@ -170,38 +138,15 @@ def follow(
     slopes = 0.5 * _SENSOR / _LENS * np.array(size) / max(size)  # tangents of half the angles of view
     stacked, places = np.stack(points).astype(np.float64), np.interp(every, frames, np.arange(len(frames)))
     shapes = [(interpolated(stacked, at[None])[0] - stage.middle) @ stage.axes.T for at in places]
-    views = [_view(stage.elevation, turn) for turn in _ORBIT * np.sin(np.linspace(0.0, 2.0 * np.pi, len(every)))]
-    targets, distances = _targets(shapes, np.interp(every, frames, radii), slopes / stage.margin, views)
-    heights = np.array([((p - stage.middle) @ stage.axes[2]).min() for p in points]) - _LIFT * radii
-    lows = -_calm(-np.interp(every, frames, heights))
-    _move(focus, stage.middle + targets @ stage.axes, every)
-    _move(camera, stage.middle + (targets + distances[:, None] * np.array(views)[:, 2]) @ stage.axes, every)
-    _move(floor, stage.middle + lows[:, None] * stage.axes[2], every)
-    focus.rotation_euler, focus.empty_display_size = _euler(stage.axes), 0.1 * stage.size
-    look = camera.constraints.new("TRACK_TO")
-    look.target, look.track_axis, look.up_axis, look.use_target_z = focus, "TRACK_NEGATIVE_Z", "UP_Y", True
-    data.clip_start, data.clip_end = 1e-2 * distances.min(), 1e2 * distances.max()
-    data.dof.use_dof, data.dof.focus_object = True, focus
-    data.dof.aperture_fstop = 1e-3 * _LENS / (_APERTURE * stage.size)  # a lens is measured in millimetres
-    return camera
-
-
-def _view(elevation: float, turn: float) -> FloatArray:
-    """Right, up and backward, in a stage's axes, of a camera that looks down on it; rows."""
-    right = np.array([np.cos(turn), np.sin(turn), 0.0])
-    backward = np.array([np.cos(elevation) * np.sin(turn), -np.cos(elevation) * np.cos(turn), np.sin(elevation)])
-    return np.array([right, np.cross(backward, right), backward])
-
-
-def _targets(
-    shapes: Sequence[FloatArray], radii: FloatArray, slopes: FloatArray, views: Sequence[FloatArray]
-) -> tuple[FloatArray, FloatArray]:
-    """Where cameras look in every frame, (frames, 3), and their distances from there, (frames,); in the shapes' axes.
-
-    Seen from distance d, a point is inside the picture if |x − c| ≤ s (d − z). The outermost points give the best
-    centre c, and then the distance that a calmly moving c needs.
-    """
-    reaches = radii[:, None] * np.sqrt(1 + slopes**2)
+    views = []  # right, up and backward, in the stage's axes, rows; once to either side in a film
+    for turn in np.radians(24.0) * np.sin(np.linspace(0.0, 2.0 * np.pi, len(every))):
+        right, level = np.array([np.cos(turn), np.sin(turn), 0.0]), np.array([np.sin(turn), -np.cos(turn), 0.0])
+        backward = np.cos(stage.elevation) * level + np.array([0.0, 0.0, np.sin(stage.elevation)])
+        views.append(np.array([right, np.cross(backward, right), backward]))
+    # seen from distance d, a point is inside the picture if |x − c| ≤ s (d − z): the outermost points give the best
+    # centre c, and then the distance that a calmly moving c needs; all in the stage's axes
+    slopes, thick = slopes / stage.margin, np.interp(every, frames, radii)
+    reaches = thick[:, None] * np.sqrt(1 + slopes**2)
     seen = [shape @ view.T for shape, view in zip(shapes, views, strict=True)]
     high = [(p[:, :2] + p[:, 2:] * slopes + r).max(axis=0) for p, r in zip(seen, reaches, strict=True)]
     low = [(p[:, :2] - p[:, 2:] * slopes - r).min(axis=0) for p, r in zip(seen, reaches, strict=True)]
@@ -209,12 +154,20 @@ def _targets(
     targets = uniform_filter1d(np.array(centres), _CALM, axis=0, mode="nearest")
     looked = np.array([view @ target for view, target in zip(views, targets, strict=True)])
     needed = np.maximum(high - looked[:, :2], looked[:, :2] - low) / slopes - looked[:, 2:]
-    return targets, _calm(needed.max(axis=1))
-
-
-def _euler(axes: FloatArray) -> mathutils.Euler:
-    """The rotation that turns the world's axes into others, rows."""
-    return Matrix(axes.T.tolist()).to_euler()
+    distances = _calm(needed.max(axis=1))
+    heights = np.array([((p - stage.middle) @ stage.axes[2]).min() for p in points]) - 1.02 * radii
+    lows = -_calm(-np.interp(every, frames, heights))
+    _move(focus, stage.middle + targets @ stage.axes, every)
+    _move(camera, stage.middle + (targets + distances[:, None] * np.array(views)[:, 2]) @ stage.axes, every)
+    _move(floor, stage.middle + lows[:, None] * stage.axes[2], every)
+    focus.rotation_euler, focus.empty_display_size = Matrix(stage.axes.T.tolist()).to_euler(), 0.1 * stage.size
+    look = camera.constraints.new("TRACK_TO")
+    look.target, look.track_axis, look.up_axis, look.use_target_z = focus, "TRACK_NEGATIVE_Z", "UP_Y", True
+    data.clip_start, data.clip_end = 1e-2 * distances.min(), 1e2 * distances.max()
+    data.dof.use_dof, data.dof.focus_object = True, focus
+    # what is a size of the stage off the focus is softened by 0.03 of one; a lens is measured in millimetres
+    data.dof.aperture_fstop = 1e-3 * _LENS / (0.03 * stage.size)
+    return camera
 
 
 def _calm(values: FloatArray) -> FloatArray:

@@ -4,24 +4,25 @@ What belongs to it is marked. A scene's own camera and world stay in the file wh
 collection holds on to them, and gives them back.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 
 import bpy
 import numpy as np
 
 from ...core import CurveError
+from ...core.keys.colours import COMPONENT
 from ..curves.recorded import WorldMotion
 from ..curves.splines import read
-from ..curves.surroundings import STAGE, TUBE_OF
-from ..engine.colours import COMPONENT
+from ..curves.surroundings import STAGE, TUBE_OF, WITHOUT_SHAPE
 from . import stage
-from .looks import DEFAULT, LOOKS
+from .looks import LOOKS, ON_STAGE
 from .materials import colour_components
 
 _NAME = "Stage"
 # of its collection: what the scene had before, and what it was set up around
 _CAMERA, _WORLD, _SHOWN = "mobius_flow_camera", "mobius_flow_world", "mobius_flow_shown_"
+_LOOK, HIDDEN = "mobius_flow_look", "mobius_flow_hidden_"
 
 
 def set_up(
@@ -29,39 +30,47 @@ def set_up(
     objects: Sequence[bpy.types.Object],
     use_camera: bool = True,
     use_world: bool = True,
-    look: str = DEFAULT,
+    look: str = ON_STAGE,
+    hide_others: bool = True,
+    played: bpy.types.Scene | None = None,
 ) -> bpy.types.Collection:
     """Put a camera, lights and a floor around curve objects for as long as they move; an existing stage is replaced.
 
     The objects' transforms are evaluated. ``use_camera`` and ``use_world`` say whether the scene is rendered by the
-    stage's camera and under its sky, instead of its own. Curves without materials of their own get those of the
-    ``look`` until the stage is struck, if it is one of `LOOKS`. Raises CurveError if splines cannot be read, or are a
-    single point; nothing has changed then.
+    stage's camera and under its sky, instead of its own, ``hide_others`` whether renders leave out all else that has a
+    shape, but for what curves avoid. Curves without materials of their own get those of the ``look``, `ON_STAGE` where
+    it is none of `LOOKS`. All that lasts until the stage is struck. Raises CurveError if splines cannot be read, or are
+    a single point; nothing has changed then.  ``played``: the scene that shows how objects move, if it is another.
     """
-    motion = WorldMotion.of(scene, objects)
+    motion = WorldMotion.of(played or scene, objects)
     ground = stage.Stage.around(motion.points, np.array([0.0, 0.0, 1.0]))
     if not ground.size:
         raise CurveError("All points of the curves are the same; move them apart")
     strike(scene)
     collection = bpy.data.collections.new(_NAME)
     scene.collection.children.link(collection)
-    style = LOOKS.get(look, LOOKS[DEFAULT])
-    collection[STAGE] = _aspect(scene)
+    look = look if look in LOOKS else ON_STAGE
+    style = LOOKS[look]
+    collection[STAGE], collection[_LOOK] = _aspect(scene), look
+    # what renders would show besides curves, their tubes and what they avoid
+    around, tubes = scene.mobius_flow_surroundings, (tube for obj in objects for tube in _tubes(obj))
+    spared = {*objects, *tubes, around.container, *(around.avoid.all_objects if around.avoid is not None else ())}
+    for k, obj in enumerate(scene.objects if hide_others else ()):
+        if not (obj.hide_render or obj in spared or obj.type in {*WITHOUT_SHAPE, "EMPTY"}):
+            collection[f"{HIDDEN}{k}"], obj.hide_render = obj, True
     floor = stage.build(collection, ground, style)
     floor.hide_select = True  # it is in the way of every click
-    eye = stage.follow(collection, _shape(scene), ground, floor, motion.points, motion.radii, motion.frames)
+    eye = stage.follow(collection, (_aspect(scene), 1.0), ground, floor, motion.points, motion.radii, motion.frames)
     for obj in collection.objects:
         obj[STAGE] = True
-    if look in LOOKS:
-        _paint(objects, look)
+    _paint(objects, look)
     for k, obj in enumerate(objects):
         collection[f"{_SHOWN}{k}"] = obj
     if use_camera:
         collection[_CAMERA], scene.camera = scene.camera, eye
     if use_world:
-        collection[_WORLD], scene.world = scene.world, bpy.data.worlds.new(_NAME)
+        collection[_WORLD], scene.world = scene.world, stage.sky(style, _NAME)
         scene.world[STAGE] = True
-        stage.add_sky(scene.world, style)
     return collection
 
 
@@ -74,30 +83,67 @@ def strike(scene: bpy.types.Scene) -> None:
         scene.camera = collection.get(_CAMERA)
     if scene.world is not None and STAGE in scene.world:
         sky, scene.world = scene.world, collection.get(_WORLD)
-        _remove(sky)
+        bpy.data.batch_remove([sky])
     for obj in [each for each in collection.objects if STAGE in each]:
-        _remove_object(obj)
-    _strip(_shown(collection))
+        # with all that nothing else uses: its data, their materials, its motion
+        data, animation = obj.data, obj.animation_data
+        parts = [data, *getattr(data, "materials", ()), animation.action if animation is not None else None]
+        bpy.data.batch_remove([obj])
+        for block in parts:
+            if block is not None and not block.users:
+                bpy.data.batch_remove([block])
+    for made in [each for each in _undressed(kept(collection, _SHOWN)) if not each.users]:
+        bpy.data.batch_remove([made, *(node.image for node in made.node_tree.nodes if node.type == "TEX_IMAGE")])
+    for obj in kept(collection, HIDDEN):
+        obj.hide_render = False
     for name in [each for each in collection.keys() if each.startswith("mobius_flow")]:  # noqa: SIM118
         del collection[name]
     if not collection.all_objects:
-        _remove(collection)
+        bpy.data.batch_remove([collection])
 
 
-def restyle(scene: bpy.types.Scene, look: str) -> None:
-    """Give a scene's stage, if it has one, another look; curves that are gone, or no longer curves, are left out."""
+def renew(scene: bpy.types.Scene, look: str = "") -> None:
+    """Set up a scene's stage again, if it has one, in its own look or another.
+
+    Curves that are gone, or no longer curves, are left out.
+    """
     collection = own_stage(scene)
-    if collection is None or look not in LOOKS:
+    if collection is None:
         return
-    objects = [obj for obj in _shown(collection) if obj.name in scene.objects]
+    objects = [obj for obj in kept(collection, _SHOWN) if obj.name in scene.objects]
     camera_used, world_used = (block is not None and STAGE in block for block in (scene.camera, scene.world))
     with suppress(CurveError):
-        set_up(scene, objects, camera_used, world_used, look)
+        look = look or collection.get(_LOOK, ON_STAGE)
+        set_up(scene, objects, camera_used, world_used, look, bool(kept(collection, HIDDEN)))
 
 
-def _shown(collection: bpy.types.Collection) -> list[bpy.types.Object]:
-    """The curves that a stage was set up around, but for those that were deleted."""
-    found = [value for name, value in collection.items() if name.startswith(_SHOWN)]
+def dress(copy: bpy.types.Scene, scene: bpy.types.Scene, look: str) -> Callable[[], None]:
+    """Give a copy of a scene, which shares its stage, one in another look; return what takes that away again."""
+    shared = own_stage(copy)
+    if shared is None or shared not in list(copy.collection.children) or look not in LOOKS or shared.get(_LOOK) == look:
+        return lambda: None
+    copy.collection.children.unlink(shared)
+    objects = [obj for obj in kept(shared, _SHOWN) if obj.name in scene.objects]
+    camera_used, world_used = (block is not None and STAGE in block for block in (copy.camera, copy.world))
+    try:
+        set_up(copy, objects, camera_used, world_used, look, hide_others=False, played=scene)
+    except CurveError:  # it is filmed as it stands
+        copy.collection.children.link(shared)
+        return lambda: None
+    _undressed(objects)
+    _paint(objects, look)
+
+    def undress() -> None:
+        with suppress(ReferenceError):  # another file was loaded meanwhile
+            strike(copy)
+            _paint(objects, shared[_LOOK])
+
+    return undress
+
+
+def kept(collection: bpy.types.Collection, which: str) -> list[bpy.types.Object]:
+    """The objects that a stage's collection holds on to under a name, but for those that were deleted."""
+    found = [value for name, value in collection.items() if name.startswith(which)]
     return [obj for obj in found if obj is not None]
 
 
@@ -112,7 +158,14 @@ def _paint(objects: Sequence[bpy.types.Object], look: str) -> None:
                 made[STAGE] = True
         for tube in _tubes(obj):
             if not any(tube.data.materials):
-                _wear(tube.data, obj.data)
+                # let it have the materials that the curve's splines have
+                for material in obj.data.materials:
+                    tube.data.materials.append(material)
+                component = read(tube.data.attributes[COMPONENT].data, "value").astype(np.intp)
+                first_corners = read(tube.data.polygons, "loop_start", 1, np.int32)
+                corner = read(tube.data.loops, "vertex_index", 1, np.int32)[first_corners]
+                slots = np.array([spline.material_index for spline in obj.data.splines], dtype=np.int32)
+                tube.data.polygons.foreach_set("material_index", slots[(component - component.min())[corner]])
         first += len(obj.data.splines)
 
 
@@ -121,25 +174,15 @@ def _tubes(obj: bpy.types.Object) -> list[bpy.types.Object]:
     return [each for each in bpy.data.objects if each.type == "MESH" and each.get(TUBE_OF) == obj]
 
 
-def _wear(tube: bpy.types.Mesh, curve: bpy.types.Curve) -> None:
-    """Give a tube's mesh the materials that its curve's splines have."""
-    for material in curve.materials:
-        tube.materials.append(material)
-    component = read(tube.attributes[COMPONENT].data, "value").astype(np.intp)
-    corner = read(tube.loops, "vertex_index", 1, np.int32)[read(tube.polygons, "loop_start", 1, np.int32)]
-    slots = np.array([spline.material_index for spline in curve.splines], dtype=np.int32)
-    tube.polygons.foreach_set("material_index", slots[(component - component.min())[corner]])
-
-
-def _strip(objects: Sequence[bpy.types.Object]) -> None:
-    """Take a stage's materials from curves, and those that nothing else uses out of the file, with their images."""
+def _undressed(objects: Sequence[bpy.types.Object]) -> list[bpy.types.Material]:
+    """Take a stage's materials from curves that have no others, and from their tubes; return them."""
+    taken = []
     for obj in [*objects, *(tube for each in objects for tube in _tubes(each))]:
         materials = [each for each in obj.data.materials if each is not None and STAGE in each]
         if materials and len(materials) == len(obj.data.materials):
             obj.data.materials.clear()
-        for made in [each for each in materials if not each.users]:
-            images = [node.image for node in made.node_tree.nodes if node.type == "TEX_IMAGE"]
-            bpy.data.batch_remove([made, *images])
+            taken += materials
+    return list(dict.fromkeys(taken))
 
 
 def own_stage(scene: bpy.types.Scene) -> bpy.types.Collection | None:
@@ -161,26 +204,6 @@ def fits(scene: bpy.types.Scene) -> bool:
     return bool(np.isclose(collection[STAGE], _aspect(scene)))
 
 
-def _shape(scene: bpy.types.Scene) -> tuple[float, float]:
-    render = scene.render
-    return render.resolution_x * render.pixel_aspect_x, render.resolution_y * render.pixel_aspect_y
-
-
 def _aspect(scene: bpy.types.Scene) -> float:
-    width, height = _shape(scene)
-    return width / height
-
-
-def _remove_object(obj: bpy.types.Object) -> None:
-    """Remove an object with all that nothing else uses: its data, their materials, its motion."""
-    data, animation = obj.data, obj.animation_data
-    materials = list(getattr(data, "materials", ()))
-    action = animation.action if animation is not None else None
-    _remove(obj)
-    for block in (data, *materials, action):
-        if block is not None and not block.users:
-            _remove(block)
-
-
-def _remove(block: bpy.types.ID) -> None:
-    bpy.data.batch_remove([block])
+    render = scene.render
+    return float(render.resolution_x * render.pixel_aspect_x / (render.resolution_y * render.pixel_aspect_y))

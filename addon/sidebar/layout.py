@@ -10,8 +10,6 @@ from ..live.requirements import Refusal
 from ..translations import iface_
 
 Draw = Callable[[bpy.types.UILayout, bpy.types.Context], object]
-_FONT = 0  # Blender's own
-_MARGIN = 100  # pixels beside the text at the usual scale: tabs, padding, the frame of a box and the icon
 
 
 class InSidebar:
@@ -40,8 +38,17 @@ def operator(layout: bpy.types.UILayout, name: str, **look: Any) -> Any:
     return layout.operator(f"curve.mobius_flow_{name}", **look)
 
 
-def button(name: str, icon: str) -> Draw:
-    return lambda layout, _context: operator(layout, name, icon=icon)
+def button(name: str, icon: str, text: str | None = None, **given: Any) -> Draw:
+    """A button of one of our operators, with its own words or others, and the properties that it is given."""
+
+    def draw(layout: bpy.types.UILayout, _context: bpy.types.Context) -> None:
+        shown = operator(
+            layout, name, icon=icon, **({} if text is None else {"text": iface_(text), "translate": False})
+        )
+        for key, value in given.items():
+            setattr(shown, key, value)
+
+    return draw
 
 
 def row(*parts: Draw) -> Draw:
@@ -80,16 +87,19 @@ def refused(layout: bpy.types.UILayout, context: bpy.types.Context, refusal: Ref
     """Show why something is refused, and below it the button that mends it."""
     sentence(layout, context, refusal.sentence)
     if refusal.remedy is not None:
-        layout.operator(refusal.remedy.value, icon="TOOL_SETTINGS")
+        mend = operator(layout, "mend", text=iface_(refusal.remedy.value), icon="TOOL_SETTINGS")
+        mend.remedy = refusal.remedy.name
 
 
 def sentence(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, icon: str = "INFO") -> None:
     """Write a sentence in the user's language, as wide as the sidebar is, with an icon before it."""
     scale = context.preferences.system.ui_scale
-    blf.size(_FONT, context.preferences.ui_styles[0].widget.points * scale)
-    room = context.region.width - _MARGIN * scale
+    font = 0  # Blender's own
+    blf.size(font, context.preferences.ui_styles[0].widget.points * scale)
+    # beside the text there are tabs, padding, the frame of a box and the icon
+    room = context.region.width - 100 * scale
     lines = layout.column(align=True)
-    for k, line in enumerate(wrapped(iface_(text), lambda line: blf.dimensions(_FONT, line)[0] <= room)):
+    for k, line in enumerate(wrapped(iface_(text), lambda line: blf.dimensions(font, line)[0] <= room)):
         lines.label(text=line, icon="BLANK1" if k else icon, translate=False)
 
 

@@ -8,15 +8,11 @@ from ..engine.knot_list import COMMON, labels
 from ..pictures import icons
 from .layout import operator
 
-_FAMILIES = ("TORUS", "BRAID", "LISSAJOUS", "CABLE", "DOUBLE")
 _OPERATORS = (
     ("bake_again", "continue", "morph", "clear", "scene_range"),
-    ("keep_size", "lay_flat", "face_camera"),
-    ("balance", "check", "leave_saddle"),
     ("fit_tube", "color_components"),
-    ("pin", "pin_ends", "unpin"),
-    ("pack", "close"),
-    ("object_mode", "make_local", "single_user", "make_3d", "to_poly", "copy", "to_curve"),
+    ("keep_size", "lay_flat", "face_camera"),
+    ("pin", "unpin", "pack"),
 )
 
 
@@ -33,6 +29,7 @@ class VIEW3D_MT_mobius_flow(bpy.types.Menu):
             self.layout.separator()
             for name in group:
                 operator(self.layout, name)
+        self.layout.operator_menu_enum("curve.mobius_flow_mend", "remedy")
 
 
 class VIEW3D_MT_mobius_flow_knots(bpy.types.Menu):
@@ -47,10 +44,10 @@ class VIEW3D_MT_mobius_flow_knots(bpy.types.Menu):
         layout.separator()
         search(layout, context)
         layout.separator()
-        for family in _FAMILIES:
-            operator(layout, "add_family", text=family.title()).family = family
+        for family in ("TORUS", "BRAID", "LISSAJOUS", "CABLE", "DOUBLE"):
+            operator(layout, "add_knot", text=family.title()).kind = family
         layout.separator()
-        operator(layout, "add_knot", text="By Name, as Woven")
+        operator(layout, "add_knot", text="By Name, as Woven").kind = "TABLE"
         operator(layout, "draw_knot", text="From Drawing")
 
 
@@ -65,6 +62,19 @@ def _flow(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
     menu.layout.menu(VIEW3D_MT_mobius_flow.bl_idname)
 
 
+class KnotTool(bpy.types.WorkSpaceTool):
+    bl_space_type = "VIEW_3D"
+    bl_context_mode = "OBJECT"
+    bl_idname = "mobius_flow.knot"
+    bl_label = "Knot"
+    bl_description = "Draw a stroke, which becomes a knot; click a crossing to swap its strands; Enter relaxes"
+    bl_icon = "ops.curve.draw"
+    bl_keymap = (
+        ("curve.mobius_flow_stroke", {"type": "LEFTMOUSE", "value": "PRESS"}, None),
+        ("curve.mobius_flow_relax", {"type": "RET", "value": "PRESS"}, None),
+    )
+
+
 _ENTRIES: dict[str, Callable[[bpy.types.Menu, bpy.types.Context], None]] = {
     "VIEW3D_MT_curve_add": lambda menu, _: menu.layout.menu(VIEW3D_MT_mobius_flow_knots.__name__, icon="CURVE_NCIRCLE"),
     "VIEW3D_MT_object": _flow,
@@ -75,8 +85,10 @@ _ENTRIES: dict[str, Callable[[bpy.types.Menu, bpy.types.Context], None]] = {
 def register() -> None:
     for menu, entry in _ENTRIES.items():
         getattr(bpy.types, menu).append(entry)
+    bpy.utils.register_tool(KnotTool, separator=True)
 
 
 def unregister() -> None:
+    bpy.utils.unregister_tool(KnotTool)
     for menu, entry in _ENTRIES.items():
         getattr(bpy.types, menu).remove(entry)

@@ -1,17 +1,21 @@
-"""The gallery of knots, and the sub-panels: each is a table of rows."""
+"""The gallery of knots, the sub-panels, and the report, the last of all, so that nothing moves when it appears."""
+
+from functools import partial
 
 import bpy
 
-from ...core.messages import Message
-from ..curves import bake, bevel, pins
-from ..curves.exchange import length, stretch
-from ..curves.moving import unsteady
+from ...core import OptionError
+from ...core.base.messages import Message
+from ...core.driver.words import named, time_left
+from ..curves import bake, pins
+from ..curves.splines import length
 from ..engine.knot_list import labels
-from ..engine.words import named
+from ..live import registry
 from ..live.modal import unseen
-from ..live.requirements import avoided, curves_at_hand, selected_curves
+from ..live.requirements import Remedy, closable, curves_at_hand, selected_curves, shown_curves
+from ..live.run import RunState
 from ..pictures import staging
-from ..properties import shown
+from ..properties import shown, timing
 from ..translations import iface_
 from .layout import InSidebar, SubPanel, button, column, operator, row, sentence, settings, value
 from .menus import search
@@ -37,50 +41,45 @@ def _pin_count(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         layout.label(text=iface_("{count} points pinned", count=count), icon="INFO", translate=False)
 
 
-def _avoided(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    found = avoided(context)
-    if not found and context.scene.mobius_flow_surroundings.avoid is not None:
-        sentence(layout, context, Message("Nothing in it is visible"))
-    elif found and not unsteady(found, selected_curves(context)):
-        names = named([obj.name for obj in found])
-        sentence(layout, context, Message("Curves never touch {names}", names=names))
-
-
 class VIEW3D_PT_mobius_flow_surroundings(SubPanel, bpy.types.Panel):
     bl_label = "Pins and Surroundings"
     rows = (
-        column(button("pin", "PINNED"), row(button("pin_ends", "PINNED"), button("unpin", "UNPINNED"))),
+        row(button("pin", "PINNED"), button("unpin", "UNPINNED")),
         settings("avoid", "container", of="mobius_flow_surroundings"),
         button("pack", "CUBE"),
         _pin_count,
-        _avoided,
     )
 
 
-def _radius(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Show how thick the first curve is drawn, and whose choice that is."""
-    for obj in selected_curves(context)[:1]:
-        text = Message("None")
-        if depth := obj.data.bevel_depth:
-            radius = length(context.scene, depth * stretch(obj))
-            fitted = bevel.is_fitted(obj.data)
-            text = Message("{radius} (fitted)" if fitted else "{radius} (your own)", radius=radius)
-        value(layout, "Radius", text)
+def _hidden_from_nodes(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Say why nodes get no points where a curve has a tube."""
+    for obj in selected_curves(context):
+        if (obj.data.bevel_depth or obj.data.bevel_object) and any(each.type == "NODES" for each in obj.modifiers):
+            said = "The nodes of '{name}' get the mesh of its tube, no curve: Curve to Points gives nothing. Set its \
+bevel's Depth to 0, and let the nodes make the tube"
+            sentence(layout, context, Message(said, name=obj.name))
+
+
+def _open(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    if any(closable(selected_curves(context))):
+        button("mend", "CURVE_BEZCIRCLE", Remedy.CLOSE.value, remedy=Remedy.CLOSE.name)(layout, context)
 
 
 class VIEW3D_PT_mobius_flow_shape(SubPanel, bpy.types.Panel):
     bl_label = "Shape"
     rows = (
-        column(button("fit_tube", "MESH_CYLINDER"), button("color_components", "COLOR")),
-        settings("fit_bevel", "constant_radius"),
+        row(
+            button("fit_tube", "MESH_CYLINDER", constant=False),
+            button("fit_tube", "MESH_CAPSULE", Message("Constant"), constant=True),
+        ),
+        button("color_components", "COLOR"),
         column(button("tube_mesh", "OUTLINER_OB_MESH"), button("smooth_curve", "CURVE_BEZCURVE")),
         column(
             button("keep_size", "FULLSCREEN_EXIT"),
             row(button("lay_flat", "AXIS_TOP"), button("face_camera", "CAMERA_DATA")),
         ),
-        column(button("balance", "MOD_CURVE"), row(button("check", "VIEWZOOM"), button("leave_saddle", "SORT_ASC"))),
-        button("close", "CURVE_BEZCIRCLE"),
-        _radius,
+        _open,
+        _hidden_from_nodes,
     )
 
 
@@ -89,6 +88,16 @@ def _stage(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     operator(within, "set_up_stage", icon="OUTLINER_OB_LIGHT")
     if staging.own_stage(context.scene):
         operator(within, "remove_stage", text="", icon="X")
+
+
+def _unfit(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Say why a film cannot have the timing that is set; until then it keeps its own."""
+    try:
+        wanted = timing(partial(getattr, context.scene.mobius_flow))
+        for obj in shown_curves(context):
+            wanted.check_keys(bake.key_count(obj.data))
+    except OptionError as error:
+        sentence(layout, context, str(error), icon="ERROR")
 
 
 def _not_in_film(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -111,10 +120,70 @@ class VIEW3D_PT_mobius_flow_film(SubPanel, bpy.types.Panel):
         ),
         settings("look", "filepath", of="mobius_flow_film"),
         row(button("render_film", "RENDER_ANIMATION"), button("play_film", "PLAY")),
+        _unfit,
         _not_in_film,
     )
 
 
+def _paper(layout: bpy.types.UILayout, _context: bpy.types.Context) -> None:
+    """A link to what all of this is after."""
+    name = iface_("Reiter and Schumacher (2021)")
+    link = layout.operator("wm.url_open", text=name, translate=False, icon="URL")
+    link.url = "https://doi.org/10.1007/s00205-021-01680-1"
+
+
 class VIEW3D_PT_mobius_flow_expert(SubPanel, bpy.types.Panel):
     bl_label = "Expert"
-    rows = (lambda layout, context: settings(*(each.name for each in shown() if each.row))(layout, context),)
+    bl_description = "Settings for those who know Sobolev Gradients for the Möbius Energy, by Reiter and Schumacher"
+    rows = (
+        lambda layout, context: settings(*(each.name for each in shown() if each.row))(layout, context),
+        settings("timing", "start_frame", "hold_start", "keyframes", "keep_size"),
+        settings("options"),
+        _paper,
+        _unfit,
+    )
+
+
+def _progress(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """What is known of the run that is going on, or of the last one."""
+    run = registry.shown(context.active_object)
+    assert run is not None, "poll looks for it"
+    box = layout.column(align=True)
+    state: Message = run.state.value
+    if run.waits:
+        state = Message("Waiting for the render")
+    elif run.state is RunState.RUNNING and run.drag is None and (seconds := run.time_left.seconds) is not None:
+        state = Message("{state}, {time}", state=state, time=time_left(seconds))
+    elif run.failed and run.state is RunState.CANCELLED:
+        state = Message("Failed")
+    value(box, ", ".join(run.group.names), state)
+    if run.last is not None:
+        value(box, "Energy", f"{run.last.energy:.4f}")
+        if run.target is not None:
+            value(box, "At least", run.target.label)
+        back = run.looked_at
+        value(box, "Step", f"{run.last.index}" if back is None else f"{back:.0f} / {run.last.index}")
+        proved = run.last.certified if run.report is None else run.report.certified
+        whom = Message("with itself") if len(run.group.names) == 1 else Message("among themselves")
+        value(box, "Free of contact", whom if proved else Message("not proved"))
+        if run.avoided:
+            value(box, "Avoided", named(run.avoided))
+    if run.report is not None and run.report.radius is not None:
+        value(box, "Tube radius", length(context.scene, run.report.radius))
+    if run.message:
+        sentence(box, context, run.message, icon="ERROR" if run.failed else "INFO")
+    if run.trouble and run.state.over:
+        operator(box, "show", icon="VIEWZOOM")
+    if run.energies:
+        row = box.row()
+        row.use_property_split = False
+        row.prop(context.scene.mobius_flow_panel, "show_plot")
+
+
+class VIEW3D_PT_mobius_flow_report(InSidebar, bpy.types.Panel):
+    bl_label = "Report"
+    rows = (_progress,)
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return registry.shown(context.active_object) is not None

@@ -19,11 +19,10 @@ import bpy
 from bpy.app import translations
 from bpy.app.translations import pgettext_iface, pgettext_rpt, pgettext_tip
 
-from ...core.messages import Message
+from ...core.base.messages import Message
 
 CONTEXT = "Möbius Flow"  # of all but tooltips, which Blender looks up without a context
 ANY = "*"  # what Blender calls the context of entries that have none
-_FIELDS = ("msgctxt", "msgid", "msgstr")
 
 Table = dict[tuple[str, str], str]
 
@@ -54,15 +53,10 @@ def mark(classes: Iterable[type]) -> None:
         if not issubclass(cls, bpy.types.PropertyGroup):
             cls.bl_translation_context = CONTEXT  # type: ignore[attr-defined]
         for base in cls.__mro__:
-            for each in _own_properties(base):
-                each.keywords["translation_context"] = CONTEXT
-
-
-def _own_properties(cls: type) -> list[Any]:
-    """The properties that a class declares, if it is one of ours."""
-    if not cls.__module__.startswith(__package__.rpartition(".")[0]):
-        return []
-    return [each for each in cls.__annotations__.values() if isinstance(each, bpy.props._PropertyDeferred)]
+            ours = base.__module__.startswith(__package__.rpartition(".")[0])
+            for each in base.__annotations__.values() if ours else ():
+                if isinstance(each, bpy.props._PropertyDeferred):
+                    each.keywords["translation_context"] = CONTEXT
 
 
 def register() -> None:
@@ -105,26 +99,20 @@ def read_po(text: str) -> Table:
     """
     table: Table = {}
     for entry in re.split(r"\n\s*\n", text):
-        fields = _fields(entry)
+        fields: dict[str, str] = {}
+        field = ""
+        for line in map(str.strip, entry.split("\n")):
+            if line and not line.startswith("#"):
+                keyword = line.partition('"')[0]
+                field = keyword.strip() or field
+                if field not in ("msgctxt", "msgid", "msgstr") or (keyword and field in fields):
+                    raise ValueError(f"not an entry of a PO file without plurals:\n{entry}")
+                fields[field] = fields.get(field, "") + json.loads(line[len(keyword) :])  # PO quotes as JSON does
+        if fields and not {"msgid", "msgstr"} <= fields.keys():
+            raise ValueError(f"msgid or msgstr is missing:\n{entry}")
         key = fields.get("msgctxt", ANY), fields.get("msgid", "")
         if key in table:
             raise ValueError(f"there twice:\n{entry}")
         if key[1] and fields["msgstr"] and not re.search("^#,.*fuzzy", entry, re.MULTILINE):
             table[key] = fields["msgstr"]
     return table
-
-
-def _fields(entry: str) -> dict[str, str]:
-    """The strings of an entry by their keywords; PO quotes as JSON does."""
-    fields: dict[str, str] = {}
-    field = ""
-    for line in map(str.strip, entry.split("\n")):
-        if line and not line.startswith("#"):
-            keyword = line.partition('"')[0]
-            field = keyword.strip() or field
-            if field not in _FIELDS or (keyword and field in fields):
-                raise ValueError(f"not an entry of a PO file without plurals:\n{entry}")
-            fields[field] = fields.get(field, "") + json.loads(line[len(keyword) :])
-    if fields and not {"msgid", "msgstr"} <= fields.keys():
-        raise ValueError(f"msgid or msgstr is missing:\n{entry}")
-    return fields

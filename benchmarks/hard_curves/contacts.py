@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from mobius_flow.core import Curve
-from mobius_flow.core.types import FloatArray
+from mobius_flow.core.base.types import FloatArray
 
 
 def spiral(turns: float, vertices: int | None = None, *, rise: float = 0.0) -> Curve:

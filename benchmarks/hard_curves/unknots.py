@@ -3,7 +3,9 @@
 import numpy as np
 from mobius_flow.core import Curve
 from mobius_flow.core.knots import braid_closure, braid_word
-from mobius_flow.core.knots.braids import Word, lattice_closure
+from mobius_flow.core.knots.braids import Word
+
+from .lattices import lattice_closure
 
 _MOVES_PER_LETTER = 4
 _MAX_TRIALS = 500  # insertions tried per letter

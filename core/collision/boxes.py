@@ -10,10 +10,10 @@ from functools import lru_cache
 
 import numpy as np
 
+from ..base.types import BoolArray, FloatArray, IntArray
 from ..curve import Mesh
 from ..curve.mesh import component_order, z_order
-from ..obstacle import Obstacle
-from ..types import BoolArray, FloatArray, IntArray
+from ..curve.obstacle import Obstacle
 from .planes import UNDERFLOW
 
 CHUNK = 1 << 14  # pairs of boxes handled at once: bounds the memory whatever the curve
@@ -103,8 +103,10 @@ class BoxTree:
                 continue
             # The tree with more levels left is halved, or both are, so that they reach their leaves together.
             ahead = len(self.levels) - p - len(other.levels) + q
-            a, b = _halved(a, b, ahead >= 0, ahead <= 0)
-            p, q = p + (ahead >= 0), q + (ahead <= 0)
+            first, second = ahead >= 0, ahead <= 0
+            left, right = _HALVES[first, second]
+            a, b = ((1 + first) * a + left).ravel(), ((1 + second) * b + right).ravel()
+            p, q = p + first, q + second
             # The last part is taken up first, so the stack stays short: depth first in chunks.
             stack += [(p, q, a[k : k + CHUNK], b[k : k + CHUNK]) for k in range(0, len(a), CHUNK)]
 
@@ -144,12 +146,6 @@ _HALVES = {  # numbers of the halves of the first and of the second box, if they
     for halved in (False, True)
     for also in (False, True)
 }
-
-
-def _halved(a: IntArray, b: IntArray, first: bool, second: bool) -> tuple[IntArray, IntArray]:
-    """Pairs of halves of the first, of the second, or of both boxes of each pair."""
-    left, right = _HALVES[first, second]
-    return ((1 + first) * a + left).ravel(), ((1 + second) * b + right).ravel()
 
 
 @dataclass(frozen=True, eq=False)

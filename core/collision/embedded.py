@@ -4,11 +4,11 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from ..base.errors import CurveError
+from ..base.messages import COMPONENT, EDGE, VERTEX, Message
+from ..base.types import BoolArray, FloatArray, IntArray
 from ..curve import Curve, Mesh, at_edges, at_vertices
-from ..errors import CurveError
-from ..messages import COMPONENT, EDGE, VERTEX, Message
-from ..obstacle import Obstacle
-from ..types import BoolArray, FloatArray, IntArray
+from ..curve.obstacle import Obstacle
 from .boxes import BoxTree, Level, corners, still_triangles
 from .exact import first_contact
 from .exact_triangle import EDGES, crossing
@@ -39,15 +39,6 @@ def check_embedded(curve: Curve) -> None:
     Exact in the plane and in space.  In four and more dimensions, where nothing is proved, edges touch if they are
     together up to rounding.  The CurveError names component, edges and vertices, and the place.
     """
-    _check_repeated(curve)
-    points, _ = scaled_points(curve)
-    _check_doubled_back(curve, points)
-    touching = _touching_pairs if curve.dimension <= 3 else _coinciding_pairs
-    for i, j in touching(curve, points):
-        raise _refusal(TOUCHING, curve, i, j)
-
-
-def _check_repeated(curve: Curve) -> None:
     tails, heads = curve.mesh.tails, curve.mesh.heads
     unit = int(np.frexp(np.abs(curve.vertices).max())[1]) + 1  # differences of scaled coordinates don't overflow
     points = np.ldexp(curve.vertices, -unit)
@@ -60,10 +51,8 @@ def _check_repeated(curve: Curve) -> None:
         raise CurveError(
             Message(same_point, vertex=ends[0], other=ends[1], place=place), at_vertices(curve, tail, head)
         )
-
-
-def _check_doubled_back(curve: Curve, points: FloatArray) -> None:
-    """Find vertices where the curve turns by 180°, up to rounding."""
+    points, _ = scaled_points(curve)
+    # the curve must not turn by 180° at a vertex, up to rounding
     mesh = curve.mesh
     before = np.flatnonzero(mesh.next != np.arange(mesh.edges))
     after = mesh.next[before]
@@ -78,6 +67,9 @@ def _check_doubled_back(curve: Curve, points: FloatArray) -> None:
         back = "the curve doubles back at {vertex}, {place}; move or remove it"
         message = Message(back, vertex=vertex_name(mesh, vertex), place=written(curve.vertices[vertex]))
         raise CurveError(message, at_vertices(curve, vertex))
+    touching = _touching_pairs if curve.dimension <= 3 else _coinciding_pairs
+    for i, j in touching(curve, points):
+        raise _refusal(TOUCHING, curve, i, j)
 
 
 def _touching_pairs(curve: Curve, points: FloatArray) -> Iterator[tuple[int, int]]:

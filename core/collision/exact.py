@@ -17,7 +17,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..types import FloatArray
+from ..base.types import FloatArray
 
 # Coefficients of a homogeneous polynomial in (1−t, t): Bernstein coefficients times positive binomials.
 Polynomial = Sequence[int]
@@ -38,7 +38,9 @@ def first_contact(start: FloatArray, end: FloatArray, after: float = 0.0) -> flo
     ``start`` and ``end`` hold x₀, x₁, y₀, y₁, shape (4, m) with m = 2 or 3; until ``after`` they are known not to
     meet. The time is nearly as sharp as a double. Segments that miss each other by less are taken to meet.
     """
-    motion = _motion(start, end)
+    points = whole_numbers(np.concatenate([start, end]))
+    x0, x1, y0, y1 = (tuple(zip(points[k], points[k + 4], strict=True)) for k in range(4))
+    motion = _minus(x0, y0), _minus(x1, x0), _minus(y1, y0)
     if after <= 0 and not _free(_frame(motion, 0)):
         return 0.0
     work = [(Fraction(0), Fraction(1), motion)]
@@ -59,12 +61,6 @@ def first_contact(start: FloatArray, end: FloatArray, after: float = 0.0) -> flo
             work.append((middle, b, _part(motion, half, 2 * half)))
             work.append((a, middle, _part(motion, 0, half)))
     return max(below(work[-1][0]), after) if work else None
-
-
-def _motion(start: FloatArray, end: FloatArray) -> Motion:
-    points = whole_numbers(np.concatenate([start, end]))
-    x0, x1, y0, y1 = (tuple(zip(points[k], points[k + 4], strict=True)) for k in range(4))
-    return _minus(x0, y0), _minus(x1, x0), _minus(y1, y0)
 
 
 def whole_numbers(points: FloatArray) -> list[list[int]]:

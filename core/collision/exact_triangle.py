@@ -13,7 +13,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..types import FloatArray
+from ..base.types import FloatArray
 from .exact import below, first_contact, whole_numbers
 
 Vector = Sequence[int]

@@ -4,11 +4,11 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
+from ..base.errors import CurveError, Place
+from ..base.messages import Message
+from ..base.types import BoolArray, FloatArray, IntArray
 from ..curve import Curve, Mesh
 from ..curve.distances import arc_distance_of_points
-from ..errors import CurveError, Place
-from ..messages import Message
-from ..types import BoolArray, FloatArray, IntArray
 from .boxes import BoxTree, Level, corners
 from .planes import closest_chord, relative_motion
 
@@ -51,12 +51,12 @@ def check_gap(curve: Curve) -> None:
             k = int(np.where(near, squares, np.inf).argmin())
             point = curve.vertices[curve.mesh.tails[i[k]]]
             gap, place = np.ldexp(np.sqrt(squares[k]), unit), ", ".join(f"{x:.6g}" for x in point)
-            near = (
+            sentence = (
                 "strands are only {gap:.2g} apart near ({place}), less than {least:g} of the curve's length: too close "
                 "to compute their energy; move them apart"
             )
             raise CurveError(
-                Message(near, gap=float(gap), place=place, least=MIN_GAP), Place((), tuple(point.tolist()))
+                Message(sentence, gap=float(gap), place=place, least=MIN_GAP), Place((), tuple(point.tolist()))
             )
 
 
@@ -78,7 +78,14 @@ def thickness(curve: Curve) -> float:
     for i, j, squares in near_edges(curve, points, bound):
         # Points just half a circle apart are two radii apart or more (Schur's theorem).  So where the closest points of
         # two edges are nearer along the curve, none of the others can count for less than the bending radius.
-        s, t = closest_points(curve, i, j)
+        # the closest points, as lengths from the edges' tails; one of many pairs if they are parallel
+        mesh, ell = curve.mesh, curve.edge_lengths
+        e, f = curve.edge_vectors[i] / ell[i, None], curve.edge_vectors[j] / ell[j, None]
+        D = curve.vertices[mesh.tails[i]] - curve.vertices[mesh.tails[j]]
+        ef, De, Df = (np.einsum("pm,pm->p", *pair) for pair in ((e, f), (D, e), (D, f)))
+        s = ((ef * Df - De) / np.maximum(1.0 - ef * ef, np.finfo(np.float64).eps)).clip(0.0, ell[i])
+        t = (ef * s + Df).clip(0.0, ell[j])
+        s = (ef * t - De).clip(0.0, ell[i])
         squares = squares[arc_distance_of_points(curve, i, s, j, t) >= np.pi * bend]
         best = min(best, float(squares.min(initial=np.inf)))
     return min(bend, 0.5 * float(np.ldexp(np.sqrt(best), unit)))
@@ -91,17 +98,6 @@ def bending_radii(curve: Curve) -> FloatArray:
     sine, cosine = np.linalg.norm(tau - tau[before], axis=1), np.linalg.norm(tau + tau[before], axis=1)
     with np.errstate(divide="ignore"):
         return np.asarray(0.5 * np.minimum(ell, ell[before]) * cosine / sine)  # ½ min(ℓ, ℓ') / tan(θ/2)
-
-
-def closest_points(curve: Curve, i: IntArray, j: IntArray) -> tuple[FloatArray, FloatArray]:
-    """The closest points of edges ``i`` and ``j``, as lengths from their tails; one of many pairs if parallel."""
-    mesh, ell = curve.mesh, curve.edge_lengths
-    e, f = curve.edge_vectors[i] / ell[i, None], curve.edge_vectors[j] / ell[j, None]
-    D = curve.vertices[mesh.tails[i]] - curve.vertices[mesh.tails[j]]
-    ef, De, Df = (np.einsum("pm,pm->p", *pair) for pair in ((e, f), (D, e), (D, f)))
-    s = ((ef * Df - De) / np.maximum(1.0 - ef * ef, np.finfo(np.float64).eps)).clip(0.0, ell[i])
-    t = (ef * s + Df).clip(0.0, ell[j])
-    return (ef * t - De).clip(0.0, ell[i]), t
 
 
 def scaled_points(curve: Curve) -> tuple[FloatArray, int]:

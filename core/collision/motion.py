@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..base.messages import EDGE, Message
+from ..base.types import BoolArray, FloatArray, IntArray
 from ..curve import Mesh
-from ..messages import EDGE, Message
-from ..obstacle import Obstacle
-from ..types import BoolArray, FloatArray, IntArray
+from ..curve.obstacle import Obstacle
 from .boxes import BoxTree, Level, contact_window, still_triangles
 from .exact import first_contact
 from .exact_triangle import first_contact_with_triangle
@@ -139,10 +139,18 @@ class _Search:
         No pair is lost between the two searches: boxes above it never meet later than its own (`contact_window`), so
         where these meet soon no box above is dropped by the first, and the second leaves out only what that one found.
         """
-        yield self._folds()
+        # vertices, as edges of no length, against the edges that they would lie on
+        vertices = folds(self.mesh)
+        yield _Candidates(vertices, self.mesh.outgoing[vertices[[0, 2]]], np.zeros(vertices.shape[1]))
         start, end = self.start[:, : self.mesh.size], self.end[:, : self.mesh.size]
         tree = BoxTree.build(self.mesh, start, end)
-        soon = _soon(self.mesh, start, end)
+        # in this time vertices move by about an edge length: contacts until then limit the search for others
+        speed = end - start
+        speed -= speed.mean(axis=1, keepdims=True)
+        fastest = float(np.sqrt(np.einsum("mn,mn->n", speed, speed).max()))
+        edges = start[:, self.mesh.heads] - start[:, self.mesh.tails]
+        length = float(np.sqrt(np.einsum("mn,mn->n", edges, edges)).mean())
+        soon = 1.0 if 2 * length >= fastest else length / fastest
         for after, until in ((-1.0, soon), (soon, 1.0)) if soon < 1 else ((-1.0, 1.0),):
             yield from self._windows(tree, tree, 0, after, until)
             if self.still is not None:
@@ -162,11 +170,6 @@ class _Search:
                 enter, _ = contact_window(tree.levels[-1].gaps(a, other.levels[-1], b))
                 vertices = np.concatenate([tree.corners[:, a], first + other.corners[:, b]])
                 yield _Candidates(vertices, np.stack([tree.order[a], other.order[b]]), _EARLY_START * enter)
-
-    def _folds(self) -> _Candidates:
-        """Vertices, as edges of no length, against the edges that they would lie on."""
-        vertices = folds(self.mesh)
-        return _Candidates(vertices, self.mesh.outgoing[vertices[[0, 2]]], np.zeros(vertices.shape[1]))
 
     def take(self, candidates: _Candidates) -> None:
         """March pairs and lower the limit to the earliest time that cannot be passed."""
@@ -196,13 +199,3 @@ class _Search:
             return np.inf
         self.contact = min(self.contact, contact)
         return max(reached, float(np.nextafter(contact, 0.0)))
-
-
-def _soon(mesh: Mesh, start: FloatArray, end: FloatArray) -> float:
-    """A time in which vertices move by about an edge length: contacts until then limit the search for others."""
-    speed = end - start
-    speed -= speed.mean(axis=1, keepdims=True)
-    fastest = float(np.sqrt(np.einsum("mn,mn->n", speed, speed).max()))
-    edges = start[:, mesh.heads] - start[:, mesh.tails]
-    length = float(np.sqrt(np.einsum("mn,mn->n", edges, edges)).mean())
-    return 1.0 if 2 * length >= fastest else length / fastest

@@ -7,7 +7,7 @@ if all are positive at two times, a plane orthogonal to n separates the two at e
 
 import numpy as np
 
-from ..types import BoolArray, FloatArray, IntArray
+from ..base.types import BoolArray, FloatArray, IntArray
 
 # Bound of the rounding errors in units of Σ|n_k||d_k|. Differences of coordinates are relatively exact, one unit
 # roundoff u; a dot product of m ≤ 3 terms adds m, the combination of D, e and f or g two, the interpolation in time

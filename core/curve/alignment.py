@@ -12,17 +12,11 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 from scipy.spatial.transform import Rotation
 
-from ..types import BoolArray, FloatArray, IntArray
+from ..base.types import BoolArray, FloatArray, IntArray
 from .curve import Curve
-from .smooth import evenly
+from .refine import evenly
 
 SAMPLES = 256  # of a component: half a spacing is some 0.01 radii of gyration
-STARTS, AROUND = 400, 64  # rotations to climb from, about any axis and about a single one
-TURNS = 12  # at most, in a climb
-AS_GIVEN = 0.03  # radii of gyration by which one may lie worse that keeps directions and order of components,
-STILL = 0.01  # or needs no rotation, where π is the largest
-NEVER = -1e300  # score of anything that is not allowed
-DISTINCT = 0.3  # difference of rotation matrices beyond which both are examined
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,8 +39,8 @@ class Freedom:
     def starts(self) -> FloatArray:
         """Rotations all over, the identity first; shape (k, 3, 3)."""
         if self.axis is not None:
-            return _about(self.axis, np.linspace(0.0, 2.0 * np.pi, AROUND, endpoint=False))
-        turns = np.random.default_rng(1).normal(size=(STARTS, 4))
+            return _about(self.axis, np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False))
+        turns = np.random.default_rng(1).normal(size=(400, 4))
         return np.asarray(Rotation.from_quat(np.concatenate([[[0, 0, 0, 1]], turns])).as_matrix())
 
 
@@ -80,7 +74,8 @@ class Alignment:
     @property
     def cost(self) -> float:
         """The quantity to minimise: the distance, and a bit for changes of order or direction and for rotations."""
-        return self.distance + AS_GIVEN * (not self.as_given) + STILL * self.angle / np.pi
+        # in radii of gyration, by which one may lie worse that keeps directions and order, or needs no rotation
+        return self.distance + 0.03 * (not self.as_given) + 0.01 * self.angle / np.pi
 
     @property
     def angle(self) -> float:
@@ -103,7 +98,7 @@ def alignments(curve: Curve, other: Curve, freedom: Freedom) -> list[Alignment]:
     x, y = scale * (x - source) / radii[1], (y - target) / radii[1]
     pairs = _Pairs(x, y, np.array(curve.mesh.closed), np.array(other.mesh.closed))
     rotations = freedom.starts()
-    for _ in range(TURNS):
+    for _ in range(12):
         covariances, orders, backwards, begins = pairs.best(rotations)
         before, rotations = rotations, freedom.best(covariances)
         if np.allclose(rotations, before):
@@ -117,7 +112,7 @@ def alignments(curve: Curve, other: Curve, freedom: Freedom) -> list[Alignment]:
     ]
     distinct: list[Alignment] = []
     for each in sorted(found, key=lambda each: each.cost):
-        if all(np.linalg.norm(each.rotation - one.rotation) > DISTINCT for one in distinct):
+        if all(np.linalg.norm(each.rotation - one.rotation) > 0.3 for one in distinct):
             distinct.append(each)
     return distinct
 
@@ -142,7 +137,7 @@ class _Pairs:
         count, flat = len(self._all), rotations.reshape(-1, 9)
         scores, where = np.empty((count, count, len(flat))), np.empty((count, count, len(flat)), dtype=np.intp)
         for c, e in np.ndindex(count, count):
-            values = np.where(self._allowed[c, e, :, None], self._all[c, e] @ flat.T, NEVER)
+            values = np.where(self._allowed[c, e, :, None], self._all[c, e] @ flat.T, -1e300)
             scores[c, e], where[c, e] = values.max(axis=0), values.argmax(axis=0)
         orders = np.array([linear_sum_assignment(-scores[:, :, k])[1] for k in range(len(flat))])
         rows = np.arange(count)

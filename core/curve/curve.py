@@ -8,9 +8,9 @@ from typing import cast
 import numpy as np
 import numpy.typing as npt
 
-from ..arguments import is_list
-from ..errors import CurveError, Place, counted
-from ..types import FloatArray, frozen, real
+from ..base.arguments import is_list
+from ..base.errors import CurveError, Place, counted
+from ..base.types import FloatArray, frozen, real
 from .mesh import Mesh
 
 MAKERS: list[Callable[[object], "Curve | None"]] = []

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..types import BoolArray, FloatArray, IntArray
+from ..base.types import BoolArray, FloatArray, IntArray
 from .curve import Curve
 
 STRAND_RATIO = 2.0  # points are on different strands if their distance along the curve is this many times their gap
@@ -146,7 +146,16 @@ def _sides_of_corners(curve: Curve, i: IntArray, j: IntArray) -> BoolArray:
 
     A corner, however sharp, looks the same at every scale: shorter edges do not bring neighbours nearer than its sides.
     """
-    start, end = vertex_positions(curve)[i], _feet(curve, i, j)
+    # arc lengths to the points nearest to vertices i on the edges that meet at vertices j
+    mesh, found, position = curve.mesh, [], vertex_positions(curve)[j]
+    for edge in (mesh.outgoing[j], mesh.incoming[j]):
+        e, ell = curve.edge_vectors[edge], curve.edge_lengths[edge]
+        base = position - np.where(mesh.tails[edge] == j, 0.0, ell)
+        chord = curve.vertices[i] - curve.vertices[mesh.tails[edge]]
+        t = (np.einsum("km,km->k", chord, e) / np.maximum(ell**2, TINY)).clip(0.0, 1.0)
+        found.append((np.linalg.norm(chord - t[:, None] * e, axis=1), base + t * ell))
+    (after, ahead), (before, behind) = found
+    start, end = vertex_positions(curve)[i], np.asarray(np.where(after < before, ahead, behind))
     component = curve.mesh.component[i]
     closed, length = np.asarray(curve.mesh.closed)[component], curve.component_lengths[component]
 
@@ -159,16 +168,3 @@ def _sides_of_corners(curve: Curve, i: IntArray, j: IntArray) -> BoolArray:
     other_way = np.where(closed, forward - length, forward)
     closing = [apart(arc, 0.25) < CLOSING_IN * apart(arc, 1.0) for arc in (forward, other_way)]
     return np.asarray((component == curve.mesh.component[j]) & (closing[0] | closing[1]))
-
-
-def _feet(curve: Curve, i: IntArray, j: IntArray) -> FloatArray:
-    """Arc length to the point nearest to vertex ``i`` on the edges that meet at vertex ``j``, elementwise."""
-    mesh, found, position = curve.mesh, [], vertex_positions(curve)[j]
-    for edge in (mesh.outgoing[j], mesh.incoming[j]):
-        e, ell = curve.edge_vectors[edge], curve.edge_lengths[edge]
-        base = position - np.where(mesh.tails[edge] == j, 0.0, ell)
-        chord = curve.vertices[i] - curve.vertices[mesh.tails[edge]]
-        t = (np.einsum("km,km->k", chord, e) / np.maximum(ell**2, TINY)).clip(0.0, 1.0)
-        found.append((np.linalg.norm(chord - t[:, None] * e, axis=1), base + t * ell))
-    (after, ahead), (before, behind) = found
-    return np.where(after < before, ahead, behind)

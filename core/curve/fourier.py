@@ -6,11 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from ..types import ComplexArray, FloatArray
+from ..base.types import ComplexArray, FloatArray
 from .curve import Curve
-
-_PER_MODE, _LEAST = 10, 64  # vertices of a component for each of its modes, and in total
-_SAMPLES = 16  # of a polygon's spline for each mode
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,7 +22,11 @@ class FourierCurve:
     @classmethod
     def of(cls, curve: Curve, at: Sequence[FloatArray], modes: Sequence[int]) -> "FourierCurve":
         """The first modes of the components' splines, which pass closed polygons' vertices at parameters ``at``."""
-        return cls(tuple(map(_fitted, curve.components, at, modes)))
+        parts = []
+        for points, places, most in zip(curve.components, at, modes, strict=True):
+            count = 16 * max(most, len(points) // 2)
+            parts.append(_spectrum(periodic(places, points)(np.arange(count) / count), most))
+        return cls(tuple(parts))
 
     @property
     def modes(self) -> list[int]:
@@ -45,7 +46,7 @@ class FourierCurve:
     @property
     def sizes(self) -> list[int]:
         """Numbers of vertices, for each component, that represent it as a polygon."""
-        return [max(_LEAST, _PER_MODE * modes) for modes in self.modes]
+        return [max(64, 10 * modes) for modes in self.modes]
 
     def polygon(self, sizes: Sequence[int]) -> Curve:
         """Inscribe a polygon with so many vertices on each component, at equal steps of t."""
@@ -75,12 +76,6 @@ class FourierCurve:
     def rounded(self, quantum: float) -> "FourierCurve":
         """The same with coefficients rounded to multiples of a number."""
         return FourierCurve(tuple(quantum * np.round(c / quantum) for c in self.coefficients))
-
-
-def _fitted(points: FloatArray, at: FloatArray, modes: int) -> ComplexArray:
-    spline = periodic(at, points)
-    count = _SAMPLES * max(modes, len(points) // 2)
-    return _spectrum(spline(np.arange(count) / count), modes)
 
 
 def _spectrum(samples: FloatArray, modes: int) -> ComplexArray:

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ..errors import CurveError
-from ..types import FloatArray
+from ..base.errors import CurveError
+from ..base.types import FloatArray
 from .curve import Curve
 
 _ROWS = 64  # of edge pairs processed together
@@ -52,31 +52,24 @@ def writhe_and_crossings(curve: Curve) -> tuple[float, float]:
         raise CurveError(f"the curve has dimension {curve.dimension}; only curves in space have a writhe")
     writhe = crossings = 0.0
     for first in range(0, curve.mesh.edges, _ROWS):
-        areas = _areas(curve, first)
+        # signed areas with all later edges but neighbours: each of two triangles between the directions of chords (van
+        # Oosterom and Strackee, *IEEE Trans. Biomed. Eng.* 30, 1983), whose triple products are equal
+        mesh = curve.mesh
+        tails, heads = curve.vertices[mesh.tails], curve.vertices[mesh.heads]
+        i, j = slice(first, first + _ROWS), slice(first, None)
+        a, b, d, c = (end[None, j] - start[i, None] for start in (tails, heads) for end in (tails, heads))
+        volume = _dot(np.cross(curve.edge_vectors[None, j], curve.edge_vectors[i, None]), a)
+        size_a, size_c = (np.sqrt(_dot(x, x)) for x in (a, c))
+        area = np.zeros_like(volume)
+        for x in (b, d):
+            across = (size_a * size_c + _dot(a, c)) * np.sqrt(_dot(x, x))
+            area += 2.0 * np.arctan2(volume, across + _dot(a, x) * size_c + _dot(c, x) * size_a)
+        rows, columns = np.arange(mesh.edges)[i, None], np.arange(mesh.edges)[None, j]
+        counted = (columns > rows) & mesh.disjoint(rows, columns)
+        areas = np.asarray(np.where(counted, area, 0.0))
         writhe += float(areas.sum())
         crossings += float(np.abs(areas).sum())
     return writhe / (2.0 * np.pi), crossings / (2.0 * np.pi)
-
-
-def _areas(curve: Curve, first: int) -> FloatArray:
-    """Signed areas for a block of edges with all later ones but their neighbours; shape (rows, edges − first).
-
-    Each is that of two triangles between the directions of chords (van Oosterom and Strackee, *IEEE Trans. Biomed.
-    Eng.* 30, 1983), whose triple products are equal.
-    """
-    mesh = curve.mesh
-    tails, heads = curve.vertices[mesh.tails], curve.vertices[mesh.heads]
-    i, j = slice(first, first + _ROWS), slice(first, None)
-    a, b, d, c = (end[None, j] - start[i, None] for start in (tails, heads) for end in (tails, heads))
-    volume = _dot(np.cross(curve.edge_vectors[None, j], curve.edge_vectors[i, None]), a)
-    size_a, size_c = (np.sqrt(_dot(x, x)) for x in (a, c))
-    area = np.zeros_like(volume)
-    for x in (b, d):
-        across = (size_a * size_c + _dot(a, c)) * np.sqrt(_dot(x, x))
-        area += 2.0 * np.arctan2(volume, across + _dot(a, x) * size_c + _dot(c, x) * size_a)
-    rows, columns = np.arange(mesh.edges)[i, None], np.arange(mesh.edges)[None, j]
-    counted = (columns > rows) & mesh.disjoint(rows, columns)
-    return np.asarray(np.where(counted, area, 0.0))
 
 
 def _dot(a: FloatArray, b: FloatArray) -> FloatArray:

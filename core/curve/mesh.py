@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
-from ..arguments import is_list
-from ..errors import CurveError, shown
-from ..types import BoolArray, FloatArray, IntArray, frozen
+from ..base.arguments import is_list
+from ..base.errors import CurveError, shown
+from ..base.types import BoolArray, FloatArray, IntArray, frozen
 
 _KINDS = {True: (3, "a closed polygon"), False: (2, "an open polygon")}  # by whether closed: least number of vertices
 

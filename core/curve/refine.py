@@ -1,32 +1,43 @@
-"""Refinement: new vertices on the edges, so that neighbours are nearer to each other than to other strands.
+"""New vertices for polygons: refined, adaptive and smoothed meshes, and markers that follow their changes.
 
-Section 6.1.3 of [RS21]: "the distance between two neighboring vertices of a polygon should be strictly
-smaller than the distance between any other pairs of vertices".  The polygon as a set of points does not
-change; equal edge lengths are left to the flow.
+Refinement puts vertices on the edges, so that neighbours are nearer to each other than to other strands: "the distance
+between two neighboring vertices of a polygon should be strictly smaller than the distance between any other pairs of
+vertices" (Section 6.1.3 of [RS21]).  The polygon as a set of points does not change; equal edge lengths are left to the
+flow.  Adaptive meshes split and collapse edges to that end.  A collapse first moves a vertex onto the chord of its
+neighbours, a motion to be proved free of contact like any other, and then removes it.
+
+Blender's keys need the same points throughout.  On each mesh every vertex is a marker, and the others have places on
+edges: so all move straight where vertices do.  Where a vertex is removed, its marker stays on the edge; where one is
+inserted, a marker of that edge becomes it, and only if none is left do all earlier shapes get one more.
 """
 
 import heapq
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
+from scipy.interpolate import CubicSpline
 
-from ..arguments import checked
-from ..errors import CurveOptionError
-from ..types import FloatArray, IntArray
+from ..base.arguments import checked
+from ..base.errors import CurveOptionError
+from ..base.types import FloatArray, IntArray
 from .curve import Curve
 from .distances import strand_gaps
 from .mesh import Mesh
-from .smooth import arc_lengths, at_shares
+from .pins import NO_PINS, NOWHERE, Pins, arcs, holds
 
 DEFAULT_VERTICES = 200  # per component: enough for energies to a tenth of a per cent
 # to begin with: where gaps ask for more, the barrier's exact energies do, and hard unknots become circles in a sixth of
 # the time; strands that are as near in the end get more then
 MAX_PER_COMPONENT = 1000  # unless the curve has half as many
-MAX_ALTOGETHER = 5000  # unless the curve has more already
 COMPONENTS = 10  # that get so many each; more of them share what ten would have
-SAMPLES_PER_SPACING = 4.0  # sample points per default edge length when gaps are measured
-TOGETHER = 0.3  # mean edges that vertices of the two curves may be apart and still become one
+SPLIT = 1.5  # edges longer than this many times the spacing wanted are split
+COLLAPSE = 0.5  # two edges are joined if each is shorter than this many times the spacing
+GRADING = 1.3  # ratio of the spacings wanted on neighbouring edges, at most
+EDGES_PER_CLEARANCE = 2.0  # of obstacles: a curve bends as tightly as it is near to them
+MIN_VERTICES = 16  # edges that a component, or an arc between pins, keeps if it had as many
+SAMPLES = 8  # points of a spline, for each vertex of its polygon, at which its arc length is measured
 
 
 @dataclass(frozen=True)
@@ -53,7 +64,8 @@ def refine(curve: Curve, vertices: int | None = None) -> Curve:
         edges = vertices - len(curve.mesh.ends)
         return subdivide(curve, apportion(curve.edge_lengths / spacing, edges))
     components = len(curve.mesh.component_sizes)
-    most = min(max(2 * len(curve), MAX_PER_COMPONENT * min(COMPONENTS, components)), MAX_ALTOGETHER)
+    # 5,000 altogether, unless the curve has more already
+    most = min(max(2 * len(curve), MAX_PER_COMPONENT * min(COMPONENTS, components)), 5000)
     return subdivide(curve, affordable_pieces(curve, spacing, most))
 
 
@@ -77,7 +89,7 @@ def target_spacing(curve: Curve, resolution: Resolution) -> FloatArray:
     """
     sharers = min(COMPONENTS, len(curve.mesh.component_sizes))
     base = curve.length / (resolution.vertices or DEFAULT_VERTICES * sharers)
-    pieces = np.ceil(SAMPLES_PER_SPACING * curve.edge_lengths / base).astype(np.intp)
+    pieces = np.ceil(4.0 * curve.edge_lengths / base).astype(np.intp)  # four samples on each edge as long as that
     samples = subdivide(curve, pieces)
     spacing = np.full(curve.mesh.edges, base)
     longest = min(base, float(curve.edge_lengths.max()))
@@ -117,31 +129,301 @@ def refined_alike(x: Curve, y: Curve, begins: tuple[float, ...]) -> tuple[Curve,
 
     ``begins``: the share of the length of each component of ``y`` at which the first vertex of ``x`` lies.
     """
-    parts = [_alike(x, y, k, begin) for k, begin in enumerate(begins)]
-    mesh = Mesh(tuple(len(points) for points, _ in parts), x.mesh.closed)
-    return Curve(np.concatenate([p for p, _ in parts]), mesh), Curve(np.concatenate([q for _, q in parts]), mesh)
+    parts: tuple[list[FloatArray], list[FloatArray]] = [], []
+    for component, (begin, closed) in enumerate(zip(begins, x.mesh.closed, strict=True)):
+        shares = [arc_lengths(each.components[component]) / each.component_lengths[component] for each in (x, y)]
+        near = 0.3 / max(map(len, shares))  # mean edges that vertices of the two may be apart and still become one
+        if closed:
+            shares[0] = (shares[0] + begin + near) % 1.0 - near  # so that the first of all has a partner to merge with
+        events = sorted((share, which, k) for which in (0, 1) for k, share in enumerate(shares[which].tolist()))
+        nodes: list[dict[int, int]] = []  # the vertex of each curve, if any, at each node
+        places: list[float] = []
+        for share, which, k in events:
+            if nodes and which not in nodes[-1] and len(nodes[-1]) == 1 and share - places[-1] < near:
+                nodes[-1][which] = k
+            else:
+                nodes.append({which: k})
+                places.append(share)
+        for which, (curve, first) in enumerate(((x, begin), (y, 0.0))):
+            part, own = curve.components[component], np.array(places)
+            points = at_shares(part, closed, (own - first) % 1.0 if closed else own)
+            has = [node for node, vertices in enumerate(nodes) if which in vertices]
+            points[has] = part[[nodes[node][which] for node in has]]
+            parts[which].append(points)
+    mesh = Mesh(tuple(map(len, parts[0])), x.mesh.closed)
+    return Curve(np.concatenate(parts[0]), mesh), Curve(np.concatenate(parts[1]), mesh)
 
 
-def _alike(x: Curve, y: Curve, component: int, begin: float) -> tuple[FloatArray, FloatArray]:
-    closed = x.mesh.closed[component]
-    shares = [arc_lengths(each.components[component]) / each.component_lengths[component] for each in (x, y)]
-    near = TOGETHER / max(map(len, shares))
+def graded_spacing(curve: Curve, resolution: Resolution) -> FloatArray:
+    """Edge length wanted on every edge, varying by a bounded ratio from edge to edge; shape (edges,)."""
+    spacing = np.minimum(target_spacing(curve, resolution), resolution.clearance(curve) / EDGES_PER_CLEARANCE)
+    for part, closed in zip(curve.mesh.edge_slices, curve.mesh.closed, strict=True):
+        # one sweep each way, twice round where the component is closed, spreads every minimum as far as it reaches
+        for direction in (1, -1):
+            local = np.tile(spacing[part][::direction], 2 if closed else 1)
+            steps = np.log(GRADING) * np.arange(len(local))
+            local = np.exp(np.minimum.accumulate(np.log(local) - steps) + steps)
+            spacing[part] = local[part.start - part.stop :][::direction]
+    return spacing
+
+
+def superfluous(curve: Curve, spacing: FloatArray, kept: IntArray = NOWHERE) -> IntArray:
+    """Vertices that may be removed, no two of them neighbours or next but one, and no ends or vertices to be kept."""
+    mesh, before, after = curve.mesh, curve.mesh.incoming, curve.mesh.outgoing
+    joined = curve.edge_lengths < COLLAPSE * spacing
+    short = joined[before] & joined[after] & (before != after) & ~holds(mesh, kept)
+    arc_of, room = np.empty(mesh.edges, dtype=np.intp), []
+    for number, arc in enumerate(arcs(mesh, kept)):
+        arc_of[arc] = number
+        room.append(len(arc) - min(len(arc), MIN_VERTICES))
+    chosen: list[int] = []
+    for part in mesh.slices:
+        size, last, first = part.stop - part.start, -3, None
+        for k in np.flatnonzero(short[part]):
+            wraps = first is not None and first + size - k < 3
+            arc = arc_of[after[part.start + k]]
+            if room[arc] > 0 and k - last >= 3 and not wraps:
+                chosen.append(part.start + int(k))
+                first = int(k) if first is None else first
+                last = int(k)
+                room[arc] -= 1
+    return np.array(chosen, dtype=np.intp)
+
+
+def onto_chords(curve: Curve, vertices: IntArray) -> FloatArray:
+    """All vertices after the given ones have moved onto the chords of their neighbours; shape (n, m)."""
+    mesh = curve.mesh
+    moved = curve.vertices.copy()
+    before = curve.vertices[mesh.tails[mesh.incoming[vertices]]]
+    after = curve.vertices[mesh.heads[mesh.outgoing[vertices]]]
+    chord = after - before
+    along = np.einsum("ij,ij->i", curve.vertices[vertices] - before, chord) / np.einsum("ij,ij->i", chord, chord)
+    moved[vertices] = before + np.clip(along, 0.2, 0.8)[:, None] * chord
+    return moved
+
+
+@dataclass(frozen=True, eq=False)
+class Remeshed:
+    """A change of mesh."""
+
+    moved: Curve  # the old polygon after its superfluous vertices have moved onto their chords
+    curve: Curve  # the new one: the same set of points, up to rounding
+    lengths: FloatArray  # wanted on the new mesh; they add up to the total of each arc between pins; shape (edges',)
+    pins: Pins  # the old ones on the new mesh
+
+
+def remesh(
+    curve: Curve, resolution: Resolution, removable: IntArray, spacing: FloatArray, pins: Pins = NO_PINS
+) -> Remeshed:
+    """Remove the given vertices after moving them onto their chords, and split edges that are too long."""
+    moved = curve.with_vertices(onto_chords(curve, removable))
+    keep = np.ones(len(curve), dtype=bool)
+    keep[removable] = False
+    sizes = tuple(int(np.count_nonzero(keep[part])) for part in curve.mesh.slices)
+    coarse = Curve(moved.vertices[keep], Mesh(sizes, curve.mesh.closed))
+    wanted = spacing[keep[curve.mesh.tails]]
+    pieces = np.where(coarse.edge_lengths > SPLIT * wanted, np.ceil(coarse.edge_lengths / wanted), 1.0)
+    fine = subdivide(coarse, pieces.astype(np.intp))
+    held = pins.on(fine)
+    return Remeshed(moved, fine, normalised(fine, graded_spacing(fine, resolution), held.vertices), held)
+
+
+def needs_remesh(curve: Curve, spacing: FloatArray, kept: IntArray = NOWHERE) -> bool:
+    """Whether an edge is too long for its neighbourhood, or a tenth of the vertices are superfluous."""
+    too_long = bool((curve.edge_lengths > SPLIT * spacing).any())
+    return too_long or len(superfluous(curve, spacing, kept)) > 0.1 * len(curve)
+
+
+def normalised(curve: Curve, spacing: FloatArray, pins: IntArray) -> FloatArray:
+    """Edge lengths as the spacing, scaled with the length of every arc between pins, or component, kept; shape (n,)."""
+    lengths = spacing.copy()
+    for arc in arcs(curve.mesh, pins):
+        lengths[arc] *= curve.edge_lengths[arc].sum() / spacing[arc].sum()
+    return lengths
+
+
+def smoothed(curve: Curve, mesh: Mesh, pins: IntArray = NOWHERE, places: IntArray = NOWHERE) -> Curve:
+    """The polygon with vertices at equal distances along the cubic splines through the vertices of each component.
+
+    ``mesh`` has its numbers of vertices.  Some vertices of the curve, ``pins``, ascending, become those at ``places``;
+    distances are equal between consecutive ones.  A closed component without any keeps the place of its first vertex,
+    arcs the places of their ends.
+    """
+    pieces = []
+    for old, new, closed in zip(curve.mesh.slices, mesh.slices, mesh.closed, strict=True):
+        own = (pins >= old.start) & (pins < old.stop)
+        ends = [] if closed else [[0, 0], [old.stop - old.start - 1, new.stop - new.start - 1]]
+        held = np.stack([pins[own] - old.start, places[own] - new.start], axis=1).tolist()
+        anchors, numbers = np.unique([*ends, *held] or [[0, 0]], axis=0).T
+        spline, size = cubic_spline(curve.vertices[old], closed), new.stop - new.start
+        parameter = sample_parameters(spline)
+        arc = arc_lengths(spline(parameter))
+        at, every = arc[SAMPLES * anchors], numbers[0] + np.arange(size)
+        if closed:
+            at, numbers = np.append(at, at[0] + arc[-1]), np.append(numbers, numbers[0] + size)
+        wanted = np.empty(size)
+        wanted[every % size] = np.interp(every, numbers, at)
+        wanted[wanted > arc[-1]] -= arc[-1]
+        pieces.append(spline(np.interp(wanted, arc, parameter)))
+    return Curve(np.concatenate(pieces), mesh)
+
+
+def halved(curve: Curve) -> Curve:
+    """Closed polygons with an additional vertex for each edge, on the splines through their vertices."""
+    splines = [cubic_spline(points) for points in curve.components]
+    places = [np.interp(np.arange(0.0, len(each.x) - 1.0, 0.5), np.arange(len(each.x)), each.x) for each in splines]
+    return Curve.from_components([spline(at) for spline, at in zip(splines, places, strict=True)])
+
+
+def cubic_spline(points: FloatArray, closed: bool = True) -> CubicSpline:
+    """The cubic spline through the vertices of a polygon, shape (n, m), by its arc length; a natural one if open."""
+    points = np.concatenate([points, points[:1]]) if closed else points
+    return CubicSpline(arc_lengths(points), points, bc_type="periodic" if closed else "natural")
+
+
+def sample_parameters(spline: CubicSpline) -> FloatArray:
+    """Parameters from the first to the last, so many in each piece that chords between them are as good as arcs."""
+    pieces = len(spline.x) - 1
+    places = np.linspace(0.0, pieces, SAMPLES * pieces + 1)
+    return np.asarray(np.interp(places, np.arange(pieces + 1), spline.x))
+
+
+def arc_lengths(points: FloatArray) -> FloatArray:
+    """Distances along a polyline from its first point; shape (n,)."""
+    return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+
+
+def at_shares(points: FloatArray, closed: bool, shares: FloatArray) -> FloatArray:
+    """Points of a polygon at shares of its length; shape (k, m)."""
+    points = np.concatenate([points, points[:1]]) if closed else points
+    along = arc_lengths(points)
+    return np.stack([np.interp(shares * along[-1], along, x) for x in points.T], axis=1)
+
+
+def evenly(points: FloatArray, closed: bool, count: int) -> FloatArray:
+    """A number of points of a polygon at equal distances along it, the first one included; shape (count, m)."""
+    return at_shares(points, closed, np.linspace(0.0, 1.0, count, endpoint=not closed))
+
+
+def closed_far_away(curve: Curve) -> Curve:
+    """Join the ends of open components: they go straight away from the centre of the vertices, then around it far out.
+
+    Closed components stay.  The knot type is the closed curve's; for arcs whose ends are deep inside, it depends on
+    where they leave, as with every closure.
+    """
+    center = curve.vertices.mean(axis=0)
+    radius = float(np.linalg.norm(curve.vertices - center, axis=1).max())
+    parts = []
+    for k, (part, closed) in enumerate(zip(curve.components, curve.mesh.closed, strict=True)):
+        if closed:
+            parts.append(part)
+            continue
+        first, last = ((p - center) / (np.linalg.norm(p - center) or 1.0) for p in (part[0], part[-1]))
+        across = first - (first @ last) * last
+        if np.linalg.norm(across) < 1e-6:  # any way round will do
+            across = np.eye(curve.dimension)[np.abs(last).argmin()]
+            across -= (across @ last) * last
+        across /= np.linalg.norm(across)
+        angle = np.arctan2(first @ across, first @ last) % (2 * np.pi)
+        # edges that turn by π/8 do not come near the curve; each component goes further out, so that none meet there
+        turns = np.linspace(0.0, angle, max(int(np.ceil(8.0 * angle / np.pi)), 1) + 1)[:, None]
+        way = np.cos(turns) * last + np.sin(turns) * across
+        parts.append(np.concatenate([part, center + (4.0 + k) * radius * way]))
+    return Curve(np.concatenate(parts), Mesh(tuple(map(len, parts))))
+
+
+def along(values: npt.NDArray[np.float32], size: int, closed: bool) -> FloatArray:
+    """Values of a spline's control points, (k,), at the points drawn for it, which are spread evenly between them."""
     if closed:
-        shares[0] = (shares[0] + begin + near) % 1.0 - near  # so that the first of all has a partner to merge with
-    events = sorted((share, which, k) for which in (0, 1) for k, share in enumerate(shares[which].tolist()))
-    nodes: list[dict[int, int]] = []  # the vertex of each curve, if any, at each node
-    places: list[float] = []
-    for share, which, k in events:
-        if nodes and which not in nodes[-1] and len(nodes[-1]) == 1 and share - places[-1] < near:
-            nodes[-1][which] = k
-        else:
-            nodes.append({which: k})
-            places.append(share)
-    found = []
-    for which, (curve, first) in enumerate(((x, begin), (y, 0.0))):
-        part, own = curve.components[component], np.array(places)
-        points = at_shares(part, closed, (own - first) % 1.0 if closed else own)
-        has = [node for node, vertices in enumerate(nodes) if which in vertices]
-        points[has] = part[[nodes[node][which] for node in has]]
-        found.append(points)
-    return found[0], found[1]
+        return np.interp(np.arange(size) * len(values) / size, np.arange(len(values)), values, period=len(values))
+    return np.interp(np.linspace(0.0, len(values) - 1, size), np.arange(len(values)), values)
+
+
+def on_refined(values: FloatArray, lengths: FloatArray, refined: FloatArray, closed: bool) -> FloatArray:
+    """Values at the vertices of a refined polygon, linear along the edges of the original.
+
+    ``values``: at the original vertices, (n,); ``lengths``, ``refined``: edge lengths of both polygons, which run
+    through the same points from the same vertex.
+    """
+    old, new = (np.concatenate([[0.0], np.cumsum(each)]) / each.sum() for each in (lengths, refined))
+    # a vertex met a rounding error too early gets its neighbour's value with a weight of 1e-15: none in 32 bits
+    return np.asarray(np.interp(new[:-1], old[:-1], values, period=1.0) if closed else np.interp(new, old, values))
+
+
+def interpolated(values: FloatArray, places: FloatArray) -> FloatArray:
+    """Values at places among keys, 2.5 halfway between the third and the fourth; (keys, ...) to (places, ...)."""
+    before = np.minimum(places.astype(np.intp), max(len(values) - 2, 0))
+    after = np.minimum(before + 1, len(values) - 1)
+    share = (places - before).reshape(-1, *[1] * (values.ndim - 1))
+    # values that are hit stay bit for bit, and negative zeros are some
+    return np.where(share > 0, (1 - share) * values[before] + share * values[after], values[before])
+
+
+class Markers:
+    """The markers of one component.
+
+    A place is the number of a vertex and, after the point, a part of the edge to the next one. Places ascend; round a
+    closed polygon the first one comes again in the end, a turn later. The first one is the first vertex at the start.
+    """
+
+    def __init__(self, size: int, closed: bool) -> None:
+        self.closed, self._size = closed, size
+        # places on each mesh of the markers that there were then,
+        self._places: list[FloatArray] = [np.arange(size + closed, dtype=float)]
+        # where markers were added, the number of the mesh, and the places of all markers among the earlier ones
+        self._more: list[tuple[int, FloatArray]] = []
+
+    def __len__(self) -> int:
+        return len(self._places[-1]) - self.closed
+
+    def change(self, here: Sequence[int], there: Sequence[int], size: int) -> None:
+        """Go on to a mesh of so many vertices, of which some, ``there``, are vertices ``here`` of the last one."""
+        places, old = self._places[-1], np.array(here)
+        turn = len(places) - 1
+        index = np.searchsorted(places, old + self._size * (old < places[0]))
+        first = int(index.argmin())
+        index, new = np.roll(index, -first), np.roll(there, -first)
+        new = new + size * (new < new[0])
+        if self.closed:
+            index, new = np.append(index, index[0] + turn), np.append(new, new[0] + size)
+        parts, wanted = np.diff(index), np.diff(new)
+        pieces = np.maximum(parts, wanted)
+        before = np.append(np.repeat(index[:-1], pieces) + _cut(parts, pieces), index[-1])
+        after = np.append(np.repeat(new[:-1], pieces) + _cut(wanted, pieces), new[-1])
+        if self.closed:  # begin with the first marker again
+            cut = np.searchsorted(before, turn)
+            before = np.concatenate([before[cut:-1] - turn, before[: cut + 1]])
+            after = np.concatenate([after[cut:-1] - size, after[: cut + 1]])
+            after -= size * np.floor(after[0] / size)
+        if len(before) > len(places):
+            self._more.append((len(self._places), before))
+        self._places.append(after)
+        self._size = size
+
+    def back(self, stage: int, size: int) -> None:
+        """Go back to one of the meshes, of so many vertices, as if there had been none after it."""
+        del self._places[stage + 1 :]
+        self._more = [(number, before) for number, before in self._more if number <= stage]
+        self._size = size
+
+    def on(self, vertices: FloatArray, stage: int) -> FloatArray:
+        """All markers on a polygon with one of the meshes, (n, m) to (markers, m)."""
+        stage %= len(self._places)  # the last is −1 too
+        at = np.arange(len(self), dtype=float)
+        for number, before in reversed(self._more):
+            if number > stage:
+                at = np.interp(at, np.arange(len(before)), before)
+        places = np.interp(at, np.arange(len(self._places[stage])), self._places[stage])
+        return interpolated(np.concatenate([vertices, vertices[:1]]), places % len(vertices))
+
+
+def _cut(parts: IntArray, pieces: IntArray) -> FloatArray:
+    """Cut each stretch of so many parts into as many pieces or more, about evenly: at which parts these begin.
+
+    Where a part begins a piece does; shape (all pieces,).
+    """
+    p, q = np.repeat(pieces, pieces), np.repeat(parts, pieces)
+    k = np.arange(len(p)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    part = ((k + 1) * q - 1) // p
+    low, high = part * p // q, (part + 1) * p // q
+    return np.asarray(part + (k - low) / (high - low))

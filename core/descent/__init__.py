@@ -2,4 +2,4 @@
 
 from .methods import METHODS, Method
 from .problem import Point, Problem
-from .step import Leg, NoStep, State, Step
+from .step import Leg, NoStep, SearchState, Step

@@ -4,14 +4,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arguments import checked_fields, number
-from ..constraints import ConstraintDerivative
+from ..base.arguments import checked_fields, number
+from ..base.errors import OptionError
+from ..base.types import FloatArray
 from ..curve import Curve
 from ..curve.pins import free_edges
-from ..errors import OptionError
-from ..metrics import InnerProduct
-from ..saddle import TangentSpace
-from ..types import FloatArray
+from ..solve.constraints import ConstraintDerivative
+from ..solve.metrics import InnerProduct
+from ..solve.saddle import TangentSpace
 from .problem import Point, Problem
 
 
@@ -61,7 +61,9 @@ class Constrained:
                 return None
             last = error
             correction = space.restoration(base.problem.constraints, point.curve, residual)
-            if correction is None or _relative_change(point.curve, correction) > self.small:
+            if correction is not None:  # by how much it turns or stretches edges
+                change = np.linalg.norm(point.curve.mesh.changes(correction), axis=1)
+            if correction is None or np.max(change / point.curve.edge_lengths) > self.small:
                 correction = -space.pseudo_inverse(residual)
             vertices = vertices + correction
         return None
@@ -71,12 +73,6 @@ class Constrained:
 
     def weighted(self, penalty: float) -> "Constrained":
         raise OptionError(f"penalty is {penalty}; the method keeps lengths and has no penalty")
-
-
-def _relative_change(curve: Curve, u: FloatArray) -> float:
-    """max |ΔU_I|/ℓ_I, by how much displacements u turn or stretch an edge."""
-    change = curve.mesh.changes(u)
-    return float(np.max(np.linalg.norm(change, axis=1) / curve.edge_lengths))
 
 
 @checked_fields

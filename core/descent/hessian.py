@@ -15,22 +15,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..deadline import check_time
+from ..base.deadline import check_time
+from ..base.types import FloatArray
 from ..energies.moebius import OwnBlocks
-from ..saddle import TangentSpace
-from ..types import FloatArray
+from ..solve.saddle import TangentSpace
 from .problem import Point
 
 LinearMap = Callable[[FloatArray], FloatArray]
 ASSEMBLED_SIZE = 3000  # unknowns up to which one assembled matrix beats products that go through all pairs
 BULK = 0.1  # against J_C: flat and soft directions of knots are below, all others above
-ROUNDING = 1e-10  # relative to the largest Ritz value: residuals so short are rounding errors
-DEPENDENT = 1e-10  # of squared lengths: vectors that add so little to the others are left out
 
 
 def energy_hessian(point: Point) -> LinearMap:
     objective, curve = point.problem.objective, point.curve
-    if curve.vertices.size > ASSEMBLED_SIZE:
+    if curve.vertices.size > ASSEMBLED_SIZE or not objective.is_assembled:
         return lambda v: objective.hessian_product(curve, v)
     matrix = objective.hessian(curve)
     return lambda v: np.asarray((matrix @ v.ravel()).reshape(v.shape))
@@ -102,11 +100,6 @@ def projected_conjugate_gradient(
     return w
 
 
-def newton_direction(point: Point, hessian: LinearMap, tolerance: float, max_iterations: int = 200) -> FloatArray:
-    """Tangent w with (D²L w + DE) orthogonal to the tangent space, by projected conjugate gradients."""
-    return projected_conjugate_gradient(hessian, -point.derivative, point.tangent_space, tolerance, max_iterations)
-
-
 @dataclass(frozen=True, eq=False)
 class SoftModes:
     """All Ritz pairs of J⁻¹(D²E − Σ λ_I D²Φ_I) on ker DΦ after a search, ascending; the lowest are good."""
@@ -133,11 +126,12 @@ def soft_modes(
     basis.extend(starts[:most].reshape(-1, point.vertices.size))
     while True:
         values, turns = basis.ritz()
-        wanted = max(1, np.count_nonzero(values < below))
+        wanted = max(1, int(np.count_nonzero(values < below)))
         forces = basis.forces(values, turns, max(len(starts), wanted))
         new = basis.each(lambda force: basis.space.gradient(force)[0], forces)
         residuals = np.sqrt(np.maximum(0.0, np.einsum("ij,ij->i", new, forces)))
-        far = residuals > max(tolerance, ROUNDING * np.abs(values).max(initial=0.0))
+        # residuals that are shorter than the largest Ritz value by so much are rounding errors
+        far = residuals > max(tolerance, 1e-10 * np.abs(values).max(initial=0.0))
         if len(basis) >= most or not far[:wanted].any():
             return SoftModes(values, basis.combined(turns), residuals)
         basis.extend((new[far] / residuals[far, None])[: most - len(basis)])
@@ -163,7 +157,7 @@ class _Basis:
     @property
     def dimension(self) -> int:
         (n, m), constraints = self._shape, self.space.constraints
-        return m * (n - len(constraints.pins)) - constraints.count
+        return int(m * (n - len(constraints.pins)) - constraints.count)
 
     def each(self, operator: LinearMap, rows: FloatArray) -> FloatArray:
         """An operator on arrays of shape (n, m), row by row."""
@@ -176,7 +170,8 @@ class _Basis:
             part = new @ self._duals.T
             new, duals = new - part @ self._vectors, duals - part @ self._duals
             squares, turns = np.linalg.eigh(new @ duals.T)
-            kept = squares > DEPENDENT * squares.max(initial=0.0)
+            # of squared lengths: vectors that add so little to the others are left out
+            kept = squares > 1e-10 * squares.max(initial=0.0)
             turn = (turns[:, kept] / np.sqrt(squares[kept])).T
             new, duals = turn @ new, turn @ duals
         self._vectors, self._duals = np.vstack([self._vectors, new]), np.vstack([self._duals, duals])

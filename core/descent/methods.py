@@ -2,19 +2,20 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from types import MappingProxyType
 from typing import Protocol
 
-from ..metrics import METRICS, Metric
+from ..base.plugins import Table
+from ..solve.metrics import METRICS, Metric, MoebiusMetric
 from .directions import ConjugateGradient, LimitedMemoryBFGS, SteepestDescent
 from .geometries import Constrained, Penalised
+from .line_searches import Accelerated, Armijo, FirstTrial, LineSearch, WeakWolfe
 from .problem import Geometry, Point
-from .searches import Accelerated, Armijo, BackwardEuler, LineSearch, TrustRegion, WeakWolfe
-from .step import NoStep, State, Step
+from .second_order import BackwardEuler, TrustRegion
+from .step import NoStep, SearchState, Step
 
 _CONSTRAINED = Constrained()
 _GRADIENTS = "projected fractional Sobolev gradients"
-METRIC_STEPS = 3  # of quasi-Newton methods: with more, more steps take back what is saved; conjugacy bears no change
+METRIC_STEPS = 3  # of L-BFGS: with more, more steps take back what is saved; conjugacy bears no change
 
 
 class StepRule(Protocol):
@@ -28,7 +29,7 @@ class StepRule(Protocol):
     def other_metrics(self) -> tuple[Metric, ...]:
         """Metrics that it needs besides the one that gradients are taken in."""
 
-    def step(self, point: Point, state: State) -> tuple[Step | NoStep, State]:
+    def step(self, point: Point, state: SearchState) -> tuple[Step | NoStep, SearchState]:
         """Take one step, whose legs are proved as far as they can be."""
 
 
@@ -54,47 +55,48 @@ class Method:
 
 
 def _all() -> Iterator[Method]:
-    yield from _for_use()
-    yield from _flows()
-    yield from _penalised()
-
-
-def _for_use() -> Iterator[Method]:
     armijo, steepest, metric = Armijo(), SteepestDescent(), METRICS["moebius"]
     quasi_newton = Armijo(decrease=0.25)  # full steps gain half of what their slope promises, or a little less
-    text = f"L-BFGS on the constraint manifold with {_GRADIENTS}, metric J_C"
+    text = (
+        f"L-BFGS on the constraint manifold with {_GRADIENTS}, metric J_C, made anew every third step; Armijo's rule "
+        "with ¼; Newton's steps at the end"
+    )
     yield Method("lbfgs", text, LineSearch(LimitedMemoryBFGS(), quasi_newton, METRIC_STEPS), label="Sobolev L-BFGS")
     text = f"conjugate gradients (PR+) on the constraint manifold with {_GRADIENTS}, metric J_C"
     yield Method("cg", text, LineSearch(ConjugateGradient(), armijo), label="Sobolev Conjugate Gradients")
     text = f"trust region in a subspace with Newton's direction, and {_GRADIENTS}, metric J_C"
     yield Method("trust-region", text, TrustRegion(), label="Sobolev Trust Region (Newton)")
     text = f"explicit flow along {_GRADIENTS}, metric {metric.description}"
-    label = "Sobolev Gradient Flow (the Paper's)"
-    yield Method("flow-moebius", text, LineSearch(steepest, armijo), metric, label=label)
-
-
-def _flows() -> Iterator[Method]:
-    explicit = LineSearch(SteepestDescent(), Armijo())
+    yield Method("flow-moebius", text, LineSearch(steepest, armijo), metric, label="Sobolev Gradient Flow")
+    text = (
+        "Section 6 of Sobolev Gradients for the Möbius Energy (2021) to the letter: J_C of the present curve, Armijo's "
+        "rule with ½ from 2/3 of the collision step down, (42); no barrier, equal edges, one mesh, no strand moves"
+    )
+    # bounded by collisions, and by the curve's own length where there are none; with no kernel cut off; by (42) alone
+    search = Armijo(first=FirstTrial(max_displacement=8.0, growth=1e9))
+    whole, restoring = MoebiusMetric(least_distance=1e-9), Constrained(small=1e-300)
+    label = "Gradient Flow of Reiter and Schumacher"
+    yield Method("paper", text, LineSearch(steepest, search), whole, restoring, label=label)
+    explicit = LineSearch(steepest, armijo)
     for rule, kind, word in ((explicit, "flow", "explicit"), (BackwardEuler(), "implicit", "implicit")):
         for name, metric in METRICS.items():
             if (kind, name) != ("flow", "moebius"):
                 text = f"projected gradient flow, {word}, {metric.description}"
                 label = f"{word.title()} Flow in {metric.description}"
                 yield Method(f"{kind}-{name}", text, rule, metric, label=label, comparison=True)
-
-
-def _penalised() -> Iterator[Method]:
     wolfe, geometry = WeakWolfe(), Penalised()
-    for name, text, title, rule in (
-        ("lbfgs", "L-BFGS", "L-BFGS", LineSearch(LimitedMemoryBFGS(history=30), wolfe, METRIC_STEPS)),
+    for name, text, title, steps in (
+        ("lbfgs", "L-BFGS", "L-BFGS", LineSearch(LimitedMemoryBFGS(history=30), wolfe)),
         ("cg", "conjugate gradients (PR+)", "Conjugate Gradients", LineSearch(ConjugateGradient(), wolfe)),
         ("nesterov", "Nesterov's accelerated gradient", "Nesterov's Accelerated Gradient", Accelerated(wolfe)),
     ):
         label, text = f"{title} with Length Penalty", f"{text} on the penalised energy"
-        yield Method(f"penalty-{name}", text, rule, geometry=geometry, label=label, comparison=True)
+        yield Method(f"penalty-{name}", text, steps, geometry=geometry, label=label, comparison=True)
 
 
-METHODS: Mapping[str, Method] = MappingProxyType(
-    {method.name: method for method in sorted(_all(), key=lambda each: each.comparison)}
+METHODS: Mapping[str, Method] = Table(
+    "mobius_flow.methods",
+    lambda it: isinstance(it, Method),
+    {method.name: method for method in sorted(_all(), key=lambda each: each.comparison)},
 )
-"""Every method that can be chosen, by name; those for comparison come last."""
+"""Every method that can be chosen, by name; those for comparison come last, and what packages add after them."""

@@ -8,28 +8,26 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from ..base.deadline import check_time
+from ..base.errors import OptionError
+from ..base.types import FloatArray
 from ..collision import FreeMotion, Limit, free_motion
-from ..constraints import Block, Constraints
 from ..curve import Curve, Mesh
+from ..curve.obstacle import Obstacle
 from ..curve.pins import Pins
-from ..deadline import check_time
+from ..curve.symmetry import NO_SYMMETRY, Symmetry
 from ..energies import Objective
 from ..energies.pull import Pull
-from ..errors import OptionError
-from ..metrics import InnerProduct, Metric, SparseInnerProduct
-from ..obstacle import Obstacle
-from ..saddle import TangentSpace
-from ..symmetry import NO_SYMMETRY, Symmetry
-from ..task import Units
-from ..types import FloatArray
-
-NEGLIGIBLE = 1e-8  # displacement, in the program's units, that changes no energy visibly
+from ..solve.constraints import Block, Constraints
+from ..solve.metrics import InnerProduct, Metric, SparseInnerProduct
+from ..solve.saddle import TangentSpace
+from .task import Units
 
 
-class Solver(Protocol):
+class PairSums(Protocol):
     """How sums over all pairs of edges are evaluated, and which energy and metric they belong to."""
 
-    def on(self, curve: Curve) -> "Solver":
+    def on(self, curve: Curve) -> "PairSums":
         """The solver that suits a curve; a CurveError if it has too many vertices."""
 
     def objective(self, obstacles: Iterable[Obstacle]) -> Objective:
@@ -79,7 +77,7 @@ class Problem:
     constraints: Constraints  # targets of lengths and barycenter, and pins
     units: Units
     geometry: "Geometry"  # whether the targets are prescribed, or missing them costs energy
-    solver: Solver  # where objective and metric come from, on this mesh and on others
+    solver: PairSums  # where objective and metric come from, on this mesh and on others
     obstacles: tuple[Obstacle, ...] = ()  # what no motion may touch, in the user's units
 
     @classmethod
@@ -89,7 +87,7 @@ class Problem:
         lengths: FloatArray,
         pins: Pins,
         obstacles: tuple[Obstacle, ...],
-        solver: Solver,
+        solver: PairSums,
         geometry: "Geometry",
         blocks: Sequence[Block] | None = None,
         symmetry: Symmetry = NO_SYMMETRY,
@@ -253,7 +251,8 @@ class Point:
     def energy_as_placed(self) -> float:
         """The objective of the rounded coordinates that users get, which far from the origin are another curve's."""
         rounded = self.problem.units.from_user(self.placed)
-        same = np.max(np.abs(rounded - self.vertices)) <= NEGLIGIBLE
+        # a displacement that changes no energy visibly, in the program's units
+        same = np.max(np.abs(rounded - self.vertices)) <= 1e-8
         return self.energy if same else self.problem.at(rounded).energy
 
     @cached_property

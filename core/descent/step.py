@@ -7,15 +7,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..base.messages import Message
+from ..base.types import FloatArray
 from ..collision import Contact, FreeMotion
-from ..messages import Message
-from ..saddle import TangentSpace
-from ..types import FloatArray
+from ..solve.saddle import TangentSpace
 from .problem import Point, Problem
 
 
 @dataclass(frozen=True, eq=False)
-class State:
+class SearchState:
     """What a method remembers between steps: its own memory, None at the start, and the last accepted step size."""
 
     memory: Any = None

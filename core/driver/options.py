@@ -4,23 +4,25 @@ from dataclasses import dataclass, replace
 from functools import partial
 from numbers import Real
 from reprlib import repr as short
+from typing import Any
 
 import numpy as np
 
-from ..arguments import check_known, declared, documented, is_list, option
+from ..base.arguments import check_known, declared, documented, is_list, option
+from ..base.errors import OptionError
 from ..curve import Curve
+from ..curve.symmetry import IS_NAME
 from ..descent import METHODS
 from ..energies import ENERGIES, TERMS, Energy, Term
-from ..errors import OptionError
-from ..metrics import METRICS, Metric
-from ..symmetry import IS_NAME
+from ..solve.metrics import METRICS, Metric
 
 EDGE_LENGTHS = ("auto", "equal", "keep")
+BARRIERS = ("auto", "on", "off")
 MESHES = ("auto", "fixed", "finer", "adaptive")
 UNTANGLE = ("auto", "always", "never")
 SOLVERS = ("auto", "dense", "hierarchical")
-MAX_GROWTH = 1000.0  # well below it, packed curves already need more vertices than there is time for
-MIN_GROWTH = 1 / MAX_GROWTH  # and curves that shrink far more are so small that powers of their size are 0
+# what "auto" means with the method "paper": nothing that [RS21] does not do
+AS_IN_THE_PAPER = {"barrier": "off", "solver": "dense", "mesh": "fixed", "untangle": "never"}
 
 
 def _are_lengths(value: object) -> bool:
@@ -71,9 +73,9 @@ class RelaxOptions:
         If a value has the wrong type, is out of range or unknown, or two options contradict each other.
     """
 
-    method: str = option("lbfgs", "Method", "how the energy is minimised", choices=METHODS, metavar="M", row=True)
+    method: str = option("lbfgs", "Method", "how the energy is minimised", choices=METHODS, metavar="M")
     max_iterations: int = option(
-        2000, "Max Iterations", "stop after this many accepted steps and changes of mesh", low=0, metavar="K", row=True
+        2000, "Max Iterations", "stop after this many accepted steps and changes of mesh", low=0, metavar="K"
     )
     tolerance: float = option(
         1e-4,
@@ -81,7 +83,6 @@ class RelaxOptions:
         "stop when the projected gradient's metric norm is at most this times √E",
         low=0,
         metavar="T",
-        row=True,
     )
     time_limit: float | None = option(
         None,
@@ -98,7 +99,6 @@ class RelaxOptions:
         automatic="enough for edges to be shorter than the gaps between strands",  # Section 6.1.3 of [RS21]
         low=3,
         metavar="N",
-        row=True,
     )
     energy: str | Energy = option(  # noqa: RUF009 (a field, made for this class)
         "moebius",
@@ -106,7 +106,14 @@ class RelaxOptions:
         "energy to minimise; a barrier between strands is added to it",
         choices=ENERGIES,
         objects=("an energy", partial(_is_a, Energy)),
-        row=True,
+    )
+    barrier: str = option(
+        "auto",
+        "Barrier",
+        "whether pairs of near edges have their exact energy, infinite where they touch, not that of the quadrature "
+        "rule; auto, on but for the method paper",
+        choices=BARRIERS,
+        metavar="B",
     )
     metric: str | Metric | None = option(  # noqa: RUF009 (a field, made for this class)
         None,
@@ -128,7 +135,8 @@ class RelaxOptions:
     terms: tuple[tuple[str | Term, float], ...] = option(
         (),
         "Terms",
-        f"terms added to the energy, each with its weight; by name: {', '.join(TERMS)}",
+        "terms added to the energy, each with its weight",
+        choices=TERMS,
         objects=("a pair of a term and its weight, such as ('bending', 0.1)", _is_weighted),
         example="(('bending', 0.1),)",
         flag="term",
@@ -155,8 +163,7 @@ class RelaxOptions:
         1e-4,
         "Accuracy",
         "largest error of the hierarchical solver in the projected gradient's norm, relative to the larger of that "
-        "norm and √E; the energy is a hundred times as accurate; both are checked by dense sums over sampled edges, in "
-        "the solver's own metric, whose norm is within a few per cent of the dense one",
+        "norm and √E; the energy is a hundred times as accurate",
         low=0,
         high=1e-2,
         metavar="A",
@@ -164,9 +171,8 @@ class RelaxOptions:
     edge_lengths: str | tuple[float, ...] = option(
         "auto",
         "Edge Lengths",
-        "target edge lengths: equal within each component, or kept as in the refined start; auto keeps them among "
-        "obstacles, and where the longest edge is over ten times the shortest edge or gap, since evening them out "
-        "would press the curve against walls, or crumple it",
+        "target edge lengths: equal within each component, or keep, as in the refined start; auto keeps them among "
+        "obstacles, and where the longest edge is over ten times the shortest edge or gap",
         choices=EDGE_LENGTHS,
         objects=("as many numbers above 0 as there are edges", _are_lengths),
         metavar="L",
@@ -174,13 +180,12 @@ class RelaxOptions:
     mesh: str = option(
         "auto",
         "Mesh",
-        "how vertices may change: fixed, not at all; finer, edges are split where strands are closer than the mesh "
-        "resolves, once little is left to gain on it; adaptive, edges are also split and collapsed along the way, to "
-        "stay shorter than the gaps between strands; auto, a curve of many vertices starts with fewer, which is "
-        "faster, gets them all back, and ends as with finer unless vertices or edge_lengths are given",
+        "how vertices may change: fixed, not at all; finer, edges are split where strands are too close for the mesh, "
+        "once it yields little further improvement; adaptive, edges are split and collapsed along the way to stay "
+        "shorter than the gaps between strands; auto, a curve of many vertices starts with fewer, which is faster, "
+        "gets them all back, and ends as with finer unless vertices or edge_lengths are given",
         choices=MESHES,
         metavar="M",
-        shorthands={"resolve": "finer", "adaptive": "adaptive"},
     )
     stability: bool = option(
         False,
@@ -201,17 +206,17 @@ class RelaxOptions:
         1.0,
         "Grow",
         "multiply all lengths by this factor: at once if nothing is in the way, otherwise step by step as obstacles "
-        "and pins leave room, splitting edges as strands draw near unless the mesh is fixed; below 1 the curve shrinks",
-        low=MIN_GROWTH,
-        high=MAX_GROWTH,
+        "and pins leave room; below 1 the curve shrinks",
+        low=0.001,  # curves that shrink far more are so small that powers of their size are 0
+        high=1000.0,  # well below it, packed curves already need more vertices than there is time for
         metavar="F",
     )
     untangle: str = option(
         "auto",
         "Untangle",
-        "whether strands are moved over and under others, so that fewer cross, every motion proved: auto, before the "
-        "flow where a diagram shows that many crossings go, and where the flow is stuck; such moves change the mesh, "
-        "and are no iterations",
+        "whether strands are moved over and under others to remove crossings, every motion proved: auto, where the "
+        "flow comes to rest or makes no headway, though a diagram shows that crossings go; always, also before the "
+        "flow; such moves change the mesh, and are no iterations",
         choices=UNTANGLE,
         metavar="U",
         row=True,
@@ -219,8 +224,8 @@ class RelaxOptions:
     symmetry: str | None = option(
         None,
         "Symmetry",
-        "group of rotations and reflections, after Schoenflies (C3, D2, S4, …), that the curve has from the start, but "
-        "for some tolerance, and keeps exactly; auto, all that it has",
+        "group of rotations and reflections, after Schoenflies (C3, D2, S4, …), that the starting curve has, up to a "
+        "tolerance, and keeps exactly; auto: every symmetry of the curve",
         automatic="no symmetry is kept",
         example="C3",
         metavar="GROUP",
@@ -228,8 +233,8 @@ class RelaxOptions:
     hops: int = option(
         0,
         "Hops",
-        "number of attempts to leave a minimum, or a place where the curve is stuck: each is a random motion, proved "
-        "free of contact like any other, and a relaxation, and is kept if it ends lower; all their iterations count",
+        "number of attempts to leave a minimum, or a place where the curve is stuck: each makes a random motion, "
+        "proved free of contact, then relaxes, and is kept if it ends lower; all iterations count",
         low=0,
         metavar="K",
     )
@@ -249,26 +254,33 @@ class RelaxOptions:
             object.__setattr__(self, "edge_lengths", tuple(map(float, self.edge_lengths)))
         if self.mesh in ("finer", "adaptive") and self.edge_lengths != "auto":
             raise OptionError(f"mesh={self.mesh!r} makes its own edge_lengths; leave one of the two options out")
-        if self.untangle == "always" and not self.may_untangle:
+        if self.untangle == "always" and not self.resolved.may_untangle:
             other = "mesh='fixed'" if self.mesh == "fixed" else "symmetry" if self.symmetry else "edge_lengths"
             raise OptionError(f"untangle='always' changes the mesh; leave it or {other} out")
         if self.symmetry is not None:
-            self._check_symmetry(self.symmetry)
-
-    def _check_symmetry(self, name: str) -> None:
-        if name != "auto" and not IS_NAME.fullmatch(name):
-            raise OptionError(f"symmetry is {short(name)}; give auto, or a group such as C3, D2, S4 or Th")
-        if self.mesh == "adaptive":
-            raise OptionError("symmetry keeps orbits of vertices, which mesh='adaptive' does not; take mesh='finer'")
-        if not isinstance(self.edge_lengths, str):
-            raise OptionError(
-                "symmetry makes its own vertices, to which edge_lengths do not belong; leave one of them out"
-            )
+            if self.symmetry != "auto" and not IS_NAME.fullmatch(self.symmetry):
+                raise OptionError(f"symmetry is {short(self.symmetry)}; give auto, or a group such as C3, D2, S4 or Th")
+            if self.mesh == "adaptive":
+                raise OptionError(
+                    "symmetry keeps orbits of vertices, which mesh='adaptive' does not; take mesh='finer'"
+                )
+            if not isinstance(self.edge_lengths, str):
+                raise OptionError(
+                    "symmetry makes its own vertices, to which edge_lengths do not belong; leave one of them out"
+                )
 
     def __repr__(self) -> str:
         values = [(each, getattr(self, each.name)) for each in declared(type(self))]
         changed = [f"{each.name}={short(value)}" for each, value in values if value != each.default]
         return f"RelaxOptions({', '.join(changed)})"
+
+    @property
+    def resolved(self) -> "RelaxOptions":
+        """The same with what "auto" means to the method ``paper``: what runs read, and reports tell."""
+        meant: dict[str, Any] = {}
+        if self.method == "paper":
+            meant = {name: value for name, value in AS_IN_THE_PAPER.items() if getattr(self, name) == "auto"}
+        return replace(self, **meant) if meant else self
 
     @property
     def may_untangle(self) -> bool:

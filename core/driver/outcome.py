@@ -4,16 +4,14 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from itertools import pairwise
 
-from ..arguments import checked_fields
+from ..base.arguments import checked_fields
+from ..base.errors import Place
+from ..base.messages import Message, joined
 from ..energies.components import energy_scale
-from ..errors import Place
-from ..hierarchy import SampledErrors
-from ..messages import Message, joined
-from .trajectory import Iterate
+from ..energies.hierarchy import SampledErrors
+from ..io.trajectory import Iterate
 
-RISE = 1e-9  # least increase reported, relative to the energy's scale; less is rounding
 RAISED = "changes of mesh or shape raised the energy: {rises}"
-NAMED = 3  # changes of mesh whose energies are listed individually
 
 
 class Status(Enum):
@@ -130,7 +128,17 @@ class Rises:
         changes = [change for change in self._changes if _total(change)]
         if not changes:
             return outcome
-        told, rest = joined([_energies(change) for change in changes[:NAMED]], ", "), changes[NAMED:]
+        # the first changes are listed one by one
+        named, rest = [], changes[3:]
+        for change in changes[:3]:  # before, after, the extreme one in between
+            energies = [iterate.energy for iterate in change]
+            first, last, highest = energies[0], energies[-1], max(energies)
+            between = highest if highest > first else min(energies)
+            passed = [first, last] if between in (first, last) else [first, between, last]
+            digits = 6 if f"{first:.6g}" != f"{between:.6g}" else 12
+            shown = " → ".join(f"{energy:.{digits}g}" for energy in passed)
+            named.append(Message("{energies} at iteration {number}", energies=shown, number=change[-1].index))
+        told = joined(named, ", ")
         if rest:
             more = "{rises}, and in {count} further changes by {total:.3g} in total"
             if len(rest) == 1:
@@ -141,19 +149,9 @@ class Rises:
 
 def _rise(before: Iterate, after: Iterate) -> float:
     rise = after.energy - before.energy
-    return rise if rise > RISE * energy_scale(before.curve.mesh, before.energy) else 0.0
+    # less is rounding
+    return rise if rise > 1e-9 * energy_scale(before.curve.mesh, before.energy) else 0.0
 
 
 def _total(change: list[Iterate]) -> float:
     return sum(_rise(before, after) for before, after in pairwise(change))
-
-
-def _energies(change: list[Iterate]) -> Message:
-    """The energies before and after, and the extreme one in between, with enough digits to tell them apart."""
-    energies = [iterate.energy for iterate in change]
-    first, last, highest = energies[0], energies[-1], max(energies)
-    between = highest if highest > first else min(energies)
-    passed = [first, last] if between in (first, last) else [first, between, last]
-    digits = 6 if f"{first:.6g}" != f"{between:.6g}" else 12
-    shown = " → ".join(f"{energy:.{digits}g}" for energy in passed)
-    return Message("{energies} at iteration {number}", energies=shown, number=change[-1].index)

@@ -1,24 +1,34 @@
-"""From a task and options to the problem that is solved."""
+"""From a task and options to the start, and the problem that is solved; what is not the program's own is tried."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from ..collision import minimal_gap
+from ..base.errors import CurveError, OptionError
+from ..base.messages import Message
+from ..base.types import FloatArray, IntArray
+from ..collision import is_free, minimal_gap, survives_rounding
 from ..curve import Curve, Mesh, check_closed
+from ..curve.obstacle import Obstacle
 from ..curve.pins import TAUT, arcs, free_edges, spans
-from ..curve.refine import Resolution
-from ..curve.remesh import graded_spacing, normalised
-from ..descent import METHODS, Method, Problem
-from ..energies import is_moebius_invariant
-from ..errors import OptionError
-from ..obstacle import Obstacle
-from ..task import Task
-from ..types import FloatArray, IntArray
+from ..curve.refine import Resolution, graded_spacing, normalised, refined_alike
+from ..curve.symmetry import TOLERANCE, Symmetry, SymmetryGroup, symmetries
+from ..descent import METHODS, Problem
+from ..descent.task import Task
+from ..energies import Term, TwiceDifferentiable, is_moebius_invariant
+from ..solve.metrics import Metric
 from .options import RelaxOptions
 from .solver import Solver
 
-EVEN_RATIO = 10.0  # of the longest edge to the shortest, and to the gap between edges, up to which they are evened out
+BLOCKED = (
+    "the straight way to the nearest curve with symmetry {group} is not free of contact, as where strands meet on an "
+    "axis that no symmetric curve passes through; relax the curve a little before, or ask for another symmetry"
+)
+LACKING = (
+    "the curve has no symmetry {group}: within {tolerance:g} times its size its group is {own}; relax and balance "
+    "it before, or ask for another symmetry"
+)
 
 
 def start_problem(given: Task | Curve, options: RelaxOptions) -> Problem:
@@ -27,35 +37,37 @@ def start_problem(given: Task | Curve, options: RelaxOptions) -> Problem:
     Raises CurveError if the curve has more vertices than the method has room and time for, and OptionError if options
     contradict each other.
     """
-    task, method = Task.of(given), METHODS[options.method]
+    task, method, options = Task.of(given), METHODS[options.method], options.resolved
     pins = task.held
     geometry = method.geometry if options.penalty is None else method.geometry.weighted(options.penalty)
     lengths = target_lengths(task.curve, pins.vertices, task.obstacles, options)
     problem = Problem.of(task.curve, lengths, pins, task.obstacles, Solver(options), geometry)
-    _check_second_order(problem, options, method)
-    if options.grow != 1.0:
-        _check_growth(task.curve, problem, options, method)
-    if options.balance:
-        _check_balance(task, problem)
-    return problem
-
-
-def _check_second_order(problem: Problem, options: RelaxOptions, method: Method) -> None:
-    about_minima = options.stability or options.escape_saddles
-    lacking = problem.objective.without_hessian
+    about_minima, lacking = options.stability or options.escape_saddles, problem.objective.without_hessian
     if (method.rule.second_order or about_minima) and lacking is not None:
         raise OptionError(f"{method.name} with these options needs a second derivative; {lacking.name} has none")
     if about_minima and not method.geometry.prescribes:
         raise OptionError(f"stability is about constrained minima, but method {method.name} penalises lengths")
-
-
-def _check_balance(task: Task, problem: Problem) -> None:
-    if task.pins:
-        raise OptionError("balance would move pins, as Möbius maps do; leave one of the two out")
-    term = next((term for term in problem.objective.terms if not is_moebius_invariant(term)), None)
-    if term is not None:
-        raise OptionError(f"balance takes Möbius images, which have another {term.name} than the curve; leave it out")
-    check_closed(task.curve, "Möbius images of equal energy, which balance takes,")
+    if options.grow != 1.0:
+        if not method.geometry.prescribes:
+            told = f"grow prescribes lengths, but method {method.name} penalises them; choose another method"
+            raise OptionError(told)
+        if not len(free_edges(task.curve.mesh, pins.vertices)):
+            raise OptionError(
+                "grow changes lengths, but all edges lie between pinned vertices or on straight arcs between them; "
+                "leave some of the pins out, or bend the arcs"
+            )
+        grown = problem.units.scale * problem.constraints.scaled(options.grow, task.curve.mesh).lengths
+        _check_spans(task.curve, grown, pins.vertices, "grow")
+    if options.balance:
+        if task.pins:
+            raise OptionError("balance would move pins, as Möbius maps do; leave one of the two out")
+        other = next((term for term in problem.objective.terms if not is_moebius_invariant(term)), None)
+        if other is not None:
+            told = f"balance takes Möbius images, which have another {other.name} than the curve; leave it out"
+            raise OptionError(told)
+        check_closed(task.curve, "Möbius images of equal energy, which balance takes,")
+    check_foreign(problem, task.curve, options)
+    return problem
 
 
 def target_lengths(start: Curve, pins: IntArray, obstacles: Sequence[Obstacle], options: RelaxOptions) -> FloatArray:
@@ -73,7 +85,8 @@ def target_lengths(start: Curve, pins: IntArray, obstacles: Sequence[Obstacle], 
         return lengths
     if options.mesh == "adaptive":
         return normalised(start, graded_spacing(start, Resolution(options.vertices)), pins)
-    uneven = start.edge_lengths.max() > EVEN_RATIO * min(start.edge_lengths.min(), minimal_gap(start)[0])
+    # edges are evened out if the longest is up to ten times the shortest and the gap between edges
+    uneven = start.edge_lengths.max() > 10.0 * min(start.edge_lengths.min(), minimal_gap(start)[0])
     if wanted == "keep" or (wanted == "auto" and (uneven or obstacles)):
         return start.edge_lengths
     return equal_lengths(start.mesh, start.edge_lengths, pins)
@@ -85,20 +98,6 @@ def equal_lengths(mesh: Mesh, lengths: FloatArray, pins: IntArray) -> FloatArray
     for arc in arcs(mesh, pins):
         even[arc] = lengths[arc].mean()
     return even
-
-
-def _check_growth(start: Curve, problem: Problem, options: RelaxOptions, method: Method) -> None:
-    """Refuse to change lengths that are not prescribed, or cannot change by the requested factor."""
-    pins = problem.constraints.pins.vertices
-    if not method.geometry.prescribes:
-        raise OptionError(f"grow prescribes lengths, but method {method.name} penalises them; choose another method")
-    if not len(free_edges(start.mesh, pins)):
-        raise OptionError(
-            "grow changes lengths, but all edges lie between pinned vertices or on straight arcs between them; "
-            "leave some of the pins out, or bend the arcs"
-        )
-    lengths = problem.units.scale * problem.constraints.scaled(options.grow, start.mesh).lengths
-    _check_spans(start, lengths, pins, "grow")
 
 
 def _check_spans(start: Curve, lengths: FloatArray, pins: IntArray, option: str = "edge_lengths") -> None:
@@ -114,3 +113,114 @@ def _check_spans(start: Curve, lengths: FloatArray, pins: IntArray, option: str 
                 f"{option} makes the arc between vertices {i} and {j}, which are pinned, {ratio:.6g} times as long "
                 "as their distance; give it more than that"
             )
+
+
+@dataclass(frozen=True, eq=False)
+class Symmetrised:
+    """A start, refined, and the exactly symmetric curve that is its mean over a group.
+
+    Both ``start`` and ``end`` have the vertices of the refined start and those of ``mean`` on their edges.
+    """
+
+    start: Curve
+    end: Curve
+    mean: Curve
+    symmetry: Symmetry
+    group: SymmetryGroup
+
+    @classmethod
+    def of(cls, curve: Curve, wanted: str) -> "Symmetrised":
+        """The symmetrised curve under the whole group of a curve, "auto", or under the subgroup of a name.
+
+        Raises CurveError if the curve does not have that symmetry, or is not free to move to the symmetric curve.
+        """
+        if wanted == "auto":
+            group = symmetries(curve, TOLERANCE)
+        else:
+            # radii of gyration by which a start may miss a symmetry that is asked for by name
+            whole = symmetries(curve, 0.1)
+            part = whole.subgroup(wanted)
+            if part is None:
+                raise CurveError(Message(LACKING, group=wanted, tolerance=0.1, own=whole.name))
+            group = part
+        if len(group.elements) == 1:
+            return cls(curve, curve, curve, Symmetry(), group)
+        mean, symmetry, begins = group.symmetrised(curve, curve.mesh.component_sizes)
+        start, end = refined_alike(curve, mean, tuple(-begin % 1.0 for begin in begins))
+        free = is_free(start.mesh, start.vertices, end.vertices)
+        if not (free and survives_rounding(start) and survives_rounding(end)):
+            raise CurveError(Message(BLOCKED, group=group.name))
+        return cls(start, end, mean, symmetry, group)
+
+
+def check_foreign(problem: Problem, start: Curve, options: RelaxOptions) -> None:
+    """Try the energy, terms, metric and constraints that are objects rather than names; start is in the user's units.
+
+    A wrong sign would show as steps that never go down, which says nothing about the reason.  Raises OptionError with
+    the numbers that do not fit.  Functions whose difference quotients do not settle, as they are not smooth, pass.
+    """
+    curve = start.with_vertices(problem.units.from_user(start.vertices))
+    random = np.random.default_rng(35).standard_normal(curve.vertices.shape)
+    for kind, term in (("energy", options.energy), *(("term", term) for term, _ in options.terms)):
+        if not isinstance(term, Term):
+            continue
+        name, alone = f"{kind} {term.name!r}", term.value(curve)
+        value, derivative = term.value_and_derivative(curve)
+        if not (np.ndim(alone) == np.ndim(value) == 0 and np.isfinite([alone, value]).all()):
+            raise OptionError(f"{name} is {alone!r:.60} at the start; its value must be one finite number there")
+        if abs(alone - value) > 0.05 * max(abs(alone), abs(value)):
+            raise OptionError(f"{name} is {alone:.6g} by value, and {value:.6g} by value_and_derivative at one curve")
+        if np.shape(derivative) != random.shape or not np.isfinite(derivative).all():
+            found = f"of shape {np.shape(derivative)}" if np.shape(derivative) != random.shape else "not finite"
+            raise OptionError(f"{name} has a derivative that is {found}; give finite numbers, of shape {random.shape}")
+        steepest = derivative / (float(np.linalg.norm(derivative)) or 1.0)
+        direction: FloatArray = np.asarray(random / np.linalg.norm(random) + steepest, dtype=np.float64)
+        _check_slope(name, term.value, np.asarray(np.sum(derivative * direction)), curve, direction)
+        twice = METHODS[options.method].rule.second_order or options.stability or options.escape_saddles
+        if twice and isinstance(term, TwiceDifferentiable):
+            try:
+                change = term.hessian_product(curve, direction)
+            except TypeError as error:  # NumPy's, of functions for real numbers alone
+                raise OptionError(f"{name} has no second derivative by complex steps: {error}") from None
+            _check_slope(f"the derivative of {name}", _derivative_of(term), change, curve, direction)
+    for block in problem.constraints.blocks:
+        if type(block).__module__.partition(".core.")[0] != __name__.partition(".core.")[0]:
+            edges = random[curve.mesh.heads] - random[curve.mesh.tails]
+            stretch = np.sum(edges * curve.edge_vectors, axis=1) / curve.edge_lengths**2
+            slope = block.derivative(curve).apply(random, stretch)
+            _check_slope(f"constraint {type(block).__name__!r}", block.residual, slope, curve, random)
+    if isinstance(options.metric, Metric):
+        products = random.T @ problem.inner_product(curve).apply(random)
+        norms, name = np.diagonal(products), options.metric.name
+        if not (norms > 0.0).all():
+            raise OptionError(f"metric {name!r} has ⟨u, u⟩ = {norms.min():.6g} for some u; it must be above 0")
+        if not np.abs(products - products.T).max() <= 1e-6 * norms.max():
+            told = f"⟨u, v⟩ = {products[0, 1]:.6g} and ⟨v, u⟩ = {products[1, 0]:.6g}"
+            raise OptionError(f"metric {name!r} has {told} for some u and v; they must be equal")
+
+
+def _derivative_of(term: Term) -> Callable[[Curve], FloatArray]:
+    return lambda curve: term.value_and_derivative(curve)[1]
+
+
+def _check_slope(
+    name: str, function: Callable[[Curve], float | FloatArray], slope: FloatArray, curve: Curve, direction: FloatArray
+) -> None:
+    """Raise unless a function's slope is what its values say, or these do not say any."""
+    room = min(float(curve.edge_lengths.min()), minimal_gap(curve)[0]) / np.abs(direction).max()
+    before = np.full(np.shape(slope), np.nan)
+    # of difference quotients, in lengths of the shortest edge or gap
+    for h in room * 10.0 ** -np.arange(3, 7):
+        ahead, behind = (np.asarray(function(curve.with_vertices(curve.vertices + t * direction))) for t in (h, -h))
+        with np.errstate(invalid="ignore"):  # what is infinite nearby has no slope
+            quotient = (ahead - behind) / (2.0 * h)
+            size, off = np.linalg.norm(quotient), np.linalg.norm(quotient - slope)
+            settled = np.linalg.norm(quotient - before) <= 0.01 * size
+        if off <= 0.05 * max(size, np.linalg.norm(slope)):
+            return
+        if settled:
+            wrong_sign = np.linalg.norm(quotient + slope) <= 0.05 * size
+            advice = "its derivative has the wrong sign" if wrong_sign else "correct its derivative"
+            one, other = (" ".join(f"{x:.6g}" for x in np.ravel(each)[:3]) for each in (slope, quotient))
+            raise OptionError(f"{name} has the slope {one} by its derivative and {other} by its values; {advice}")
+        before = quotient

@@ -9,26 +9,23 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import checked, checked_fields
+from ..base.arguments import checked, checked_fields
+from ..base.deadline import TimeLimit
+from ..base.errors import CurveError, OptionError, counted
+from ..base.messages import COMPONENT, VERTEX_COUNT, Message
+from ..base.threads import BLAS
 from ..curve import Curve
-from ..deadline import TimeLimit
-from ..errors import CurveError, OptionError, counted
-from ..hierarchy import moebius_energy
-from ..messages import COMPONENT, VERTEX_COUNT, Message
-from ..task import Task, centred
-from ..threads import BLAS
-from .hand import Hand, Hold
-from .hopping import hopping
-from .loop import Relaxation, WithOutcome, within
+from ..curve.refine import halved
+from ..descent.task import Task, centred
+from ..energies.hierarchy import moebius_energy
+from ..io.trajectory import Iterate
+from . import moves
+from .hand import Hand
 from .options import RelaxOptions
 from .outcome import INTERRUPTED, OUT_OF_MEMORY, Outcome, Status
-from .prepare import start_problem
-from .run import Run
+from .prepare import Symmetrised, start_problem
+from .run import Relaxation, Run, WithOutcome, iterates, within
 from .solver import Solver
-from .symmetric import Symmetrised
-from .trajectory import Iterate
-
-WIDTHS = 100.0  # width of the curve, in lengths of a component, from which it explains a singular matrix
 
 
 @checked_fields
@@ -110,12 +107,23 @@ class Result:
     def _final_energy(self) -> tuple[float, float]:
         return moebius_energy(centred(self.curve))
 
+    @cached_property
+    def mesh_error(self) -> float | None:
+        """About how much the final energy differs from that of the smooth curve through the vertices, in its units.
+
+        Halving all edges along splines removes three quarters of it.  None for open and for large curves.
+        """
+        # more vertices take more than a second
+        if not self.curve.mesh.all_closed or len(self.curve) > 3000:
+            return None
+        return abs(self.final_energy - moebius_energy(centred(halved(self.curve)))[0]) / 0.75
+
     def show(self) -> Any:
         """The result as a figure that can be turned, with the objective beside it; notebooks display it.
 
         Raises MobiusFlowError if Plotly is not installed, CurveError if the curve is not in the plane or in space.
         """
-        from ..view import figure, still  # pictures are made of results, not the other way round
+        from ..keys.view import figure, still  # pictures are made of results, not the other way round
 
         return figure(still(self.curve, self.energies), title=f"Möbius energy {self.final_energy:.6g}")
 
@@ -170,31 +178,33 @@ def relax(curve: Curve | Task, options: RelaxOptions | None = None, hand: Hand |
             raise OptionError("pins and obstacles break symmetry; leave them out, or the option")
         symmetrised = Symmetrised.of(start.curve, options.symmetry)
         start = replace(start, curve=symmetrised.start)
-    try:
-        run = Run(start_problem(start, options), start.curve, options)
-    except np.linalg.LinAlgError as error:
-        degenerate = "the curve is too degenerate to be relaxed: {error}; {remedy}"
-        raise CurveError(Message(degenerate, error=str(error), remedy=_remedy(start.curve, options))) from error
-    work = BLAS.bounding(hopping(run, None if hand is None else Hold(run, hand), symmetrised))
+    work = BLAS.bounding(iterates(begin(start, options, hand, symmetrised), moves.MOVES))
     if options.time_limit is None:
         return work
     return within(TimeLimit(options.time_limit, used=time.perf_counter() - began), work)
 
 
-def _remedy(curve: Curve, options: RelaxOptions) -> Message:
-    """What to do about a singular matrix: parts too small for their distances, heavy terms, or strands too near."""
-    lengths = curve.component_lengths
-    shortest, width = int(lengths.argmin()), float(np.ptp(curve.vertices, axis=0).max())
-    if width < WIDTHS * lengths[shortest]:
-        if options.terms:
-            return Message("give terms smaller weights, or move close strands apart")
-        return Message("move close strands apart")
-    small = (
-        "{component} is only {length:.3g} long in a link {width:.3g} wide, too small or too far away to be relaxed "
-        "together with the rest: relax it by itself, or move or scale it"
-    )
-    component = Message(COMPONENT, number=shortest + 1)
-    return Message(small, component=component, length=float(lengths[shortest]), width=width)
+def begin(start: Task, options: RelaxOptions, hand: Hand | None = None, symmetrised: Symmetrised | None = None) -> Run:
+    """The run of a refined task; a CurveError says what to do where the curve is too degenerate for it."""
+    try:
+        return Run(start_problem(start, options), start.curve, options, None, hand, symmetrised)
+    except np.linalg.LinAlgError as error:
+        lengths = start.curve.component_lengths
+        shortest, width = int(lengths.argmin()), float(np.ptp(start.curve.vertices, axis=0).max())
+        # so much wider than a component is long, the link explains a singular matrix
+        if width >= 100.0 * lengths[shortest]:
+            small = (
+                "{component} is only {length:.3g} long in a link {width:.3g} wide, too small or too far away to be "
+                "relaxed together with the rest: relax it by itself, or move or scale it"
+            )
+            component = Message(COMPONENT, number=shortest + 1)
+            remedy = Message(small, component=component, length=float(lengths[shortest]), width=width)
+        elif options.terms:
+            remedy = Message("give terms smaller weights, or move close strands apart")
+        else:
+            remedy = Message("move close strands apart")
+        degenerate = "the curve is too degenerate to be relaxed: {error}; {remedy}"
+        raise CurveError(Message(degenerate, error=str(error), remedy=remedy)) from error
 
 
 @checked

@@ -1,26 +1,33 @@
-"""One relaxation in progress: its state, its events, and the interventions that may answer them between steps."""
+"""One relaxation in progress: its state, the moves that may act between its steps, and its loop."""
 
-from collections.abc import Iterator, Sequence
+from collections import deque
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..curve import Curve, Mesh
+from ..base.arguments import checked
+from ..base.deadline import TimeIsUp, TimeLimit
+from ..base.messages import Message
+from ..base.types import FloatArray
+from ..curve import Curve, Mesh, at_edges
 from ..curve.refine import Resolution
-from ..descent import METHODS, Method, NoStep, Point, Problem, State, Step
-from ..descent.searches import LineSearch
+from ..descent import METHODS, Method, NoStep, Point, Problem, SearchState, Step
+from ..descent.line_searches import LineSearch
 from ..energies.components import energy_scale
+from ..energies.hierarchy import SampledErrors
 from ..energies.pull import Pull, share_of
-from ..hierarchy import SampledErrors
-from ..messages import Message
-from ..passes import Stage
-from ..types import FloatArray
+from ..io.trajectory import Iterate, StrandMoves
+from ..untangle import Stage
+from .hand import Hand
 from .options import RelaxOptions
-from .outcome import Outcome, Rises, Status, converged, degenerate
-from .trajectory import Iterate, StrandMoves
+from .outcome import Outcome, Rises, Status, converged, degenerate, stalled
+from .prepare import Symmetrised
 
-HELD_METRIC_STEPS = 10  # while a hand pulls, when prompt answers matter more than few steps
-LENGTHS_REACHED = 1e-6  # max |log ℓ/ℓ⁰| that a converged curve may have
+HEADWAY, LOOKING_BACK = 0.01, 100  # part of the energy that goes in so many iterations as long as the flow gets ahead
+
+
+Relaxation = Generator[Iterate, None, Outcome]
 
 
 class Start:
@@ -32,12 +39,14 @@ Event = Start | Step | NoStep | Outcome
 
 @dataclass(frozen=True, eq=False)
 class Change:
-    """Steps, if any, and then another view of the same curve."""
+    """What a move proposes: proved steps, if any, and then another view of the curve they lead to."""
 
     steps: tuple[Step, ...] = ()  # motions that come first
     point: Point | None = None  # the curve reached, in another problem: with other constraints, or on another mesh
     method: Method | None = None  # the method that takes over
     resolution: Resolution | None = None  # new bounds of edge lengths
+    iterates: Iterable[Iterate] = ()  # motions that change the run themselves as they go on
+    anew: bool = False  # whether the run goes on from there as from a start
 
 
 class Run:
@@ -45,22 +54,30 @@ class Run:
 
     ``iterate`` is the point as users see it, ``method`` takes the next step, ``resolution`` bounds edge lengths where
     the mesh may change, ``sampled_errors`` are the hierarchical solver's errors when last checked, and ``rises`` the
-    increases of the energy.  The options give the limit of iterations unless another one is passed.
+    increases of the energy.  The options give the limit of iterations unless another one is passed.  A ``hand`` may
+    drag the curve, and ``symmetrised`` is the symmetric curve that it begins with, if it is to be symmetric.
     """
 
     def __init__(
-        self, problem: Problem, start: Curve, options: RelaxOptions, max_iterations: int | None = None
+        self,
+        problem: Problem,
+        start: Curve,
+        options: RelaxOptions,
+        max_iterations: int | None = None,
+        hand: Hand | None = None,
+        symmetrised: Symmetrised | None = None,
     ) -> None:
-        self.options = options
+        self.options, self.hand, self.symmetrised = options.resolved, hand, symmetrised
         self.max_iterations = options.max_iterations if max_iterations is None else max_iterations
         self.resolution = Resolution(options.vertices, clearance=problem.clearance)
         self.method = METHODS[options.method]
         self.sampled_errors: SampledErrors | None = None
         self.rises = Rises()
         self.point = problem.at_curve(start).anchored
-        self._memory = State()
+        self._memory = SearchState()
         self.charged = 0  # iterations of trials, less iterates of strand moves
         self.strand_moves: StrandMoves | None = None
+        self._energies: deque[float] = deque(maxlen=LOOKING_BACK + 1)  # of the last iterates
         self._certified = problem.certifiable  # an embedded start, and so far no motion
         self.iterate = self._described(0)
 
@@ -86,7 +103,8 @@ class Run:
         """The present method's next step, ending at a point of the present problem."""
         point, rule = self.point, self.method.rule
         if self.problem.objective.pull is not None and isinstance(rule, LineSearch) and rule.metric_steps > 1:
-            rule = replace(rule, metric_steps=HELD_METRIC_STEPS)
+            # while a hand pulls, prompt answers matter more than few steps
+            rule = replace(rule, metric_steps=10)
         if self.method.name != self.options.method:
             point = point.changing(metric=self.problem.solver.of_metric(self.method.metric))
         try:
@@ -101,6 +119,7 @@ class Run:
     def accept(self, step: Step) -> Iterate:
         before = self.iterate
         self._go(step)
+        self._energies.append(self.iterate.energy)
         if self.problem.geometry.prescribes and self.problem.objective.pull is None:
             self.rises.step(before, self.iterate)
         return self.iterate
@@ -109,13 +128,24 @@ class Run:
         """Go on from the same curve with another pull of a hand, or none."""
         held = self.problem.objective.pull is not None
         self.start_from(self.point.pulled(pull))
+        self.look_for_headway()
         if held != (pull is not None):
-            self._memory = State()
+            self._memory = SearchState()
 
     def go_back(self, point: Point, iterate: Iterate) -> None:
         """Go on from an earlier point, and the iterate there, as if nothing after it had happened."""
         self.iterate, self._certified = iterate, iterate.certified
         self.start_from(point)
+
+    @property
+    def makes_headway(self) -> bool:
+        """Whether the last hundred iterations have lowered the energy by a hundredth; so do fewer, until shown."""
+        energies = self._energies
+        return len(energies) <= LOOKING_BACK or energies[-1] < (1.0 - HEADWAY) * energies[0]
+
+    def look_for_headway(self) -> None:
+        """Judge headway from here on."""
+        self._energies.clear()
 
     def renew(self) -> None:
         """Restart the count of iterations."""
@@ -123,21 +153,11 @@ class Run:
 
     def start_from(self, point: Point) -> None:
         """Go on from another view of the same curve, of which the method remembers nothing."""
-        self.point, self._memory = point.anchored, State(None, self._memory.last_step)
-
-    def _pulled(self, point: Point) -> Point:
-        """A point on another mesh, pulled like this one, if it is: at the same place, to the same target."""
-        pull, old, new = self.problem.objective.pull, self.problem.units, point.problem.units
-        if pull is None:
-            return point
-        place, target = (new.from_user(old.to_user(x)) for x in (self.point.vertices[pull.vertex], pull.target))
-        component = int(self.problem.mesh.component[pull.vertex])
-        pull = Pull.at(point.curve, component, share_of(point.curve, component, place), pull.strength)
-        return point.changing(objective=point.problem.objective.pulled(replace(pull, target=target)))
+        self.point, self._memory = point.anchored, SearchState(None, self._memory.last_step)
 
     def hop(self, end: Point, path: tuple[FloatArray, ...], certified: bool) -> Iterate:
         """Go in one iterate to a point on the same mesh, along a path found elsewhere."""
-        self.point, self.method, self._memory = end, METHODS[self.options.method], State()
+        self.point, self.method, self._memory = end, METHODS[self.options.method], SearchState()
         self._certified &= certified
         self.iterate = self._described(self.iterate.index + 1, path=path)
         return self.iterate
@@ -161,7 +181,7 @@ class Run:
 
     def restarted(self, point: Point) -> Iterate:
         """Go on after strand moves from a point of the problem on another mesh, as at the start; the curve stays."""
-        self.point, self.method, self._memory = point.anchored, METHODS[self.options.method], State()
+        self.point, self.method, self._memory = point.anchored, METHODS[self.options.method], SearchState()
         self.charged -= 1
         if self.strand_moves:
             self.strand_moves = self.strand_moves._replace(iterates=self.strand_moves.iterates + 1, done=True)
@@ -174,6 +194,7 @@ class Run:
 
     def change(self, change: Change) -> Iterator[Iterate]:
         """Make a change; yield the iterates it leads to, one for each step and one for a new mesh."""
+        yield from change.iterates
         for step in change.steps:
             before = self.iterate
             self._go(step)
@@ -182,26 +203,42 @@ class Run:
                 self.rises.change(before, self.iterate)
         self.resolution = change.resolution or self.resolution
         if change.method is not None:
-            self.method, self._memory = change.method, State()
+            self.method, self._memory = change.method, SearchState()
         if change.point is None:
             return
         before, remeshed = self.iterate, self._remeshes(change)
-        self.start_from(self._pulled(change.point) if remeshed else change.point)
+        point, pull = change.point, self.problem.objective.pull
+        if remeshed and pull is not None:  # by the hand at the same place, to the same target
+            old, new, component = self.problem.units, point.problem.units, int(self.problem.mesh.component[pull.vertex])
+            place, target = (new.from_user(old.to_user(x)) for x in (self.point.vertices[pull.vertex], pull.target))
+            pull = Pull.at(point.curve, component, share_of(point.curve, component, place), pull.strength)
+            point = point.changing(objective=point.problem.objective.pulled(replace(pull, target=target)))
+        self.start_from(point)
         self.iterate = self._described(self.iterate.index + remeshed)
         if remeshed:
             self.rises.change(before, self.iterate)
             yield self.iterate
 
-    def termination(self) -> Outcome | None:
-        """How the run ends here; None if it continues."""
+    def stopping(self, event: Event | Change | None = None) -> Outcome | None:
+        """How the run ends here, or after an event that no move knows an answer to; None if it goes on.
+
+        These are all rules but two: the time limit acts even in the middle of a step (`within`), and an interrupt or
+        the end of memory ends the loop over the iterates (`finish`).
+        """
+        if isinstance(event, NoStep):
+            limits, curve = event.limited_by, self.iterate.curve
+            return stalled(event.reason, None if limits is None else at_edges(curve, limits.edges))
+        if isinstance(event, Outcome):
+            return event
         bound = gradient_bound(self.options, self.problem.mesh, self.point.energy)
-        if self.point.gradient_norm <= bound and self.feasible:
+        if not isinstance(event, Change) and self.point.gradient_norm <= bound and self.feasible:
             norm = self.point.with_own_metric().gradient_norm
             if norm <= bound:
                 outcome = converged(norm, bound)
                 frozen = "nothing can move: the curve is pinned, or straight between pins"
                 return outcome.adding(frozen) if self.frozen else outcome
-        return self.at_limit() if self.iterations_left <= 0 else None
+        # a change comes here if it needs more iterations than are left
+        return self.at_limit() if isinstance(event, Change) or self.iterations_left <= 0 else None
 
     def at_limit(self) -> Outcome:
         """How the run ends at the iteration limit."""
@@ -215,7 +252,8 @@ class Run:
     @property
     def feasible(self) -> bool:
         """Whether lengths are those prescribed, if any are."""
-        return not self.problem.geometry.prescribes or self.iterate.edge_length_error <= LENGTHS_REACHED
+        # max |log ℓ/ℓ⁰| that a converged curve may have
+        return not self.problem.geometry.prescribes or self.iterate.edge_length_error <= 1e-6
 
     def _go(self, step: Step) -> None:
         self.point = step.point.anchored
@@ -252,11 +290,11 @@ def gradient_bound(options: RelaxOptions, mesh: Mesh, energy: float) -> float:
 
 
 @dataclass(eq=False)
-class Intervention:
-    """A possible change of a run between steps: made for one run, it is called after every event.
+class Move:
+    """What may act on a run between steps: made for one run, it is called after every event.
 
     A subclass overrides the methods for the events that concern it, or ``__call__`` for all at once.  Each returns the
-    event as later interventions are to see it, or a change, after which these are not asked, or None, which leaves the
+    event as later moves are to see it, or a change, after which these are not asked, or None, which leaves the
     event as it is.  Settings are fields.
     """
 
@@ -294,3 +332,82 @@ class Intervention:
     def converged(self, outcome: Outcome) -> Event | Change | None:
         """Where it would end at rest."""
         return None
+
+    def anew(self) -> "Move":
+        """The move for a run that goes on as from a start."""
+        return replace(self)
+
+    def summarised(self, outcome: Outcome) -> Outcome:
+        """The outcome of the whole run with clauses about what the move did."""
+        return outcome
+
+
+def iterates(run: Run, moves: Sequence[Callable[[Run], Move]]) -> Relaxation:
+    """Yield the start and every accepted step, motion or change of mesh, each once; return how it ended.
+
+    After every event the moves are asked in turn, until one of them answers with a change.  Where none does, the run
+    ends if a rule says so, or the method takes its next step.
+    """
+    made = [make(run) for make in moves]
+    yield run.iterate
+    event: Event = Start()
+    ending: Outcome | None = None
+    while ending is None:
+        mesh, answer = run.problem.mesh, event
+        change: Change | None = None
+        try:
+            for move in made:
+                said = move(answer)
+                if isinstance(said, Change):
+                    change = said
+                    break
+                answer = said
+            if change is not None and run.allows(change):
+                yield from run.change(change)
+                made = [move.anew() for move in made] if change.anew else made
+                if change.anew or run.problem.mesh is not mesh:
+                    event = Start()
+                    continue
+            elif isinstance(event, Outcome):  # no move leads on
+                ending = run.stopping(change or answer)
+                continue
+            event = run.stopping(None if change else answer) or run.step()
+            if isinstance(event, Step):
+                yield run.accept(event)
+        except np.linalg.LinAlgError as error:
+            if isinstance(event, Outcome):
+                ending = stalled(degenerate(error))
+            event = stalled(degenerate(error))
+    outcome = run.rises.summarised(ending, run.iterate.index - (run.strand_moves.iterates if run.strand_moves else 0))
+    for move in made:
+        outcome = move.summarised(outcome)
+    return outcome
+
+
+class WithOutcome:
+    """The iterates of a relaxation, with the ``outcome`` that a ``for`` loop would lose: None until the end."""
+
+    @checked
+    def __init__(self, relaxation: Relaxation) -> None:
+        self._relaxation = relaxation
+        self.outcome: Outcome | None = None
+
+    def __iter__(self) -> Iterator[Iterate]:
+        self.outcome = yield from self._relaxation
+
+
+def within(limit: TimeLimit, relaxation: Relaxation) -> Relaxation:
+    """The same until the time is up, even in the middle of a step; time between iterates does not count."""
+    while True:
+        try:
+            with limit:
+                iterate = next(relaxation)
+        except StopIteration as end:
+            outcome: Outcome = end.value
+            return outcome
+        except TimeIsUp as up:
+            if up.limit is not limit:
+                raise
+            reached = Message("stopped at the time limit ({seconds:g} s)", seconds=limit.seconds)
+            return Outcome(Status.TIME_LIMIT, (reached,)).noting(up)
+        yield iterate

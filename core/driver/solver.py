@@ -4,17 +4,17 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 
+from ..base.errors import CurveError, OptionError
+from ..base.messages import VERTEX_COUNT, Message
 from ..curve import Curve
+from ..curve.obstacle import Obstacle
 from ..descent import METHODS, Method
-from ..energies import ENERGIES, TERMS, Energy, MoebiusEnergy, Objective, Stiff, Term, Weighted
-from ..errors import CurveError, OptionError
-from ..hierarchy import HierarchicalMoebiusEnergy, compressed
-from ..hierarchy.inner_product import MAX_VERTICES, block_count
-from ..messages import VERTEX_COUNT, Message
-from ..metrics import METRICS, Metric
-from ..obstacle import Obstacle
-from ..quadrature import Rule
-from ..saddle.iterative import Tolerances
+from ..energies import ENERGIES, TERMS, Energy, MoebiusEnergy, Objective, Stiff, Weighted
+from ..energies.hierarchy import HierarchicalMoebiusEnergy
+from ..energies.quadrature import Rule
+from ..solve.hierarchical import MAX_VERTICES, block_count, compressed
+from ..solve.metrics import METRICS, Metric
+from ..solve.saddle.iterative import Tolerances
 from .options import RelaxOptions
 
 # vertices up to which dense iterations are faster on any curve, and from which hierarchical ones are
@@ -34,13 +34,22 @@ class Solver:
     def on(self, curve: Curve) -> "Solver":
         """The solver for a curve: the requested one, or the faster one; a CurveError if it has too many vertices."""
         self.check_size(curve)
-        wanted = self.options.solver == "hierarchical"
+        wanted = self.options.resolved.solver == "hierarchical"
         return Solver(self.options, self._may_be_hierarchical and (wanted or _pays(curve)))
 
     def objective(self, obstacles: Iterable[Obstacle] = ()) -> Objective:
         """The objective to minimise among obstacles, which are in the units of curves."""
         energy = HierarchicalMoebiusEnergy.instead_of(self._energy) if self.hierarchical else self._energy
-        return Objective.of(energy, obstacles, (_weighted(*term) for term in self.options.terms))
+        terms = []
+        for given, weight in self.options.terms:
+            term = TERMS[given] if isinstance(given, str) else given
+            if weight < 0.0 and isinstance(term, Stiff):
+                raise OptionError(
+                    f"term {term.name!r} has weight {weight:g}, which would make its stiffness negative; "
+                    "give a weight of 0 or more"
+                )
+            terms.append(Weighted(term, weight))
+        return Objective.of(energy, obstacles, terms, barrier=self.options.resolved.barrier != "off")
 
     @property
     def metric(self) -> Metric:
@@ -66,7 +75,13 @@ class Solver:
     def check_size(self, curve: Curve) -> None:
         """Refuse more vertices than the method's inner products have room for, before anything is computed."""
         wanted, name = self.options.vertices, self._method.name
-        most = self._max_vertices(max(len(curve), wanted or 0))
+        metric, solver = self._metric, self.options.resolved.solver
+        largest = max(len(curve), wanted or 0)
+        if self._may_be_hierarchical and (solver == "hierarchical" or largest > HIERARCHICAL_FROM):
+            given = isinstance(self.options.metric, Metric)
+            most = min(MAX_VERTICES, compressed(metric, Tolerances()).most_vertices if given else MAX_VERTICES)
+        else:
+            most = min(each.most_vertices for each in (metric, *self._method.rule.other_metrics))
         if wanted is not None and wanted > most:
             raise OptionError(f"vertices is {wanted!s:.40}; {name} has room and time for {most}")
         if len(curve) > most:
@@ -76,32 +91,23 @@ class Solver:
             )
             raise CurveError(Message(large, vertices=Message(VERTEX_COUNT, count=len(curve)), method=name, most=most))
 
-    def _max_vertices(self, wanted: int) -> int:
-        """The largest feasible number of vertices, if a certain number is wanted."""
-        metric, solver = self._metric, self.options.solver
-        if self._may_be_hierarchical and (solver == "hierarchical" or wanted > HIERARCHICAL_FROM):
-            given = isinstance(self.options.metric, Metric)
-            return min(MAX_VERTICES, compressed(metric, Tolerances()).most_vertices if given else MAX_VERTICES)
-        return min(each.most_vertices for each in (metric, *self._method.rule.other_metrics))
-
     @property
     def _may_be_hierarchical(self) -> bool:
-        solver = self.options.solver
-        obstacle = None if solver == "dense" else self._needs_dense
-        if obstacle is not None and solver == "hierarchical":
-            raise OptionError(f"{obstacle}; solver={solver!r} does without: leave it out")
-        return solver != "dense" and obstacle is None
-
-    @property
-    def _needs_dense(self) -> str | None:
-        rule, name, points = self._method.rule, self._method.name, self.options.quadrature_points
+        solver, points = self.options.resolved.solver, self.options.quadrature_points
+        rule, name, obstacle = self._method.rule, self._method.name, ""
+        if solver == "dense":
+            return False
         if rule.second_order:
-            return f"{name} needs exact second derivatives"
-        if rule.other_metrics:
-            return f"{name} needs a sum of metrics"
-        if not isinstance(self._energy, MoebiusEnergy):
-            return f"energy {self._energy.name!r} needs all pairs of edges one by one"
-        return None if points in (None, 1) else f"{points} Gauss points need all pairs of edges one by one"
+            obstacle = f"{name} needs exact second derivatives"
+        elif rule.other_metrics:
+            obstacle = f"{name} needs a sum of metrics"
+        elif not isinstance(self._energy, MoebiusEnergy):
+            obstacle = f"energy {self._energy.name!r} needs all pairs of edges one by one"
+        elif points not in (None, 1):
+            obstacle = f"{points} Gauss points need all pairs of edges one by one"
+        if obstacle and solver == "hierarchical":
+            raise OptionError(f"{obstacle}; solver={solver!r} does without: leave it out")
+        return not obstacle
 
     @property
     def _method(self) -> Method:
@@ -125,13 +131,3 @@ def _pays(curve: Curve) -> bool:
     if not DENSE_UP_TO < n <= HIERARCHICAL_FROM:
         return n > HIERARCHICAL_FROM
     return PAIRS_PER_BLOCK * block_count(curve) < n * n
-
-
-def _weighted(term: str | Term, weight: float) -> Weighted:
-    term = TERMS[term] if isinstance(term, str) else term
-    if weight < 0.0 and isinstance(term, Stiff):
-        raise OptionError(
-            f"term {term.name!r} has weight {weight:g}, which would make its stiffness negative; "
-            "give a weight of 0 or more"
-        )
-    return Weighted(term, weight)

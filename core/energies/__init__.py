@@ -2,15 +2,16 @@
 
 from collections.abc import Mapping
 
-from ..quadrature import Rule
+from ..base.plugins import Table
 from .barrier import Barrier
 from .densities import EDGE_ENERGY, TANGENT_POINT_ENERGY, VERTEX_ENERGY, moebius_kpoint
 from .density import Density
-from .energy import Energy, Stiff, Term, TwiceDifferentiable, is_moebius_invariant
+from .energy import Assembled, Energy, Stiff, Term, TwiceDifferentiable, is_moebius_invariant
 from .kpoint import KPointEnergy
 from .moebius import MoebiusEnergy
 from .objective import Objective, Weighted
 from .pull import Bending
+from .quadrature import Rule
 
 ENERGIES: Mapping[str, Energy] = {
     energy.name: energy
@@ -25,17 +26,22 @@ ENERGIES: Mapping[str, Energy] = {
 }
 """Every energy that users can choose, by name; the first is the default."""
 
-TERMS: Mapping[str, Term] = {
-    term.name: term
-    for term in [
-        Bending(),
-    ]
-}
-"""What users can add to an energy, by name."""
+TERMS: Mapping[str, Term] = Table(
+    "mobius_flow.terms",
+    lambda it: isinstance(it, Term) and not isinstance(it, type),
+    {
+        term.name: term
+        for term in [
+            Bending(),
+        ]
+    },
+)
+"""What users can add to an energy, by name; packages join by entry points in ``mobius_flow.terms``."""
 
 __all__ = [
     "ENERGIES",
     "TERMS",
+    "Assembled",
     "Barrier",
     "Bending",
     "Density",

@@ -14,16 +14,15 @@ from typing import ClassVar
 import numpy as np
 import scipy.sparse as sp
 
-from ..arguments import checked_fields
+from ..base.arguments import checked_fields
+from ..base.types import BoolArray, FloatArray, IntArray
 from ..curve import Curve
 from ..curve.distances import near_by_octave
-from ..types import BoolArray, FloatArray, IntArray
 from .edge_pairs import DELTA, E, EdgePairIndices, EdgePairs, F, Jet, change, scatter_first, scatter_second, stepped
 from .inverse_square import inverse_square
 
 NEAR = 1.0  # of q, up to which only the exact energy of a pair counts,
 FAR = 2.25  # and from which only its midpoint energy does
-MIN_INDEX_DISTANCE = 4
 BLOCK = 4096  # pairs processed together, for the processor's cache
 
 
@@ -51,9 +50,6 @@ class Barrier:
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
         value, first = self._sum(curve, curve.vertices)
         return float(value), first
-
-    def hessian(self, curve: Curve) -> FloatArray:
-        return np.asarray(self.sparse_hessian(curve).toarray())
 
     def sparse_hessian(self, curve: Curve) -> sp.csr_array:
         """D²B as a sparse matrix: it couples near edges only."""
@@ -154,7 +150,7 @@ def near_pairs(curve: Curve) -> tuple[IntArray, IntArray]:
     octave = np.frexp(ell)[1]
     kept = (distance**2 < FAR * (ell[i] + ell[j]) ** 2) & ((octave[i] != octave[j]) | (i < j))
     i, j = i[kept], j[kept]
-    kept = curve.mesh.index_distance(i, j) >= MIN_INDEX_DISTANCE
+    kept = curve.mesh.index_distance(i, j) >= 4
     i, j = i[kept], j[kept]
     swapped = ell[i] > ell[j]
     return np.where(swapped, j, i), np.where(swapped, i, j)

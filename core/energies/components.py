@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.types import FloatArray, IntArray
 from ..curve import Curve, Mesh
-from ..types import FloatArray, IntArray
 from .edge_pairs import change, stepped
 
 

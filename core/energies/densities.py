@@ -4,12 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arguments import checked
-from ..errors import OptionError
-from ..quadrature import ENDS, MIDPOINT, TAIL, Rule
-from ..types import FloatArray
+from ..base.arguments import checked
+from ..base.errors import OptionError
+from ..base.types import FloatArray
 from .density import Partials, PointPairs
 from .kpoint import KPointEnergy
+from .quadrature import ENDS, MIDPOINT, TAIL, Rule
 
 
 @dataclass(frozen=True)
@@ -21,10 +21,12 @@ class ArcDensity:
     moebius_invariant = True
 
     def value(self, pairs: PointPairs) -> FloatArray:
-        return 1.0 / pairs.r2 - 1.0 / (pairs.rho * pairs.rho)
+        inverse = 1.0 / pairs.rho  # 0 between components; powers of a complex infinity are no numbers
+        return 1.0 / pairs.r2 - inverse * inverse
 
     def derivative(self, pairs: PointPairs) -> Partials:
-        return Partials(r2=-1.0 / (pairs.r2 * pairs.r2), rho=2.0 / (pairs.rho * pairs.rho * pairs.rho))
+        inverse = 1.0 / pairs.rho
+        return Partials(r2=-1.0 / (pairs.r2 * pairs.r2), rho=2.0 * inverse * inverse * inverse)
 
 
 @dataclass(frozen=True)
@@ -56,7 +58,10 @@ VERTEX_ENERGY, EDGE_ENERGY = (
     )
     for name, points, rule in (("vertex", "tails", TAIL), ("edge", "midpoints", MIDPOINT))
 )
-"""One point per edge (Section 6.1.1 of [RS21])."""
+"""One point per edge: R. Kusner and J. Sullivan, Möbius energies for knots and links (1997); Section 6.1.1 of [RS21].
+
+On equilateral polygons the vertex energy Γ-converges to the Möbius energy: S. Scholtes, Discrete Möbius energy (2014).
+"""
 
 
 @checked
@@ -111,8 +116,9 @@ class TangentPointDensity:
 
 
 def _squared_height(pairs: PointPairs, along: FloatArray) -> FloatArray:
-    """|d ∧ τ|², which rounding must not make negative."""
-    return np.maximum(pairs.r2 - along * along, 0.0)
+    """|d ∧ τ|², which rounding must not make negative; where it is 0, so is its derivative."""
+    squared = pairs.r2 - along * along
+    return np.where(squared.real > 0.0, squared, 0.0)
 
 
 TANGENT_POINT_ENERGY = KPointEnergy(

@@ -17,10 +17,10 @@ from typing import NamedTuple, Protocol, runtime_checkable
 import numpy as np
 from scipy.spatial.distance import cdist
 
+from ..base.types import BoolArray, FloatArray
 from ..curve import Curve
 from ..curve.distances import arc_positions, periods
-from ..types import BoolArray, FloatArray
-from .edge_pairs import Tile
+from .edge_pairs import Tile, half_changes
 
 KINK = 1e-12  # difference of the two arcs, relative to the component, below which they count as equal
 
@@ -38,8 +38,11 @@ class Arcs:
     def distances(self, tile: Tile, t_row: float, t_column: float) -> FloatArray:
         """ϱ between points at ``t_row`` of the tile's rows and ``t_column`` of its columns; inf between components."""
         gap, together = self._gaps(tile, t_row, t_column)
-        total = self.total[self.component[tile.rows], None]
-        rho = np.where(together, np.minimum(gap, total - gap), np.inf)
+        around = self.total[self.component[tile.rows], None] - gap
+        rho = np.where(together, np.minimum(gap, around), np.inf)
+        if np.iscomplexobj(gap):  # of two complex numbers with one real part neither is the right minimum
+            kink = together & (self.shares(tile, t_row, t_column) == 0.5)
+            rho[kink] = 0.5 * (gap + around)[kink]
         rho[tile.excluded] = 1.0
         return rho
 
@@ -47,7 +50,7 @@ class Arcs:
         """1 where the arc from row to column in the direction of the curve is the shorter one, 0 where the other is."""
         gap, _ = self._gaps(tile, t_row, t_column)
         total = self.total[self.component[tile.rows], None]
-        excess = 1.0 - 2.0 * gap / total
+        excess = 1.0 - 2.0 * gap.real / total.real
         return np.where(np.abs(excess) < KINK, 0.5, np.where(excess > 0.0, 1.0, 0.0))
 
     def _gaps(self, tile: Tile, t_row: float, t_column: float) -> tuple[FloatArray, BoolArray]:
@@ -63,10 +66,10 @@ class ArcDerivative:
 
     def __init__(self, arcs: Arcs) -> None:
         self._arcs = arcs
-        n = len(arcs.ell)
-        self._at_edges = np.zeros(n)
-        self._steps = np.zeros(n + 1)  # differences, from edge to edge, of the amounts that all edges of an arc get
-        self._around = np.zeros(len(arcs.total))  # the amounts that all edges of a component get
+        n, dtype = len(arcs.ell), arcs.ell.dtype
+        self._at_edges = np.zeros(n, dtype)
+        self._steps = np.zeros(n + 1, dtype)  # differences, from edge to edge, of what all edges of an arc get
+        self._around = np.zeros(len(arcs.total), dtype)  # the amounts that all edges of a component get
 
     def add(self, tile: Tile, t_row: float, t_column: float, weights: FloatArray) -> None:
         """Add the pairs of a tile; ``weights`` has shape (rows, columns), and every row index I < J."""
@@ -114,7 +117,10 @@ class PointPairs:
     @cached_property
     def r2(self) -> FloatArray:
         """|x − y|², from differences: strands may be close."""
-        r2 = np.asarray(cdist(self._x.x[self._tile.rows], self._y.x[self._tile.columns], "sqeuclidean"))
+        x, y = self._x.x[self._tile.rows], self._y.x[self._tile.columns]
+        r2 = np.asarray(cdist(x.real, y.real, "sqeuclidean"))
+        if np.iscomplexobj(x):
+            r2 = r2 + 2j * half_changes(x, y)
         r2[self._tile.excluded] = 1.0
         return r2
 
@@ -154,7 +160,10 @@ class Partials(NamedTuple):
 
 @runtime_checkable
 class Density(Protocol):
-    """F(x, y) = F(y, x): (a, b) becomes (−b, −a).  Where ϱ is infinite, F is finite and its derivative by ϱ zero."""
+    """F(x, y) = F(y, x): (a, b) becomes (−b, −a).  Where ϱ is infinite, F is finite and its derivative by ϱ zero.
+
+    Second derivatives are by complex steps: both methods must be analytic in the numbers of a pair, ϱ = inf + 0i too.
+    """
 
     @property
     def constant(self) -> float:

@@ -17,8 +17,8 @@ from typing import NamedTuple
 import numpy as np
 import scipy.sparse as sp
 
-from ..curve import Mesh
-from ..types import BoolArray, FloatArray, IntArray
+from ..base.types import BoolArray, FloatArray, IntArray
+from ..curve import Curve, Mesh
 
 STEP = 1e-100
 Combination = tuple[float, float, float]
@@ -173,9 +173,24 @@ def row_tiles(mesh: Mesh, rows: IntArray, without: EdgePairIndices | None = None
         yield RowTile(own, slice(None), excluded)
 
 
+class SteppedCurve(Curve):
+    """A curve after a complex step along v, shape (n, m): all that is computed from it is complex."""
+
+    def __init__(self, curve: Curve, v: FloatArray) -> None:
+        object.__setattr__(self, "vertices", stepped(curve.vertices, v))
+        object.__setattr__(self, "mesh", curve.mesh)
+
+
 def stepped(x: FloatArray, v: FloatArray) -> FloatArray:
     """x + iεv."""
     return np.asarray(x + STEP * 1j * v)
+
+
+def half_changes(x: FloatArray, y: FloatArray) -> FloatArray:
+    """Im |d|²/2 = ⟨Re d, Im d⟩, d = x_i − y_j, after complex steps of points, (k, m) and (l, m); shape (k, l)."""
+    own, other = (np.einsum("ij,ij->i", points.real, points.imag)[:, None] for points in (x, y))
+    left = np.hstack([-x.imag, -x.real, own, np.ones_like(own)])
+    return np.asarray(left @ np.hstack([y.real, y.imag, np.ones_like(other), other]).T)
 
 
 def change(f: FloatArray) -> FloatArray:

@@ -4,10 +4,10 @@ from typing import Protocol, runtime_checkable
 
 import scipy.sparse as sp
 
+from ..base.types import FloatArray
 from ..curve import Curve
-from ..quadrature import Rule
-from ..types import FloatArray
 from .edge_pairs import EdgePairIndices
+from .quadrature import Rule
 
 
 @runtime_checkable
@@ -99,11 +99,16 @@ class Approximate(Term, Protocol):
         """The smooth function given by the approximation for one curve."""
 
 
-class TwiceDifferentiable(Energy, Protocol):
-    """An energy with a second derivative, for Newton's method."""
+@runtime_checkable
+class TwiceDifferentiable(Term, Protocol):
+    """A term with a second derivative, for methods of second order and for the index of a critical point."""
+
+    def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
+        """D²E v for a vector ``v`` of shape (n, m); shape (n, m)."""
+
+
+class Assembled(TwiceDifferentiable, Protocol):
+    """One whose second derivative is as cheap as a few products, so that it is factorised."""
 
     def hessian(self, curve: Curve) -> FloatArray:
         """D²E, symmetric, shape (n·m, n·m); rows and columns in the order of ``vertices.ravel()``."""
-
-    def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
-        """D²E v for a vector ``v`` of shape (n, m), without forming the matrix; shape (n, m)."""

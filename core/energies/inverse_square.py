@@ -14,13 +14,12 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 
-from ..quadrature import gauss_legendre
-from ..types import FloatArray, IntArray
+from ..base.types import FloatArray, IntArray
 from .edge_pairs import EdgePairs, Jet, arctan2
+from .quadrature import gauss_legendre
 
 CONTACT = 1e-16  # distance of edges, relative to their length, below which they count as that far apart
 _SERIES = [(-1.0) ** k * (k + 1) / (2 * k + 3) for k in range(14)]  # of the tail, in powers of x²
-_SERIES_LIMIT = 0.0625  # of x²: up to here the series, above it the closed form; both to 1e-13
 _EXPONENT = 40.0  # convergence exponent of the panels: 5e-9 relative on the hardest pairs tried, gaps to 1e-7
 _POINT_COUNTS = np.array([8, 12, 16, 24, 32, 48, 64, 96, 128])
 _REACH = 0.7  # singularities further away than this many edge lengths get no panel of their own
@@ -35,32 +34,22 @@ def inverse_square(pairs: EdgePairs) -> Jet:
     for pair, s, weight in graded_points(EdgePairs(*(vectors.real for vectors in pairs))):
         s, weight = s - 0.5, weight / length[pair, None]  # dt from dw
         z = pairs.delta[pair, None, :] + s[:, :, None] * pairs.e[pair, None, :]
-        inverse, by_parts = _inner(z, tau[pair], length[pair, None], s, weight)
-        np.add.at(value, pair, inverse)
-        np.add.at(first, pair, by_parts)
+        # D = height − w τ and t − ½ = (w + foot)/length; ∇ 1/|D|² = −2 D/|D|⁴ times (1, s, ½ − t), s from the middle
+        along, size = tau[pair], length[pair, None]
+        foot = np.einsum("psm,pm->ps", z, along)
+        height = z - foot[:, :, None] * along[:, None, :]
+        h2 = np.einsum("psm,psm->ps", height, height)
+        inverse, m0, m1, m2 = moments(h2, -0.5 * size - foot, 0.5 * size - foot)
+        n0, n1 = (m1 + foot * m0) / size, (m2 + foot * m1) / size
+        result = np.empty((len(weight), 3, along.shape[1]), z.dtype)
+        for block, (along_height, along_tau, factor) in enumerate(
+            ((m0, m1, weight), (m0, m1, weight * s), (n0, n1, -weight))
+        ):
+            result[:, block] = -2.0 * np.einsum("ps,psm->pm", factor * along_height, height)
+            result[:, block] += 2.0 * np.sum(factor * along_tau, axis=1)[:, None] * along
+        np.add.at(value, pair, np.sum(weight * inverse, axis=1))
+        np.add.at(first, pair, result)
     return Jet(value, first.reshape(k, 3 * m))
-
-
-def _inner(
-    z: FloatArray, tau: FloatArray, length: FloatArray, s: FloatArray, weight: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Σ weight ∫ 1/|D|² dw and derivatives by (Δ, e, f), from points z, shape (panels, points, m), of the first edges.
-
-    There D = height − w τ and t − ½ = (w + foot)/length; ∇ 1/|D|² = −2 D/|D|⁴ times (1, s, ½ − t), s from the middle.
-    Shapes (panels,) and (panels, 3, m).
-    """
-    foot = np.einsum("psm,pm->ps", z, tau)
-    height = z - foot[:, :, None] * tau[:, None, :]
-    h2 = np.einsum("psm,psm->ps", height, height)
-    inverse, m0, m1, m2 = moments(h2, -0.5 * length - foot, 0.5 * length - foot)
-    n0, n1 = (m1 + foot * m0) / length, (m2 + foot * m1) / length
-    result = np.empty((len(weight), 3, tau.shape[1]), z.dtype)
-    for block, (along_height, along_tau, factor) in enumerate(
-        ((m0, m1, weight), (m0, m1, weight * s), (n0, n1, -weight))
-    ):
-        result[:, block] = -2.0 * np.einsum("ps,psm->pm", factor * along_height, height)
-        result[:, block] += 2.0 * np.sum(factor * along_tau, axis=1)[:, None] * tau
-    return np.sum(weight * inverse, axis=1), result
 
 
 def graded_points(pairs: EdgePairs) -> Iterator[tuple[IntArray, FloatArray, FloatArray]]:
@@ -78,7 +67,13 @@ def graded_points(pairs: EdgePairs) -> Iterator[tuple[IntArray, FloatArray, Floa
     pair, panel = np.nonzero(signed_half)
     start, signed_half, width = start[pair, panel], signed_half[pair, panel], width[pair, panel]
     reach = np.arcsinh(np.abs(signed_half) / width)
-    points = _point_count(reach)
+    # Gauss points for panels u in [0, reach] whose nearest singularity is iπ/2 (Bernstein ellipse)
+    z = -1.0 + 1j * np.pi / reach
+    root = np.sqrt(z * z - 1.0)
+    rho = np.maximum(np.abs(z + root), np.abs(z - root))
+    needed = np.ceil(_EXPONENT / (2.0 * np.log(rho)))
+    index = np.minimum(np.searchsorted(_POINT_COUNTS, needed), len(_POINT_COUNTS) - 1)
+    points = _POINT_COUNTS[index]
     for n in np.unique(points):
         chosen = points == n
         u, weight = gauss_legendre(int(n))
@@ -116,16 +111,6 @@ def _near_singularities(pairs: EdgePairs) -> tuple[FloatArray, FloatArray]:
     return np.stack([np.where(crossing, s, 0.0), s0, s1], axis=1), np.stack([delta, delta0, delta1], axis=1)
 
 
-def _point_count(reach: FloatArray) -> IntArray:
-    """Gauss points for a panel u in [0, reach] whose nearest singularity is iπ/2 (Bernstein ellipse)."""
-    z = -1.0 + 1j * np.pi / reach
-    root = np.sqrt(z * z - 1.0)
-    rho = np.maximum(np.abs(z + root), np.abs(z - root))
-    needed = np.ceil(_EXPONENT / (2.0 * np.log(rho)))
-    index = np.minimum(np.searchsorted(_POINT_COUNTS, needed), len(_POINT_COUNTS) - 1)
-    return np.asarray(_POINT_COUNTS[index])
-
-
 def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
     return np.asarray(np.einsum("ij,ij->i", a, b))
 
@@ -159,8 +144,8 @@ def _outside(h: FloatArray, a: FloatArray, b: FloatArray) -> tuple[FloatArray, F
 def _tail(x: FloatArray) -> FloatArray:
     """∫_1^∞ du/(x² + u²)² = (arctan x − x/(1 + x²))/(2x³) = 1/3 − 2x²/5 + 3x⁴/7 − …, also at 0."""
     x2 = x * x
-    small = x2 < _SERIES_LIMIT
+    small = x2 < 0.0625  # of x²: up to here the series, above it the closed form; both to 1e-13
     safe = np.where(small, 1.0, x)
     closed = (arctan2(safe, np.ones_like(safe)) - safe / (1.0 + safe**2)) / (2.0 * safe**3)
-    series = polyval(np.where(small, x2, 0.0), _SERIES)  # type: ignore[no-untyped-call]
+    series = polyval(np.where(small, x2, 0.0), _SERIES)
     return np.where(small, series, closed)

@@ -9,15 +9,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arguments import checked_fields
+from ..base.arguments import checked_fields
+from ..base.types import FloatArray
 from ..curve import Curve
 from ..curve.distances import points_at
-from ..quadrature import Rule
-from ..types import FloatArray
 from .components import ComponentShares
-from .density import ArcDerivative, Arcs, Density, Partials, PointPairs, PointSet
-from .edge_pairs import Tile, pair_tiles
+from .density import ArcDerivative, Arcs, Density, PointPairs, PointSet
+from .edge_pairs import SteppedCurve, Tile, change, pair_tiles
 from .energy import is_moebius_invariant
+from .quadrature import Rule
 
 
 @checked_fields
@@ -64,11 +64,23 @@ class KPointEnergy:
 
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
         """Energy and its derivative with respect to the vertices, shape (n, m)."""
-        sums, total = _Sums(curve), 0.0
+        total, derivative = self._sum_and_derivative(curve)
+        return self._energy(curve, total), derivative
+
+    def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
+        """D²E v for ``v`` of shape (n, m), by a complex step of the derivative; shape (n, m).
+
+        Where two arcs are equally long ϱ is their mean.  Without its derivative ϱ is a constant, which is right where
+        multipliers are those of that derivative.
+        """
+        return change(self._sum_and_derivative(SteppedCurve(curve, v))[1])
+
+    def _sum_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
+        """The sum over unordered pairs, and the energy's derivative, also after a complex step."""
+        sums, total = _Sums(curve, self.arc_derivative), 0.0
         for tile, x, y, area in self._pairs(curve):
             total += sums.add(tile, x, y, area, self.density)
-        of_components = self.density.constant * ComponentShares(curve).derivative()
-        return self._energy(curve, total), 2.0 * sums.at_vertices(self.arc_derivative) + of_components
+        return total, 2.0 * sums.at_vertices() + self.density.constant * ComponentShares(curve).derivative()
 
     def _energy(self, curve: Curve, total: float) -> float:
         """The energy from the sum over unordered pairs."""
@@ -88,10 +100,14 @@ class KPointEnergy:
 
 
 class _Sums:
-    """Derivatives of Σ ω_i ω_j ℓ_I ℓ_J F by tails, heads, unit tangents and lengths, over unordered pairs of edges."""
+    """Derivatives of Σ ω_i ω_j ℓ_I ℓ_J F by tails, heads, unit tangents and lengths, over unordered pairs of edges.
 
-    def __init__(self, curve: Curve) -> None:
-        self._arcs, self._mesh = Arcs(curve), curve.mesh
+    Without those of ϱ, that is a constant, which no complex step changes.
+    """
+
+    def __init__(self, curve: Curve, arc_derivative: bool) -> None:
+        self._mesh, self._ell, self._arc_derivative = curve.mesh, curve.edge_lengths, arc_derivative
+        self._arcs = Arcs(curve if arc_derivative else curve.with_vertices(curve.vertices.real))
         self._by_tail, self._by_head, self._by_tau = (np.zeros_like(curve.edge_vectors) for _ in range(3))
         self._by_length, self._by_arc = np.zeros_like(curve.edge_lengths), ArcDerivative(self._arcs)
         self._tau = curve.edge_vectors / curve.edge_lengths[:, None]
@@ -100,13 +116,10 @@ class _Sums:
         """Add pairs of points with weights ``area``, 0 for pairs that do not count; returns their part of the sum."""
         pairs = PointPairs(x, y, self._arcs, tile)
         weighted = area * density.value(pairs)
-        self._by_length[tile.rows] += weighted.sum(axis=1) / self._arcs.ell[tile.rows]
-        self._by_length[tile.columns] += weighted.sum(axis=0) / self._arcs.ell[tile.columns]
-        self._add_partials(tile, x, y, area, density.derivative(pairs))
-        return float(weighted.sum())
-
-    def _add_partials(self, tile: Tile, x: PointSet, y: PointSet, area: FloatArray, partials: Partials) -> None:
-        """With d = x − y, ∂F/∂d is 2 F_{r²} d + F_a τ_x + F_b τ_y, ∂F/∂τ_x is F_a d + F_c τ_y, likewise ∂F/∂τ_y."""
+        self._by_length[tile.rows] += weighted.sum(axis=1) / self._ell[tile.rows]
+        self._by_length[tile.columns] += weighted.sum(axis=0) / self._ell[tile.columns]
+        # with d = x − y, ∂F/∂d is 2 F_{r²} d + F_a τ_x + F_b τ_y, ∂F/∂τ_x is F_a d + F_c τ_y, likewise ∂F/∂τ_y
+        partials = density.derivative(pairs)
         rows, columns = tile.rows, tile.columns
         tau_x, tau_y = self._tau[rows], self._tau[columns]
         force_x, force_y = _differences((2.0 * area) * partials.r2, x.x[rows], y.x[columns])  # Σ_J and Σ_I of ∂F/∂d
@@ -124,20 +137,19 @@ class _Sums:
             weights = area * partials.c
             self._by_tau[rows] += weights @ tau_y
             self._by_tau[columns] += weights.T @ tau_x
-        if partials.rho is not None:
+        if partials.rho is not None and self._arc_derivative:
             self._by_arc.add(tile, x.t, y.t, area * partials.rho)
         for edges, t, force in ((rows, x.t, force_x), (columns, y.t, -force_y)):
             self._by_tail[edges] += (1.0 - t) * force
             self._by_head[edges] += t * force
+        return float(weighted.sum().real)
 
-    def at_vertices(self, arc_derivative: bool) -> FloatArray:
-        """The derivative with respect to the vertices, shape (n, m), with or without the part of ϱ."""
-        tau, by_length = self._tau, self._by_length
-        if arc_derivative:
-            by_length = by_length + self._by_arc.by_length()
+    def at_vertices(self) -> FloatArray:
+        """The derivative with respect to the vertices, shape (n, m)."""
+        tau, by_length = self._tau, self._by_length + self._by_arc.by_length()
         # ∂τ/∂e = (1 − τ τᵀ)/ℓ
         across = self._by_tau - np.einsum("ij,ij->i", self._by_tau, tau)[:, None] * tau
-        by_edge = by_length[:, None] * tau + across / self._arcs.ell[:, None]
+        by_edge = by_length[:, None] * tau + across / self._ell[:, None]
         return self._mesh.scatter(self._by_tail - by_edge, self._by_head + by_edge)
 
 

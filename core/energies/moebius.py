@@ -4,7 +4,8 @@ E = 4·components + Σ W_IJ over ordered pairs of edges with disjoint closures (
 
     W_IJ = (ℓ_I ℓ_J + ⟨e_I, e_J⟩) s − 2 ⟨Δ, e_I⟩ ⟨Δ, e_J⟩ s²,   Δ = m_I − m_J,  s = 1/|Δ|²,
 
-Ishizeki and Nagasawa's density (1 − cos α)/r² at the midpoints.  A round circle has energy 4.
+the density (1 − cos α)/r² at the midpoints (A. Ishizeki and T. Nagasawa, A decomposition theorem of the Möbius energy
+I, Kodai Math. J. 37, 2014).  A round circle has energy 4.
 
 The second derivative is a dense matrix.  With n = s Δ, p = ⟨Δ, e_I⟩ s, q = ⟨Δ, e_J⟩ s and g = ℓ_I ℓ_J + ⟨e_I, e_J⟩ the
 second derivatives of a pair's W by e_I, e_J and Δ are
@@ -24,13 +25,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arguments import checked_fields
+from ..base.arguments import checked_fields
+from ..base.types import FloatArray, IntArray
 from ..curve import Curve, Mesh
-from ..quadrature import MIDPOINT
-from ..types import FloatArray, IntArray
 from .components import ComponentShares
-from .edge_pairs import ROWS_TIMES_COLUMNS, EdgePairIndices, Tile, change, pair_tiles, row_tiles
+from .edge_pairs import ROWS_TIMES_COLUMNS, EdgePairIndices, SteppedCurve, Tile, change, pair_tiles, row_tiles
 from .moebius_pairs import Edges, Pairs, PartnerSums
+from .quadrature import MIDPOINT
 
 CONSTANT = 4.0  # of a closed component
 
@@ -86,7 +87,7 @@ class MoebiusEnergy:
 
     def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
         """D²E v for ``v`` of shape (n, m), without forming the matrix; shape (n, m)."""
-        edges = Edges.of(curve, v)
+        edges = Edges.of(SteppedCurve(curve, v))
         sums = PartnerSums.zeros(edges.vectors)
         for tile in pair_tiles(curve.mesh, self.without, ROWS_TIMES_COLUMNS // 2):
             sums.add(tile.rows, tile.columns, Pairs.of(edges, tile).coefficients(), edges.vectors)
@@ -195,51 +196,38 @@ def hessian(curve: Curve, without: EdgePairIndices | None = None) -> FloatArray:
         pairs = Pairs.of(edges, tile)
         lengths[tile.rows] += pairs.s @ edges.vectors.ell[tile.columns]
         lengths[tile.columns] += edges.vectors.ell[tile.rows] @ pairs.s
-        _add_tile(edges, tile, pairs, coupling, own)
+        rows, columns = tile.rows, tile.columns
+        e, tau = _column(edges.vectors.e[rows]), _column(edges.tau[rows])
+        f, sigma = _row(edges.vectors.e[columns]), _row(edges.tau[columns])
+        g, p, q, s = pairs
+        n = _column(edges.vectors.m[rows]) - _row(edges.vectors.m[columns])
+        n *= s
+        # α, β and η, shapes (m, rows, columns), and a, shape (rows, columns)
+        ell_i, ell_j = edges.vectors.ell[rows, None], edges.vectors.ell[columns]
+        alpha = (4.0 * q) * n - s * (ell_j * tau + f)
+        beta = (4.0 * p) * n - s * (ell_i * sigma + e)
+        gs, pq = g * s, p * q
+        eta = (gs - 6.0 * pq) * n + (2.0 * s * q) * e + (2.0 * s * p) * f
+        a = s * (2.0 * pq - 0.5 * gs)
+        sn, ps, qs, s2 = s * n, p * s, q * s, 0.5 * s * s
+        for k, j in product(range(len(n)), repeat=2):
+            ee = s * (tau[k] * sigma[j]) - 2.0 * n[k] * n[j]
+            ec = alpha[k] * n[j] - sn[k] * f[j]  # ∂e_I ∂Δ/2, coordinates k of e_I and j of Δ
+            fc = beta[j] * n[k] - sn[j] * e[k]  # ∂e_J ∂Δ/2, coordinates j of e_J and k of Δ
+            cc = eta[k] * n[j] + n[k] * eta[j] - s2 * (e[k] * f[j] + f[k] * e[j])
+            if k == j:
+                ee += s
+                ec -= qs
+                fc -= ps
+                cc += a
+            own.ec[rows, k, j] += ec.sum(axis=1)
+            own.ec[columns, j, k] -= fc.sum(axis=0)
+            own.cc[rows, k, j] += cc.sum(axis=1)
+            own.cc[columns, k, j] += cc.sum(axis=0)
+            coupling.add(k, j, tile, ee, ec, fc, cc)
     normal = np.eye(curve.dimension) - edges.tau[:, :, None] * edges.tau[:, None, :]
     own.ee[...] = (lengths / edges.vectors.ell)[:, None, None] * normal
     return coupling.symmetric_matrix(own, 2.0)  # the energy counts ordered pairs
-
-
-def _add_tile(edges: Edges, tile: Tile, pairs: Pairs, coupling: CouplingPlanes, own: OwnBlocks) -> None:
-    rows, columns = tile.rows, tile.columns
-    e, tau = _column(edges.vectors.e[rows]), _column(edges.tau[rows])
-    f, sigma = _row(edges.vectors.e[columns]), _row(edges.tau[columns])
-    s = pairs.s
-    n = _column(edges.vectors.m[rows]) - _row(edges.vectors.m[columns])
-    n *= s
-    alpha, beta, eta, a = _vectors(edges, tile, pairs, n)
-    sn, ps, qs, s2 = s * n, pairs.p * s, pairs.q * s, 0.5 * s * s
-    for k, j in product(range(len(n)), repeat=2):
-        ee = s * (tau[k] * sigma[j]) - 2.0 * n[k] * n[j]
-        ec = alpha[k] * n[j] - sn[k] * f[j]  # ∂e_I ∂Δ/2, coordinates k of e_I and j of Δ
-        fc = beta[j] * n[k] - sn[j] * e[k]  # ∂e_J ∂Δ/2, coordinates j of e_J and k of Δ
-        cc = eta[k] * n[j] + n[k] * eta[j] - s2 * (e[k] * f[j] + f[k] * e[j])
-        if k == j:
-            ee += s
-            ec -= qs
-            fc -= ps
-            cc += a
-        own.ec[rows, k, j] += ec.sum(axis=1)
-        own.ec[columns, j, k] -= fc.sum(axis=0)
-        own.cc[rows, k, j] += cc.sum(axis=1)
-        own.cc[columns, k, j] += cc.sum(axis=0)
-        coupling.add(k, j, tile, ee, ec, fc, cc)
-
-
-def _vectors(
-    edges: Edges, tile: Tile, pairs: Pairs, n: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """α, β and η of the tile's pairs, shapes (m, rows, columns), and a, shape (rows, columns)."""
-    rows, columns = tile.rows, tile.columns
-    g, p, q, s = pairs
-    ell_i, ell_j = edges.vectors.ell[rows, None], edges.vectors.ell[columns]
-    e, f = _column(edges.vectors.e[rows]), _row(edges.vectors.e[columns])
-    alpha = (4.0 * q) * n - s * (ell_j * _column(edges.tau[rows]) + f)
-    beta = (4.0 * p) * n - s * (ell_i * _row(edges.tau[columns]) + e)
-    gs, pq = g * s, p * q
-    eta = (gs - 6.0 * pq) * n + (2.0 * s * q) * e + (2.0 * s * p) * f
-    return alpha, beta, eta, s * (2.0 * pq - 0.5 * gs)
 
 
 def _column(vectors: FloatArray) -> FloatArray:

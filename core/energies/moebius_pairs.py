@@ -5,9 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial.distance import cdist
 
+from ..base.types import FloatArray
 from ..curve import Curve, Mesh
-from ..types import FloatArray
-from .edge_pairs import RowTile, Tile, stepped
+from .edge_pairs import RowTile, Tile, half_changes
 
 
 class Vectors(NamedTuple):
@@ -37,24 +37,12 @@ class Edges(NamedTuple):
     foot: FloatArray  # (−e, ⟨m, e⟩), (edges, m + 1): times (m_J, 1) it is ⟨m_I − m_J, e_I⟩
 
     @classmethod
-    def of(cls, curve: Curve, v: FloatArray | None = None) -> "Edges":
-        """The edges of a curve, after a complex step along v, shape (n, m), if there is one."""
+    def of(cls, curve: Curve) -> "Edges":
         e, ell, m = curve.edge_vectors, curve.edge_lengths, curve.midpoints
-        if v is not None:
-            tails, heads = v[curve.mesh.tails], v[curve.mesh.heads]
-            e, m = stepped(e, heads - tails), stepped(m, 0.5 * (heads + tails))
-            ell = np.sqrt(np.einsum("ij,ij->i", e, e))
         # products of coordinates lose digits far from the origin, so the curve is moved to the origin
         vectors = Vectors(np.column_stack([e, ell]), np.column_stack([m - m.mean(axis=0), np.ones(len(m))]))
         foot = np.column_stack([-e, np.einsum("ij,ij->i", vectors.m, e)])
         return cls(vectors, e / ell[:, None], foot)
-
-    def _rates(self, tile: Tile | RowTile) -> FloatArray:
-        """Im |Δ|²/2 = ⟨Re Δ, Im Δ⟩ after a complex step; shape (rows, columns)."""
-        m, v = self.vectors.m.real, self.vectors.m.imag
-        own, one = np.einsum("ij,ij->i", m, v), np.ones(len(m))
-        left, right = np.column_stack([-v, -m, own, one]), np.column_stack([m, v, one, own])
-        return np.asarray(left[tile.rows] @ right[tile.columns].T)
 
 
 class Pairs(NamedTuple):
@@ -74,7 +62,7 @@ class Pairs(NamedTuple):
         r2[tile.excluded] = np.inf
         s = np.divide(1.0, r2, out=r2)
         if np.iscomplexobj(m_one):
-            s = s - 2j * s * s * edges._rates(tile)
+            s = s - 2j * s * s * half_changes(edges.vectors.m[rows], edges.vectors.m[columns])
         p = foot[rows] @ m_one[columns].T
         q = m_one[rows] @ -foot[columns].T
         p *= s

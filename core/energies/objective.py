@@ -2,26 +2,25 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import NamedTuple, TypeVar, cast
 
 import numpy as np
 import scipy.sparse as sp
 
-from ..arguments import checked_fields
+from ..base.arguments import checked_fields
+from ..base.errors import OptionError
+from ..base.types import FloatArray
 from ..curve import Curve
-from ..errors import OptionError
-from ..obstacle import Obstacle
-from ..types import FloatArray
+from ..curve.obstacle import Obstacle
 from .barrier import Barrier, replaced_pairs
 from .energy import (
     Approximate,
+    Assembled,
     Confining,
     Energy,
     LocalTerm,
     Stiff,
     Term,
-    TwiceDifferentiable,
     WithMidpointPairs,
     scale_exponent,
 )
@@ -53,13 +52,13 @@ class Objective:
     energy
         The energy of the curve alone, by default `MoebiusEnergy`.
     barrier
-        The term that makes it infinite where edges touch.
+        The term that makes it infinite where edges touch; None leaves the energy as it is.
     further
         All other terms with their weights, such as the repulsion of obstacles.
     """
 
     energy: Energy = field(default_factory=MoebiusEnergy)
-    barrier: Barrier = field(default_factory=Barrier)
+    barrier: Barrier | None = field(default_factory=Barrier)
     further: tuple[Weighted, ...] = ()
 
     name = "objective"
@@ -67,11 +66,11 @@ class Objective:
 
     @classmethod
     def of(
-        cls, energy: Energy, obstacles: Iterable[Obstacle] = (), further: Iterable[Weighted] = (), weight: float = 1.0
+        cls, energy: Energy, obstacles: Iterable[Obstacle] = (), further: Iterable[Weighted] = (), barrier: bool = True
     ) -> "Objective":
         """An energy among obstacles, in the units of curves; the barrier replaces what the energy contains of it."""
-        walls = (Weighted(each, weight) for each in Repulsion.of(obstacles))
-        return cls(energy, Barrier(replaces_midpoint=energy.contains_midpoint_pairs), (*walls, *further))
+        near = Barrier(replaces_midpoint=energy.contains_midpoint_pairs) if barrier else None
+        return cls(energy, near, (*map(Weighted, Repulsion.of(obstacles)), *further))
 
     @property
     def terms(self) -> tuple[Term, ...]:
@@ -97,6 +96,11 @@ class Objective:
     def has_hessian(self) -> bool:
         """Whether all terms come with a second derivative."""
         return self.without_hessian is None
+
+    @property
+    def is_assembled(self) -> bool:
+        """Whether the second derivative comes as a matrix too."""
+        return self.has_hessian and hasattr(self.energy, "hessian")
 
     @property
     def without_hessian(self) -> Term | None:
@@ -127,10 +131,10 @@ class Objective:
         return value, derivative
 
     def hessian(self, curve: Curve) -> FloatArray:
-        """Second derivative, symmetric, shape (n·m, n·m), in the order of ``vertices.ravel()``."""
+        """Second derivative of an assembled one, symmetric, (n·m, n·m), in the order of ``vertices.ravel()``."""
         self._check_hessian()
         energy, *local = self._summands(curve)
-        matrix = cast(TwiceDifferentiable, energy.term).hessian(curve)
+        matrix = cast(Assembled, energy.term).hessian(curve)
         for term, weight in local:
             part = cast(LocalTerm, term).sparse_hessian(curve).tocoo()
             matrix[part.coords] += weight * part.data
@@ -156,14 +160,12 @@ class Objective:
     def _summands(self, curve: Curve) -> tuple[Weighted, ...]:
         """The terms, energy first; energy that the barrier takes away is never added: rounding would grow like 1/g²."""
         energy, barrier = self.energy, self.barrier
+        if barrier is None:
+            return (Weighted(energy), *self.further)
         if barrier.replaces_midpoint:
             energy = cast(WithMidpointPairs, energy).leaving_out(replaced_pairs(curve))
-            barrier = self._barrier_alone
+            barrier = replace(barrier, left_out=True)
         return (Weighted(energy), Weighted(barrier), *self.further)
-
-    @cached_property
-    def _barrier_alone(self) -> Barrier:
-        return replace(self.barrier, left_out=True)
 
     def _check_hessian(self) -> None:
         lacking = self.without_hessian

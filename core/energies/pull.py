@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
+from ..base.types import FloatArray
 from ..curve import Curve
 from ..curve.distances import periods, vertex_positions
 from ..curve.measures import bending, bending_and_derivative
-from ..types import FloatArray
 
 WIDTH = 0.02  # standard deviation of the stretch, in lengths of its component, unless edges are longer
 SUPPORT = 3.0  # of the stretch to either side, in standard deviations

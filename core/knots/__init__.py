@@ -1,20 +1,18 @@
 """Knots and links to start from: a table and its smooth shapes, torus knots, braids, drawings, satellites, arcs."""
 
-from .closed_braids import braid_closure, torus_knot
+from .braids import braid_closure, torus_knot
 from .drawings import Drawing
+from .formulas import FORMULAS, cable, double, freedman, lissajous_knot, overhand
 from .inscribed import rounded
 from .knot_type import Effort, KnotType, knot_type
-from .names import UnknownKnotError, braid_word, knot, knot_names
-from .parametric import ARCS, lissajous_knot, overhand
+from .names import ALIASES, HARD_UNKNOTS, KNOTS, UnknownKnotError, braid_word, knot, knot_names
 from .planar import coded_knot, diagram_knot
-from .satellites import cable, double
 from .scrambles import scramble
 from .shapes import smooth_knot
-from .table import ALIASES, HARD_UNKNOTS, KNOTS
 
 __all__ = [
     "ALIASES",
-    "ARCS",
+    "FORMULAS",
     "HARD_UNKNOTS",
     "KNOTS",
     "Drawing",
@@ -27,6 +25,7 @@ __all__ = [
     "coded_knot",
     "diagram_knot",
     "double",
+    "freedman",
     "knot",
     "knot_names",
     "knot_type",

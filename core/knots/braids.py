@@ -1,24 +1,25 @@
-"""Braid words, diagrams of their closures, and closures as polygons on the cubic lattice.
+"""Braid words, diagrams of their closures, and smooth closed braids around the z axis, torus knots among them.
 
 A word is a tuple of signed letters; letter i is the crossing σ_i of strands i and i+1, −i its inverse.  A positive
 letter is a positive (right-handed) crossing, so the closure of (1, 1, 1) is the right-handed trefoil.
 """
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
+from ..base.arguments import checked
+from ..base.errors import CurveError
+from ..base.types import FloatArray, IntArray
 from ..curve import Curve
-from ..diagrams import Diagram, Pass, diagram_of
-from ..errors import CurveError
-from ..types import IntArray
+from ..curve.refine import arc_lengths
+from .diagrams import Diagram, Pass, diagram_of
+from .inscribed import MAX_VERTICES, check_count, shares, too_few
 
 Word = tuple[int, ...]
-
-MAX_STRANDS = 500  # of braids of any use
-MAX_LETTERS = 20_000
-_COLUMN = 3  # length of a crossing along the strands
-_Corner = tuple[int, int, int]
 
 
 def checked_word(word: Sequence[int], strands: int | None = None) -> tuple[Word, int]:
@@ -32,11 +33,9 @@ def checked_word(word: Sequence[int], strands: int | None = None) -> tuple[Word,
     strands = needed if strands is None else strands
     if strands < needed:
         raise CurveError(f"the braid has {strands} strands, but its letters need {needed}")
-    if strands > MAX_STRANDS or len(letters) > MAX_LETTERS:
-        raise CurveError(
-            f"the braid has {strands} strands and {len(letters)} letters; "
-            f"at most {MAX_STRANDS} and {MAX_LETTERS} are allowed"
-        )
+    if strands > 500 or len(letters) > 20_000:
+        told = f"the braid has {strands} strands and {len(letters)} letters"
+        raise CurveError(f"{told}; at most 500 and 20000 are allowed")
     return letters, strands
 
 
@@ -117,62 +116,155 @@ def plat_diagram(word: Sequence[int]) -> Diagram:
     return Diagram((*diagram.passes, *((),) * circles), diagram.signs)
 
 
-def lattice_closure(word: Sequence[int], *, strands: int | None = None) -> Curve:
-    """Make the closure of a braid as a polygon with corners on the integer lattice and edges along its axes.
+@checked
+def braid_closure(word: Sequence[int], vertices: int | None = None, *, strands: int | None = None) -> Curve:
+    """Make the closure of a braid, one component per cycle of its permutation.
 
-    Strands run along y at x = 0, 1, …, one step below those that cross over them, and return in the plane z = 0.
+    The strands are concentric circles around the z axis, unit distance apart before the whole is scaled to a
+    middle radius of 1; every crossing is a smooth half twist of two neighbours.  Seen from above the curve is the usual
+    picture of the closed braid.
 
-    Parameters
-    ----------
-    word
-        Letters ±i, see :mod:`mobius_flow.core.knots.braids`.
-    strands
-        Number of strands, by default as few as the word needs.
+    ``word`` has letters ±i, see :mod:`mobius_flow.core.knots.braids`, and is empty for the trivial braid; there are as
+    few strands and as many vertices as needed, unless given.  Raises CurveError if it is no braid word or the vertices
+    are too few.
 
-    Raises
-    ------
-    CurveError
-        If it is no braid word.
-
-    Examples
-    --------
-    >>> len(lattice_closure([1, 1, 1]))
-    29
+    >>> len(braid_closure([1, 1]).mesh.component_sizes)
+    2
     """
     letters, count = checked_word(word, strands)
     places, width = columns(letters)
-    crossings = {}
+    inner = max(2.2 * width / (2 * math.pi), 1.0)  # a crossing is 2.2 long there, in units of the strands' distance
+    scale = 1.0 / (inner + (count - 1) / 2)
+    moves: dict[tuple[int, int], tuple[int, int]] = {}  # by column and place before it: where to, and the sign
     for letter, column in zip(letters, places, strict=True):
-        left, over = abs(letter) - 1, letter > 0
-        crossings[column, left] = 1, over
-        crossings[column, left + 1] = -1, not over
-    components = []
+        i, sign = abs(letter) - 1, 1 if letter > 0 else -1
+        moves[column, i], moves[column, i + 1] = (1, sign), (-1, sign)
+    rings = []
     for cycle in cycles(letters, count):
-        path: list[_Corner] = []
+        # for every column, turn after turn: the place before it, the move, and the crossing's sign
+        rows = []
         for place in cycle:
-            path += _strand(crossings, width, place, count)
-        components.append(_corners(np.array(path)))
-    return Curve.from_components(components)
+            for column in range(max(width, 1)):
+                move, sign = moves.get((column, place), (0, 0))
+                rows.append((place, move, sign))
+                place += move
+        track = np.array(rows, dtype=np.intp).T
+        rings.append(Ring(len(cycle), partial(_braid_profile, track, max(width, 1), inner, scale)))
+    return _polygon(rings, scale, max(60, 2 * count * width), vertices)
 
 
-def _strand(crossings: dict[tuple[int, int], tuple[int, bool]], width: int, place: int, count: int) -> list[_Corner]:
-    """The strand that starts at a place, and its way back to where the next one starts."""
-    path = [(place, 0, 0)]
-    for column in range(width):
-        step, over = crossings.get((column, place), (0, False))
-        y, beyond = _COLUMN * column, place + step
-        if over:
-            path += [(place, y, 0), (place, y, 1), (place, y + 2, 1), (beyond, y + 2, 1), (beyond, y + 2, 0)]
-        elif step:
-            path += [(place, y + 1, 0), (beyond, y + 1, 0)]
-        place = beyond
-    outward = count - place
-    top, side, bottom = _COLUMN * width + outward, count - 1 + outward, -outward
-    return [*path, (place, top, 0), (side, top, 0), (side, bottom, 0), (place, bottom, 0)]
+@checked
+def torus_knot(p: int, q: int, vertices: int | None = None, *, major: float = 1.0, minor: float | None = None) -> Curve:
+    """Make the torus knot T(p, q), or the torus link of gcd(p, q) components.
+
+    It is the stereographic image of (r₁ e^{ipt}, r₂ e^{iqt}) on a flat torus r₁² + r₂² = 1 of the 3-sphere, with
+    r₂ = ``minor / major``: it runs p times around the z axis and q times around the tube, its strands evenly spread in
+    the conformal sense. Positive p and q give the right-handed knot, a negative one its mirror image.
+
+    ``vertices`` is the total number; by default edges are shorter than strands are apart.  The radii of the torus and
+    of its tube satisfy 0 < minor < major; the default tube is near the one of least Möbius energy, which for T(2, 3) is
+    0.47407312473.  Raises CurveError if a number is not allowed, or the vertices are too few.
+    """
+    if not (0 < abs(p) <= 2000 and 0 < abs(q) <= 2000):
+        raise CurveError(f"T({p},{q}) cannot be made; |p| and |q| must be from 1 to 2000")
+    hand = 1 if p * q > 0 else -1
+    p, q = abs(p), abs(q)
+    minor = major * min(p / math.hypot(p, 1.25 * q), 0.6) if minor is None else minor
+    if not 1e-100 < minor < major < 1e100:  # whose squares are still doubles
+        raise CurveError(f"major is {major} and minor {minor}; they must satisfy 0 < minor < major, not beyond 1e±100")
+    parts = math.gcd(p, q)
+
+    def section(phi: FloatArray) -> FloatArray:
+        """Points of the tube's cross-section at conformal angles (k,), counted from the outside; shape (k, 2)."""
+        r2 = minor / major
+        stretch = major * (1 - r2**2) / (1 - r2 * np.cos(phi))
+        return np.stack([stretch, stretch * r2 * np.sin(phi) / math.sqrt(1 - r2**2)], axis=1)
+
+    def profile(phase: float, theta: FloatArray) -> FloatArray:
+        # turning from outwards to upwards while going round is a left-handed screw
+        return section(q / p * theta + phase) * [1, -hand]
+
+    rings = [Ring(p // parts, partial(profile, 2 * math.pi * k / p)) for k in range(parts)]
+    gap = minor  # one strand never meets itself within a half plane; this only sets the number of vertices
+    if p > 1:
+        phases = np.linspace(0.0, 2 * math.pi / p, 64)[:, None] + 2 * math.pi / p * np.arange(p)
+        points = section(phases.ravel()).reshape(64, p, 2)
+        gap = float(np.linalg.norm(points - np.roll(points, 1, axis=1), axis=2).min())
+    return _polygon(rings, gap, max(60, 16 * max(p, q)), vertices)
 
 
-def _corners(path: IntArray) -> IntArray:
-    """The vertices of a closed lattice path at which it turns."""
-    path = path[np.any(path != np.roll(path, -1, axis=0), axis=1)]
-    before, after = path - np.roll(path, 1, axis=0), np.roll(path, -1, axis=0) - path
-    return np.asarray(path[np.any(np.sign(before) != np.sign(after), axis=1)])
+@dataclass(frozen=True)
+class Ring:
+    """A smooth closed curve that runs ``turns`` times around the z axis."""
+
+    turns: int
+    at: Callable[[FloatArray], FloatArray]  # distance from the axis and height, (k, 2), at angles (k,) up to the period
+
+    @property
+    def period(self) -> float:
+        return 2 * math.pi * self.turns
+
+    def points(self, theta: FloatArray) -> FloatArray:
+        """Points in space at angles of shape (k,); shape (k, 3)."""
+        rho, z = self.at(theta).T
+        return np.stack([rho * np.cos(theta), rho * np.sin(theta), z], axis=1)
+
+
+def _polygon(rings: Sequence[Ring], gap: float, detail: int, vertices: int | None) -> Curve:
+    """Inscribe a polygon with nearly equal edges in rings that do not meet.
+
+    ``gap`` is the least distance between two strands within a half plane that ends at the axis; by default there are so
+    many vertices that edges are shorter than that, and at least ``detail``.
+    """
+    check_count(max(detail, vertices or 0))
+    around = [ring.points(np.linspace(0.0, ring.period, 8 * detail + 1)) for ring in rings]
+    lengths = np.array([float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum()) for points in around])
+    if vertices is None:
+        # edges of 0.7 gaps: tilted strands are a little nearer than the gap
+        vertices = min(max(math.ceil(lengths.sum() / (0.7 * gap)), detail), MAX_VERTICES)
+    angles = []
+    for ring, count in zip(rings, shares(vertices, lengths), strict=True):
+        theta = np.linspace(0.0, ring.period, count + 1)
+        for _ in range(20):  # to nearly equal edges
+            along = arc_lengths(ring.points(theta))
+            theta = np.interp(np.linspace(0.0, along[-1], count + 1), along, theta)
+        angles.append(theta[:-1])
+    if any(_deviation(ring, theta) >= gap / 2 for ring, theta in zip(rings, angles, strict=True)):
+        raise too_few(vertices)
+    return Curve.from_components([ring.points(theta) for ring, theta in zip(rings, angles, strict=True)])
+
+
+def _deviation(ring: Ring, theta: FloatArray) -> float:
+    """Largest distance between polygon and curve within a half plane; infinite if an edge goes backwards or too far.
+
+    Where this stays below half the gap, moving every point straight from the curve to the polygon within its
+    half plane lets no two strands meet: polygon and curve are the same closed braid.
+    """
+    ends = np.append(theta, ring.period)
+    steps = np.diff(ends)
+    if steps.min() <= 0 or steps.max() > 0.9 * math.pi:
+        return math.inf
+    fractions = np.arange(1, 8) / 8  # each edge is compared in so many half planes
+    pages = theta[:, None] + steps[:, None] * fractions
+    points = ring.points(ends)
+    tails, edges = points[:-1, None], np.diff(points, axis=0)[:, None]
+    normal = np.stack([-np.sin(pages), np.cos(pages), np.zeros_like(pages)], axis=2)
+    s = -(tails * normal).sum(axis=2) / (edges * normal).sum(axis=2)
+    hits = tails + s[:, :, None] * edges
+    within = np.stack([np.hypot(hits[:, :, 0], hits[:, :, 1]), hits[:, :, 2]], axis=2)
+    smooth = ring.at(pages.ravel()).reshape(within.shape)
+    return float(np.linalg.norm(within - smooth, axis=2).max())
+
+
+def _braid_profile(track: IntArray, width: int, inner: float, scale: float, theta: FloatArray) -> FloatArray:
+    """Distance from the axis and height of one component at angles (k,); shape (k, 2)."""
+    along = np.asarray(theta, dtype=np.float64) / (2 * math.pi) * width
+    # The clip keeps the closing angle 2π·turns in the last column instead of past it.
+    column = np.clip(np.floor(along).astype(np.intp), 0, track.shape[1] - 1)
+    place, move, sign = track[:, column]
+    x = along - column
+    angle = math.pi * (x * x * (3.0 - 2.0 * x))
+    radius = inner + place + 0.5 * move * (1 - np.cos(angle))
+    # The strand moving outwards passes over in a positive crossing and under in a negative one.
+    height = 0.5 * move * sign * np.sin(angle)
+    return np.stack([scale * radius, scale * height], axis=1)

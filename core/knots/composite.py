@@ -13,16 +13,14 @@ from itertools import chain, compress, product
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
-from ..arguments import checked_fields, number
+from ..base.arguments import checked_fields, number
+from ..base.types import BoolArray, FloatArray, IntArray
 from ..curve import Curve
-from ..diagrams import linking_numbers, quick_invariants
-from ..diagrams.invariants import TRIVIAL
-from ..obstacle import Obstacle
-from ..types import BoolArray, FloatArray, IntArray
+from ..curve.obstacle import Obstacle
+from .diagrams import linking_numbers, quick_invariants
+from .diagrams.invariants import TRIVIAL
 
 _MARGIN = 1e-6  # of the separating plane, for a curve of size 1: far above rounding
-_CLOSE = 1e-3  # to the largest margin, relatively
-_STEPS = 60  # of Newton's method: few arcs take more than 20
 
 
 @checked_fields
@@ -134,34 +132,30 @@ def _separating(points: FloatArray, sides: FloatArray) -> Iterator[Ball]:
     lifted = np.column_stack([points, (points**2).sum(axis=1), np.ones(len(points))])
     products = (lifted[:, :, None] * lifted[:, None]).reshape(len(points), -1)
     found, open_ = np.zeros((len(sides), 5)), np.arange(len(sides))
-    for _ in range(_STEPS):
+    for _ in range(60):  # of Newton's method: few arcs take more than 20
         short = 1.0 - sides[open_] * (found[open_] @ lifted.T)
         lack = np.maximum(short, 0.0)
         slope = -(sides[open_] * lack) @ lifted
-        going = (lack.max(axis=1) > _CLOSE) & (np.abs(slope).sum(axis=1) > _MARGIN * lack.sum(axis=1))
+        going = (lack.max(axis=1) > 1e-3) & (np.abs(slope).sum(axis=1) > _MARGIN * lack.sum(axis=1))
         open_, short, slope = open_[going], short[going], slope[going]
         if not len(open_):
             break
         hessian = ((short > 0.0) @ products).reshape(-1, 5, 5) + _MARGIN**2 * np.eye(5)
         step = -np.linalg.solve(hessian, slope[:, :, None])[:, :, 0]
-        size = _step_sizes(short, -sides[open_] * (step @ lifted.T), (slope * step).sum(axis=1))
+        # for each row a step t that decreases the loss ½ |(short + t change)₊|² as its slope says (Armijo)
+        change, fall = -sides[open_] * (step @ lifted.T), (slope * step).sum(axis=1)
+        size, left = np.ones(len(short)), np.arange(len(short))
+        loss = (np.maximum(short, 0.0) ** 2).sum(axis=1) * (1.0 + 1e-12)  # up to rounding
+        while len(left):
+            ahead = np.maximum(short[left] + size[left, None] * change[left], 0.0)
+            left = left[(ahead**2).sum(axis=1) > loss[left] + 0.01 * size[left] * fall[left]]
+            size[left] *= 0.5
         found[open_] += size[:, None] * step
     largest = np.abs(found).max(axis=1)
     separates = (sides * (found @ lifted.T)).min(axis=1) > _MARGIN * largest
     for *normal, bend, offset in found[separates & (np.abs(found[:, 3]) > _MARGIN * largest)]:
         center = -np.array(normal) / (2.0 * bend)
         yield Ball(center, float(np.sqrt(max(center @ center - offset / bend, 0.0))))
-
-
-def _step_sizes(short: FloatArray, change: FloatArray, slope: FloatArray) -> FloatArray:
-    """For each row a step t that decreases the loss ½ |(short + t change)₊|² as its slope says (Armijo)."""
-    size, left = np.ones(len(short)), np.arange(len(short))
-    loss = (np.maximum(short, 0.0) ** 2).sum(axis=1) * (1.0 + 1e-12)  # up to rounding
-    while len(left):
-        ahead = np.maximum(short[left] + size[left, None] * change[left], 0.0)
-        left = left[(ahead**2).sum(axis=1) > loss[left] + 0.01 * size[left] * slope[left]]
-        size[left] *= 0.5
-    return size
 
 
 def _is_knotted(curve: Curve, ball: Ball) -> bool:
@@ -177,26 +171,27 @@ def _is_knotted(curve: Curve, ball: Ball) -> bool:
     if (ball.contains(start + s[:, None] * edge) & ~first & ~last).any():
         return False
     entry, exit_ = cut if last[cut[0]] else cut[::-1]
-    chord = np.array([_crossing(curve, edge, ball) for edge in (entry, exit_)])
-    within = _part(curve, inside, int(mesh.heads[entry]), _around(ball, *chord[::-1]))
-    without = _part(curve, ~inside, int(mesh.heads[exit_]), chord)
-    return _first_is_knotted(within) and _first_is_knotted(without)
-
-
-def _first_is_knotted(curve: Curve) -> bool:
-    """Whether the first component is knotted, or linked with another."""
-    found = quick_invariants(curve)
-    others = len(curve.mesh.component_sizes) - 1  # pairs with the first component are listed first
-    return found.alexander[0] != TRIVIAL or any(found.linking[:others])
-
-
-def _crossing(curve: Curve, edge: np.intp, ball: Ball) -> FloatArray:
-    """Where an edge with one end inside meets the sphere."""
-    start = curve.vertices[curve.mesh.tails[edge]] - ball.center
-    vector = curve.edge_vectors[edge]
-    roots = np.roots([vector @ vector, 2.0 * start @ vector, start @ start - ball.radius**2]).real
-    s = roots[np.argmin(np.abs(roots - 0.5))]
-    return np.asarray(ball.center + start + s * vector)
+    chord = []  # where both edges, each with one end inside, meet the sphere
+    for k in (entry, exit_):
+        begin, vector = start[k] - ball.center, edge[k]
+        roots = np.roots([vector @ vector, 2.0 * begin @ vector, begin @ begin - ball.radius**2]).real
+        chord.append(ball.center + begin + roots[np.argmin(np.abs(roots - 0.5))] * vector)
+    # a path from the exit to the entry outside the ball, in the plane of a great circle
+    v, u = ((point - ball.center) / ball.radius for point in chord)
+    across = v - (u @ v) * u
+    if np.linalg.norm(across) < _MARGIN:  # opposite ends: any great circle will do
+        across = np.cross(u, np.eye(3)[np.argmin(np.abs(u))])
+    across /= np.linalg.norm(across)
+    angles = np.linspace(0.0, np.arccos(np.clip(u @ v, -1.0, 1.0)), 3)[:, None]  # two edges, of a right angle at most
+    corners = ball.center + 1.5 * ball.radius * (np.cos(angles) * u + np.sin(angles) * across)
+    path = np.concatenate([[chord[1]], corners, [chord[0]]])
+    within = _part(curve, inside, int(mesh.heads[entry]), path)
+    without = _part(curve, ~inside, int(mesh.heads[exit_]), np.array(chord))
+    for part in (within, without):
+        found, others = quick_invariants(part), len(part.components) - 1  # pairs with the first component come first
+        if found.alexander[0] == TRIVIAL and not any(found.linking[:others]):
+            return False
+    return True
 
 
 def _part(curve: Curve, chosen: BoolArray, begin: int, closing: FloatArray) -> Curve:
@@ -205,15 +200,3 @@ def _part(curve: Curve, chosen: BoolArray, begin: int, closing: FloatArray) -> C
     ring = np.roll(np.arange(own.start, own.stop), own.start - begin)
     whole = [curve.vertices[part] for part in curve.mesh.slices if part != own and chosen[part].all()]
     return Curve.from_components([np.concatenate([curve.vertices[ring[chosen[ring]]], closing]), *whole])
-
-
-def _around(ball: Ball, a: FloatArray, b: FloatArray) -> FloatArray:
-    """Points of a path from a to b, both on the sphere, outside the ball and in the plane of a great circle."""
-    u, v = (a - ball.center) / ball.radius, (b - ball.center) / ball.radius
-    across = v - (u @ v) * u
-    if np.linalg.norm(across) < _MARGIN:  # opposite ends: any great circle will do
-        across = np.cross(u, np.eye(3)[np.argmin(np.abs(u))])
-    across /= np.linalg.norm(across)
-    angles = np.linspace(0.0, np.arccos(np.clip(u @ v, -1.0, 1.0)), 3)[:, None]  # two edges, of a right angle at most
-    corners = ball.center + 1.5 * ball.radius * (np.cos(angles) * u + np.sin(angles) * across)
-    return np.concatenate([a[None], corners, b[None]])

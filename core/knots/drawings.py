@@ -11,24 +11,14 @@ from itertools import pairwise
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..arguments import checked
+from ..base.arguments import checked
+from ..base.errors import CurveError, Place
+from ..base.types import BoolArray, FloatArray
 from ..collision import check_embedded
 from ..curve import Curve, check_closed
 from ..curve.distances import arc_distance_of_pairs
-from ..curve.refine import subdivide
-from ..curve.smooth import arc_lengths
-from ..diagrams.projection import plane_crossings
-from ..errors import CurveError, Place
-from ..types import BoolArray, FloatArray, IntArray
-
-MAX_POINTS = 20_000  # of a drawing: seconds to compare all its edges
-_CLEAR = 1e-3  # of the drawing's size: nearer crossings, or strands so near that do not cross, are unclear
-_FLATTEST = 20.0  # times that distance: how far away from a crossing its strands may stay so near
-_JITTER = 1e-9  # of the size, by which points are moved so that no strand runs exactly through a vertex of another
-_LIFT = 0.3  # height of strands above and below the plane, of the distance to the next crossing
-_HIGHEST = 0.08  # of the drawing's size
-_NEAREST = 1e-4  # of the size: vertices nearer than that to a crossing give way to it
-_RAMP = 10  # edges from one crossing to the next, at least
+from ..curve.refine import arc_lengths, subdivide
+from .diagrams.projection import plane_crossings
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,19 +37,53 @@ class Drawing:
         if curve.dimension != 2:
             raise CurveError(f"the drawing has dimension {curve.dimension}; it must lie in the plane")
         check_closed(curve, "drawings")
-        if len(curve) > MAX_POINTS:
-            raise CurveError(f"the drawing has {len(curve)} points; at most {MAX_POINTS} are allowed")
+        if len(curve) > 20_000:  # seconds to compare all edges
+            raise CurveError(f"the drawing has {len(curve)} points; at most 20000 are allowed")
         if not _size(curve):
             raise CurveError("all points of the drawing are the same; draw a closed curve")
+        # points are moved a little so that no strand runs exactly through a vertex of another
         noise = np.random.default_rng(20213).uniform(-1.0, 1.0, curve.vertices.shape)
-        generic = curve.with_vertices(curve.vertices + _JITTER * _size(curve) * noise)
+        generic = curve.with_vertices(curve.vertices + 1e-9 * _size(curve) * noise)
         found = plane_crossings(generic.mesh, generic.vertices)
         passes = (found.edges + found.at).T
         passes = passes[np.argsort(passes[:, 0])]
         edge = passes[:, 0].astype(np.intp)
         points = generic.vertices[edge] + (passes[:, 0] - edge)[:, None] * generic.edge_vectors[edge]
-        _check_clear(generic, points, edge)
-        return cls(generic, points, passes, _upper(generic, passes))
+        # refused are crossings too near each other, and strands as near that do not cross within 20 times that distance
+        clear = 1e-3 * _size(generic)
+        tree = cKDTree(points) if len(points) else None
+        if tree is not None and (pairs := tree.query_pairs(clear, output_type="ndarray")).size:
+            raise _unclear(points[pairs[0, 0]], int(edge[pairs[0, 0]]))
+        pieces = np.ceil(generic.edge_lengths / clear).astype(np.intp).clip(1)
+        dense, source = subdivide(generic, pieces), np.repeat(np.arange(len(generic)), pieces)
+        i, j = cKDTree(dense.vertices).query_pairs(clear, output_type="ndarray").T
+        apart = arc_distance_of_pairs(dense, i, j) > 20.0 * clear
+        i = i[apart]
+        if tree is not None and i.size:
+            i = i[tree.query(dense.vertices[i])[0] > 20.0 * clear]
+        if i.size:
+            raise _unclear(dense.vertices[i[0]], int(source[i[0]]))
+        # The plane is coloured like a chessboard; a strand goes over where it has come with a white field on its left.
+        # At a crossing this holds for one strand of the two, and along the curve for every other pass, in links too.
+        upper, at, heads = np.zeros(passes.shape, dtype=bool), passes.ravel(), generic.mesh.heads
+        for part in generic.mesh.slices:
+            mine = np.flatnonzero((at >= part.start) & (at < part.stop))
+            if not mine.size:
+                continue
+            mine = mine[np.argsort(at[mine])]
+            start = part.start + 0.5 * min(float(at[mine[0]]) - part.start, 1.0)
+            # number of times that a ray from there to its left meets the curve again
+            tail = int(start)
+            vector = generic.edge_vectors[tail]
+            around = generic.vertices - (generic.vertices[tail] + (start - tail) * vector)
+            along, left = around @ vector, around @ np.array([-vector[1], vector[0]])
+            meets = (along > 0) != (along[heads] > 0)
+            meets[tail] = False
+            fraction = along[meets] / (along[meets] - along[heads][meets])
+            fields = np.count_nonzero(left[meets] + fraction * (left[heads][meets] - left[meets]) > 0)
+            upper.ravel()[mine] = (np.arange(len(mine)) + fields) % 2 == 0
+        # the first crossing's first pass is an upper one
+        return cls(generic, points, passes, np.asarray(upper[:, 0] == upper[:1, 0]))
 
     @classmethod
     @checked
@@ -78,14 +102,14 @@ class Drawing:
                 raise CurveError(f"there is no crossing {number}; the drawing has {count}, counted from 1")
         over = self.first_over.copy()
         over[[number - 1 for number in changed]] ^= True
-        heights = np.full(count, _HIGHEST * _size(self.curve))
+        heights = np.full(count, 0.08 * _size(self.curve))  # of the drawing's size
         if count > 1:
             nearest_crossing = cKDTree(self.crossings).query(self.crossings, k=2)[0][:, 1]
-            heights = np.minimum(heights, _LIFT * nearest_crossing)
+            heights = np.minimum(heights, 0.3 * nearest_crossing)
         heights = np.where(over, heights, -heights)
         at, lift = self.passes.ravel(), np.stack([heights, -heights], axis=1).ravel()
         order = np.argsort(at)
-        parts, nearest = [], _NEAREST * _size(self.curve)
+        parts, nearest = [], 1e-4 * _size(self.curve)
         for part in self.curve.mesh.slices:
             mine = order[(at[order] >= part.start) & (at[order] < part.stop)]
             parts.append(_lifted(self.curve.vertices[part], at[mine] - part.start, lift[mine], nearest))
@@ -105,7 +129,7 @@ def _lifted(points: FloatArray, at: FloatArray, lift: FloatArray, nearest: float
     marks = np.interp(at, np.arange(len(closed)), arc)
     places = _with(marks, arc[:-1], nearest, arc[-1])
     for a, b in pairwise([*marks, marks[0] + arc[-1]] if len(marks) else [0.0, arc[-1]]):
-        ramp = np.linspace(a, b, _RAMP, endpoint=False)[1:]
+        ramp = np.linspace(a, b, 10, endpoint=False)[1:]
         places = _with(places, ramp % arc[-1], 0.5 * (ramp[1] - ramp[0]), arc[-1])
     plane = [np.interp(places, arc, x) for x in closed.T]
     if not len(marks):
@@ -129,57 +153,9 @@ def _size(curve: Curve) -> float:
     return float(np.ptp(curve.vertices, axis=0).max())
 
 
-def _check_clear(curve: Curve, crossings: FloatArray, edge: IntArray) -> None:
-    """Refuse crossings that are too near each other, and strands that are too near without crossing there."""
-    clear = _CLEAR * _size(curve)
-    tree = cKDTree(crossings) if len(crossings) else None
-    if tree is not None and (pairs := tree.query_pairs(clear, output_type="ndarray")).size:
-        raise _unclear(crossings[pairs[0, 0]], int(edge[pairs[0, 0]]))
-    pieces = np.ceil(curve.edge_lengths / clear).astype(np.intp).clip(1)
-    dense, source = subdivide(curve, pieces), np.repeat(np.arange(len(curve)), pieces)
-    i, j = cKDTree(dense.vertices).query_pairs(clear, output_type="ndarray").T
-    apart = arc_distance_of_pairs(dense, i, j) > _FLATTEST * clear
-    i = i[apart]
-    if tree is not None and i.size:
-        i = i[tree.query(dense.vertices[i])[0] > _FLATTEST * clear]
-    if i.size:
-        raise _unclear(dense.vertices[i[0]], int(source[i[0]]))
-
-
 def _unclear(point: FloatArray, vertex: int) -> CurveError:
     place = ", ".join(f"{x:.4g}" for x in point)
     return CurveError(
         f"near ({place}) strands touch without crossing clearly, or more than two meet; move one of them away",
         Place((vertex,), tuple(map(float, point))),
     )
-
-
-def _upper(curve: Curve, passes: FloatArray) -> BoolArray:
-    """Whether first passes are upper ones where strands go over and under alternately; shape (c,).
-
-    The plane is coloured like a chessboard; a strand goes over where it has come with a white field on its left. At a
-    crossing this holds for one strand of the two, and along the curve for every other pass, in links too.
-    """
-    upper = np.zeros(passes.shape, dtype=bool)
-    at = passes.ravel()
-    for part in curve.mesh.slices:
-        mine = np.flatnonzero((at >= part.start) & (at < part.stop))
-        if mine.size:
-            mine = mine[np.argsort(at[mine])]
-            start = part.start + 0.5 * min(float(at[mine[0]]) - part.start, 1.0)
-            upper.ravel()[mine] = (np.arange(len(mine)) + _fields_on_the_left(curve, start)) % 2 == 0
-    return np.asarray(upper[:, 0] == upper[:1, 0])  # the first crossing's first pass is an upper one
-
-
-def _fields_on_the_left(curve: Curve, at: float) -> int:
-    """Number of times that a ray from a place on the curve to its left meets the curve again."""
-    edge = int(at)
-    vector = curve.edge_vectors[edge]
-    origin = curve.vertices[edge] + (at - edge) * vector
-    along = (curve.vertices - origin) @ vector
-    left = (curve.vertices - origin) @ np.array([-vector[1], vector[0]])
-    heads = curve.mesh.heads
-    cut = (along > 0) != (along[heads] > 0)
-    cut[edge] = False
-    fraction = along[cut] / (along[cut] - along[heads][cut])
-    return int(np.count_nonzero(left[cut] + fraction * (left[heads][cut] - left[cut]) > 0))

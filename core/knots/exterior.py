@@ -4,17 +4,17 @@ The fundamental group, by SnapPy, is infinite cyclic only for the unknot (Papaky
 fiberedness are by knot Floer homology (Szabó's program; Ozsváth and Szabó 2004, Ni 2007).
 """
 
+import re
 from functools import cache
 from typing import NamedTuple
 
-from ..diagrams import Diagram, PlanarCrossing
+from .diagrams import Diagram
 
-_FLOER, _GROUP = 60, 150  # crossings of diagrams: the homology of wide ones of more takes minutes
-_TETRAHEDRA = 60  # of complements, whose presentations are simplified in a second; those of many more take hours
+CENSUS = "its complement, in SnapPy's census"
 FLOER, GENUS, GROUP = "knot Floer homology", "its genus by knot Floer homology", "its group, which is infinite cyclic"
 
 
-class Group(NamedTuple):
+class KnotGroup(NamedTuple):
     """A presentation of the fundamental group: a capital letter is the inverse of a generator."""
 
     generators: tuple[str, ...]
@@ -32,41 +32,52 @@ class Floer(NamedTuple):
     ranks: tuple[tuple[tuple[int, int], int], ...]  # by Alexander and Maslov gradings
 
 
-def group(link: Diagram) -> Group | None:
-    """The group of a link; None for large ones, for diagrams that fall apart, and where SnapPy is not installed."""
-    fits = 0 < link.crossings <= _GROUP and len(link.pieces()) == 1
-    return _group(tuple(link.planar_code)) if fits else None
-
-
-def floer(knot: Diagram) -> Floer | None:
-    """The homology of a knot; None for links, large diagrams, and where the library is not installed."""
-    fits = 0 < knot.crossings <= _FLOER and len(knot.passes) == 1
-    return _floer(tuple(knot.planar_code)) if fits else None
-
-
 @cache
-def _group(code: tuple[PlanarCrossing, ...]) -> Group | None:
+def group(link: Diagram) -> KnotGroup | None:
+    """The group of a link; None for large ones, for diagrams that fall apart, and where SnapPy is not installed."""
+    if not 0 < link.crossings <= 150 or len(link.pieces()) > 1:
+        return None
     try:
         from snappy import Link
         from snappy.SnapPy import set_rand_seed
     except ImportError:  # also where it is python-snappy that has the name
         return None
     set_rand_seed(0)  # which presentation is found depends on it
-    exterior = Link(list(map(list, code))).exterior(with_hyperbolic_structure=False)
-    if exterior.num_tetrahedra() > _TETRAHEDRA:
+    exterior = Link(list(map(list, link.planar_code))).exterior(with_hyperbolic_structure=False)
+    if exterior.num_tetrahedra() > 60:  # fewer take a second to simplify, many more hours
         return None
     found = exterior.fundamental_group()
-    return Group(tuple(found.generators()), tuple(found.relators()))
+    return KnotGroup(tuple(found.generators()), tuple(found.relators()))
 
 
 @cache
-def _floer(code: tuple[PlanarCrossing, ...]) -> Floer | None:
+def floer(knot: Diagram) -> Floer | None:
+    """The homology of a knot; None for links, large diagrams, and where the library is not installed."""
+    if not 0 < knot.crossings <= 60 or len(knot.passes) > 1:  # wide diagrams of more crossings take minutes
+        return None
     try:
         from knot_floer_homology import pd_to_hfk
     except ImportError:
         return None
-    found = pd_to_hfk(list(map(list, code)))
+    found = pd_to_hfk(list(map(list, knot.planar_code)))
     return Floer(found["seifert_genus"], found["fibered"], tuple(sorted(found["ranks"].items())))
+
+
+@cache
+def names_by_census(knot: Diagram) -> tuple[str, ...]:
+    """The knots of SnapPy's census, of up to 15 crossings, whose complement is this one's; empty without SnapPy.
+
+    A complement belongs to one knot and its mirror image (Gordon and Luecke 1989).
+    """
+    if not 0 < knot.crossings <= 150 or len(knot.passes) > 1:
+        return ()
+    try:
+        from snappy import Link
+    except ImportError:
+        return ()
+    exterior = Link(list(map(list, knot.planar_code))).exterior()
+    names = [each.name() for each in exterior.identify()] if exterior.num_tetrahedra() <= 60 else []
+    return tuple(f"{m}{name}" for name in names if re.fullmatch(r"K\d+[an]\d+", name) for m in ("", "m"))
 
 
 def names_by_exterior(knot: Diagram) -> tuple[tuple[str, ...], str]:
@@ -75,7 +86,7 @@ def names_by_exterior(knot: Diagram) -> tuple[tuple[str, ...], str]:
     Only the unknot has an infinite cyclic group, and genus 0; only the trefoils and the figure-eight are fibered of
     genus 1.
     """
-    if len(knot.passes) == 1 and group(knot) == Group(("a",), ()):
+    if len(knot.passes) == 1 and group(knot) == KnotGroup(("a",), ()):
         return ("0_1",), GROUP
     found = floer(knot)
     if found is None or found.genus > 1 or (found.genus == 1 and not found.fibered):

@@ -5,19 +5,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..arguments import checked
+from ..base.arguments import checked
+from ..base.errors import CurveError, counted
+from ..base.types import FloatArray
 from ..collision import is_free
 from ..curve import Curve, Mesh
 from ..curve.distances import nearest_strands
-from ..curve.refine import subdivide
-from ..curve.smooth import arc_lengths
-from ..errors import CurveError, counted
-from ..types import FloatArray
+from ..curve.refine import arc_lengths, subdivide
 
 MAX_VERTICES = 400_000  # of any knot that is made: twice what any command takes
-_EDGE = 0.5  # default edge length in units of the gap between strands
-_DISTINCT = 2.0  # points are on different strands if they are this many times further apart along the curve
-_FINER = 4  # times as many vertices represent the smooth curve
 
 
 def inscribed(curve: Curve, vertices: int | None, least: int = 120) -> Curve:
@@ -29,11 +25,11 @@ def inscribed(curve: Curve, vertices: int | None, least: int = 120) -> Curve:
     """
     gap = strand_gap(curve)
     if vertices is None:
-        vertices = max(least, math.ceil(curve.length / (_EDGE * gap)) if gap > 0 else MAX_VERTICES + 1)
+        vertices = max(least, math.ceil(curve.length / (0.5 * gap)) if gap > 0 else MAX_VERTICES + 1)
     sizes = shares(vertices, curve.component_lengths)
     at = [(part, arc_steps(part), n) for part, n in zip(curve.components, sizes, strict=True)]
-    coarse, fine = (
-        Curve.from_components([_along(part, t, np.arange(k * n) / (k * n)) for part, t, n in at]) for k in (1, _FINER)
+    coarse, fine = (  # four times as many vertices represent the smooth curve
+        Curve.from_components([_along(part, t, np.arange(k * n) / (k * n)) for part, t, n in at]) for k in (1, 4)
     )
     if not is_isotopic(fine, equal_steps(fine), coarse, equal_steps(coarse)):
         raise too_few(vertices)
@@ -62,8 +58,8 @@ def shares(vertices: int, lengths: FloatArray) -> list[int]:
 
 
 def strand_gap(curve: Curve) -> float:
-    """Least distance between vertices on different strands, which include the two sides of a bend."""
-    return nearest_strands(curve, _DISTINCT)
+    """Least distance between vertices twice as far apart along the curve: strands, and the two sides of a bend."""
+    return nearest_strands(curve, 2.0)
 
 
 def is_isotopic(first: Curve, first_at: Sequence[FloatArray], second: Curve, second_at: Sequence[FloatArray]) -> bool:

@@ -1,21 +1,88 @@
 """The type of a polygon in space: a name from the table, several possible ones, or none; and the evidence."""
 
 import re
-from collections.abc import Callable
+from collections import defaultdict
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import product
 from math import prod
 
-from ..arguments import checked, checked_fields, number
+from ..base.arguments import checked, checked_fields, number
+from ..base.errors import counted
 from ..curve import Curve
-from ..diagrams import Diagram, factors, is_least, shuffled_down, signature, simplified, views
-from ..diagrams.polynomials import alexander, doubled_bracket, jones
-from ..errors import counted
-from .catalogue import KNOTS_TO, LINKS_TO, Key, bracket_key, crossing_number, invariant_of, key, types_with
-from .exterior import FLOER, Floer, Group, floer, group, names_by_exterior
+from .braids import braid_diagram
+from .diagrams import (
+    Diagram,
+    Laurent,
+    factors,
+    is_least,
+    normalized_bracket,
+    shuffled_down,
+    signature,
+    simplifying,
+    unsigned_linking,
+    views,
+)
+from .diagrams.invariants import alexander, doubled_bracket, jones, times
+from .exterior import CENSUS, FLOER, Floer, KnotGroup, floer, group, names_by_census, names_by_exterior
+from .names import AMPHICHEIRAL, KNOTS, braid_word
 
-_UNKNOT = re.compile(r"\b0_1\b")
+Key = tuple[tuple[int, int], ...]  # a polynomial that can be looked up: exponents and coefficients
+
+KNOTS_TO, LINKS_TO = 10, 7  # crossings up to which the table is complete
+
+
+def key(polynomial: Laurent) -> Key:
+    """A polynomial as something to look up."""
+    return tuple(sorted(polynomial.items()))
+
+
+def bracket_key(diagram: Diagram) -> Key | None:
+    """The bracket that is the same for all diagrams and orientations; None if the diagram is too wide."""
+    found = normalized_bracket(diagram, diagram.own_writhe)
+    return None if found is None else key(found)
+
+
+@cache
+def crossing_number(name: str) -> int:
+    """Crossing number of a name; for connected sums, the sum over the factors."""
+    return sum(int(number) for number in re.findall(r"(?<![\d_an])\d+", name))  # with which names of factors begin
+
+
+@cache
+def invariant_of(name: str, invariant: Callable[[Diagram], object]) -> object:
+    """An invariant of the knot or link of a name."""
+    return invariant(braid_diagram(braid_word(name)))
+
+
+@cache
+def _by_bracket() -> Mapping[Key, list[str]]:
+    """Names of the types with each bracket, those with few crossings first."""
+    found: defaultdict[Key, list[str]] = defaultdict(list)
+    primes: list[tuple[str, Laurent]] = []
+    for name, word in KNOTS.items():
+        diagram = braid_diagram(word)
+        bracket = normalized_bracket(diagram, diagram.own_writhe) or {}
+        primes.append((name, bracket))
+        if name not in AMPHICHEIRAL:
+            primes.append((f"m{name}", {-power: c for power, c in bracket.items()}))
+    # all composite types: products of the factors' brackets
+    every, factors_of_sums = list(primes), [each for each in primes if 0 < crossing_number(each[0]) <= KNOTS_TO - 2]
+    shorter: list[tuple[str, Laurent, int]] = [(*each, k) for k, each in enumerate(factors_of_sums)]
+    while shorter:
+        longer: list[tuple[str, Laurent, int]] = []
+        for (name, bracket, last), (k, (factor, own)) in product(shorter, enumerate(factors_of_sums)):
+            joined = f"{name}#{factor}"
+            if k >= last and crossing_number(joined) <= (LINKS_TO if "L" in joined else KNOTS_TO):
+                longer.append((joined, times(bracket, own), k))
+        every += [(name, bracket) for name, bracket, _ in longer]
+        shorter = longer
+    for name, bracket in sorted(every, key=lambda each: (crossing_number(each[0]), "L" in each[0])):
+        found[key(bracket)].append(name)
+    return found
+
+
 NO_CROSSINGS, JONES, ALEXANDER = "a diagram without crossings", "the Jones polynomial", "the Alexander polynomial"
 SIGNATURE, DOUBLED, LINKING = "the signature", "the Jones polynomial of the doubled knot", "linking numbers"
 
@@ -31,6 +98,8 @@ class Effort:
         Vertices of the largest curve whose crossings are looked for, which takes seconds.
     views
         Directions to look from: a curve of many crossings simplifies better in some.
+    work
+        Crossings visited while views are simplified, all views together: some ten seconds.
     doubled
         Crossings of the largest knots compared by the polynomials of their doubles.
     names
@@ -39,6 +108,7 @@ class Effort:
 
     vertices: int = number(20_000)
     views: int = number(12)
+    work: int = number(600_000)
     doubled: int = number(14)
     names: int = number(16)
 
@@ -55,13 +125,13 @@ class KnotType:
     proved: bool  #: whether the type certainly is one of the names, as no knot of so few crossings is left out
     diagram: Diagram | None  #: the diagram with the fewest crossings that was found
     evidence: tuple[str, ...]  #: what distinguishes the names from others
-    refusal: str = ""  #: why no diagram was looked for
+    refusal: str = ""  #: why no diagram was looked for, or none was found that could be compared
 
     def __repr__(self) -> str:
         return f"<KnotType: {self.sentence:.100}>"
 
     def __str__(self) -> str:
-        return _UNKNOT.sub("unknot", " or ".join(self.names)) if self.names else "not identified"
+        return re.sub(r"\b0_1\b", "unknot", " or ".join(self.names)) if self.names else "not identified"
 
     @cached_property
     def alexander(self) -> tuple[int, ...] | None:
@@ -80,7 +150,7 @@ class KnotType:
         return floer(self.diagram) if self.diagram else None
 
     @cached_property
-    def group(self) -> Group | None:
+    def group(self) -> KnotGroup | None:
         """The fundamental group of the complement; None where it is large, or without the extra "knots"."""
         return group(self.diagram) if self.diagram else None
 
@@ -111,21 +181,30 @@ def knot_type(curve: Curve, effort: Effort = DEFAULT_EFFORT) -> KnotType:
     of no more than ten (links: seven) it is the one of the table that has its polynomials.  Sums that the diagram shows
     are identified factor by factor.  Diagrams that keep too many crossings are not identified.
     """
-    if refusal := _refusal(curve, effort):
-        return KnotType((), False, None, (), refusal)
-    return type_of_diagram(_simplest(curve, effort.views), effort)
-
-
-def _refusal(curve: Curve, effort: Effort) -> str:
-    """Why a curve has no type, or too many vertices to identify it; empty for all others."""
+    refusal = ""
     if not curve.mesh.all_closed:
         which = "this one is open" if len(curve.mesh.component_sizes) == 1 else "some parts of this one are open"
-        return f"none: only closed curves have a knot type, and {which}"
-    if curve.dimension != 3:
-        return f"none: only curves in space have a knot type, and this one is in dimension {curve.dimension}"
-    if len(curve) > effort.vertices:
-        return f"not identified: the curve has {len(curve):,} vertices, more than {effort.vertices:,}"
-    return ""
+        refusal = f"none: only closed curves have a knot type, and {which}"
+    elif curve.dimension != 3:
+        refusal = f"none: only curves in space have a knot type, and this one is in dimension {curve.dimension}"
+    elif len(curve) > effort.vertices:
+        refusal = f"not identified: the curve has {len(curve):,} vertices, more than {effort.vertices:,}"
+    if refusal:
+        return KnotType((), False, None, (), refusal)
+    best, left = None, effort.work
+    for view in views(curve, effort.views):
+        for diagram in simplifying(view):
+            left -= diagram.crossings
+            if left < 0:
+                break
+        else:
+            best = diagram if best is None or diagram.crossings < best.crossings else best
+        if left < 0 or (best is not None and _is_enough(best)):
+            break
+    if best is None:
+        told = f"not identified: {diagram.crossings:,} crossings are left after as much simplifying as is allowed"
+        return KnotType((), False, None, (), told)
+    return type_of_diagram(shuffled_down(best, _is_enough), effort)
 
 
 def type_of_diagram(diagram: Diagram, effort: Effort = DEFAULT_EFFORT) -> KnotType:
@@ -141,18 +220,6 @@ def type_of_diagram(diagram: Diagram, effort: Effort = DEFAULT_EFFORT) -> KnotTy
         evidence.pop(NO_CROSSINGS, None)
     proved = bool(names) and all(each.proved for each in every)
     return KnotType(tuple(sorted(names, key=_order)), proved, diagram, tuple(evidence))
-
-
-def _simplest(curve: Curve, count: int) -> Diagram:
-    """The diagram with the fewest crossings of several views, or one that is simple enough."""
-    every = map(simplified, views(curve, count))
-    best = next(every)
-    while not _is_enough(best):
-        view = next(every, None)
-        if view is None:
-            return shuffled_down(best, _is_enough)
-        best = view if view.crossings < best.crossings else best
-    return best
 
 
 def _is_enough(diagram: Diagram) -> bool:
@@ -185,9 +252,10 @@ def _factor_type(factor: Diagram, effort: Effort) -> KnotType:
     bracket = bracket_key(factor)
     if bracket is None:
         return KnotType((), False, factor, ())
-    names, evidence = types_with(bracket, min(factor.crossings, complete)), [JONES]
-    if is_least(factor):
-        names = [name for name in names if crossing_number(name) == factor.crossings]
+    least = factor.crossings if is_least(factor) else 0
+    most = min(factor.crossings, complete)
+    names = [name for name in _by_bracket().get(bracket, ()) if least <= crossing_number(name) <= most]
+    evidence = [JONES]
 
     def compare(invariant: Callable[[Diagram], object], reason: str) -> None:
         """Keep the names that have the factor's invariant, if it can be computed."""
@@ -197,7 +265,7 @@ def _factor_type(factor: Diagram, effort: Effort) -> KnotType:
             evidence.append(reason)
 
     if len(factor.passes) > 1:
-        compare(_linking, LINKING)
+        compare(unsigned_linking, LINKING)
     else:
         compare(alexander, ALEXANDER)
         if len(names) > 1:
@@ -207,12 +275,9 @@ def _factor_type(factor: Diagram, effort: Effort) -> KnotType:
         if names and factor.crossings > KNOTS_TO:
             compare(floer, FLOER)
     names = [name for name in names if name in known] if known else names
+    if not names and not known and (larger := names_by_census(factor)):
+        return KnotType(larger, False, factor, (CENSUS,))
     return KnotType(tuple(names), factor.crossings <= complete or bool(known), factor, tuple(evidence))
-
-
-def _linking(link: Diagram) -> list[int]:
-    """Linking numbers without their signs, which orientations decide; sorted."""
-    return sorted(map(abs, link.linking_numbers))
 
 
 def _doubled(knot: Diagram) -> Key | None:

@@ -2,16 +2,75 @@
 
 import difflib
 import re
+from collections.abc import Mapping
+from configparser import ConfigParser
+from pathlib import Path
 
-from ..arguments import checked
+from ..base.arguments import checked
+from ..base.errors import CurveError, MobiusFlowError
 from ..curve import Curve
-from ..diagrams.codes import gauss_text, is_code
-from ..errors import CurveError, MobiusFlowError
-from .braids import Word, checked_word, connected_sum, mirror, plat_diagram
-from .closed_braids import braid_closure, torus_knot
-from .parametric import ARCS
+from .braids import Word, braid_closure, checked_word, connected_sum, mirror, plat_diagram, torus_knot
+from .diagrams import PlanarCrossing
+from .diagrams.codes import gauss_text, is_code
+from .formulas import FORMULAS
 from .planar import coded_knot, diagram_knot
-from .table import ALIASES, HARD_UNKNOTS, KNOTS, ROLFSEN, larger_name, larger_word
+
+_LARGER = re.compile(r"(?P<kind>[kl]?)(?P<crossings>[1-9]\d?)_?(?P<sort>[an])_?0*(?P<number>[1-9]\d{0,5})", re.ASCII)
+_OTHERWISE = 'give its code, such as "DT: [4 6 2]", "PD[X[1,5,2,4], ...]" or "Gauss: 1 -2 3 -1 2 -3"'
+
+
+_TABLES = ConfigParser(delimiters="=", interpolation=None)
+_TABLES.optionxform = str  # type: ignore[assignment,method-assign]  # names stay as they are written there
+_TABLES.read_string(Path(__file__).with_name("table.ini").read_text(encoding="utf-8"))
+
+
+def _word(letters: str) -> Word:
+    return tuple(map(int, letters.split()))
+
+
+KNOTS: Mapping[str, Word] = {name: _word(letters) for name, letters in _TABLES["braids"].items()}
+"""Braid words of all prime knots to ten crossings and links to seven.
+
+Handedness is the word's, positive letters being right-handed crossings: 3_1 is the right-handed trefoil.
+"""
+
+HARD_UNKNOTS: Mapping[str, tuple[PlanarCrossing, ...]] = {
+    name: tuple(zip(*[iter(_word(edges))] * 4, strict=True)) for name, edges in _TABLES["hard unknots"].items()
+}
+"""Planar diagram codes of famous unknots that are hard to untangle, from 10 to 141 crossings."""
+
+AMPHICHEIRAL = frozenset(" ".join(_TABLES["amphicheiral"].values()).split())
+"""The knots that are their own mirror images, whatever their orientation, and such links."""
+
+ROLFSEN: Mapping[str, str] = dict(_TABLES["rolfsen"])
+"""Names of links in D. Rolfsen's table (*Knots and Links*, 1976): crossings, components, number."""
+
+ALIASES: Mapping[str, str] = dict(_TABLES["other names"])
+"""Other names for knots and links of the table, and for sums of them."""
+
+
+def larger_name(name: str) -> str | None:
+    """The Hoste-Thistlethwaite name, such as K11n34, of one in small letters (``11n_34``); None for other names."""
+    match = _LARGER.fullmatch(name)
+    if match is None:
+        return None
+    kind, crossings, sort, number = match.groups()
+    return f"{(kind or 'k').upper()}{crossings}{sort}{number}"
+
+
+def larger_word(name: str) -> Word:
+    """A braid word from spherogram, of the mirror image it chooses; MobiusFlowError if there is none, or no table."""
+    try:
+        from spherogram import Link
+    except ImportError as error:
+        advice = f'try pip install spherogram (the extra "knots"), or {_OTHERWISE}'
+        raise MobiusFlowError(f"{name} is in larger tables than the one here; {advice}") from error
+    try:
+        link = Link(name)
+    except ValueError as error:
+        raise MobiusFlowError(f"no knot or link is called {name} in spherogram's tables; {_OTHERWISE}") from error
+    return tuple(map(int, link.braid_word()))
+
 
 _TORUS = re.compile(r"(?:t|torus)\((?P<numbers>[^()#]*)(?P<end>\)?)")
 _BRAID = re.compile(  # braid(1,1), {1,1} as in KnotInfo, BR[2,{1,1}] as in the Knot Atlas
@@ -20,7 +79,6 @@ _BRAID = re.compile(  # braid(1,1), {1,1} as in KnotInfo, BR[2,{1,1}] as in the 
 _PLAT = re.compile(r"plat\((?P<numbers>[^()#]*)(?P<end>\)?)")
 _NUMBER = re.compile(r"[+-]?\d{1,18}", re.ASCII)
 _FORMS = "write T(p,q) or braid(1,-2,...)"
-_MAX_LETTERS = 10_000  # about p·q, of a torus knot that is given as a braid
 _HARD = {name.replace("-", ""): name for name in HARD_UNKNOTS}
 _TABLE = {name.lower(): name for name in KNOTS}
 _WORDS = {**ALIASES, **ROLFSEN}
@@ -31,8 +89,8 @@ class UnknownKnotError(MobiusFlowError):
 
 
 def knot_names() -> list[str]:
-    """Names of the table's knots and links, other names for them, the hard unknots, and arcs."""
-    return [*KNOTS, *(name.replace(" ", "-") for name in ALIASES), *HARD_UNKNOTS, *ARCS]
+    """Names of the table's knots and links, other names for them, the hard unknots, and curves from formulas."""
+    return [*KNOTS, *(name.replace(" ", "-") for name in ALIASES), *HARD_UNKNOTS, *FORMULAS]
 
 
 @checked
@@ -43,9 +101,9 @@ def knot(name: str, vertices: int | None = None) -> Curve:
     ``figure-eight``), those of larger tables (``K11n34``, ``L10a100``) where spherogram is installed, torus knots
     ``T(2,5)`` or ``torus(2,5)``, braids ``braid(1,-2,1,-2)``, ``{1,-2,1,-2}`` or ``BR[3,{1,-2,1,-2}]``, mirror images
     ``m3_1``, and connected sums ``3_1#m3_1``; also, by themselves, plats of braids ``plat(2,2,-1,2)``, the diagrams of
-    :data:`HARD_UNKNOTS` (``goeritz``), the open polygons of :data:`ARCS` (``overhand``), and codes of diagrams
-    (``DT: [4 6 2]``, ``PD[X[1,5,2,4],...]``, ``Gauss: 1 -2 3 -1 2 -3``, and lists in brackets as SnapPy and KnotInfo
-    have them).
+    :data:`HARD_UNKNOTS` (``goeritz``), the curves of :data:`FORMULAS` (``overhand``, ``freedman``), and codes of
+    diagrams (``DT: [4 6 2]``, ``PD[X[1,5,2,4],...]``, ``Gauss: 1 -2 3 -1 2 -3``, and lists in brackets as SnapPy and
+    KnotInfo have them).
 
     ``vertices`` is the total number; by default edges are shorter than strands are apart.  Raises UnknownKnotError for
     other names, and CurveError if the vertices are too few or a number is not allowed.
@@ -65,8 +123,8 @@ def knot(name: str, vertices: int | None = None) -> Curve:
     if is_code(name) and "#" not in name:
         return coded_knot(name, vertices)
     by_itself = re.sub(r"[\s_-]", "", _plain(name))
-    if by_itself in ARCS:
-        return ARCS[by_itself](vertices)
+    if by_itself in FORMULAS:
+        return FORMULAS[by_itself](vertices)
     if by_itself in _HARD:
         return diagram_knot(HARD_UNKNOTS[_HARD[by_itself]], vertices)
     return braid_closure(braid_word(name), vertices)
@@ -92,9 +150,15 @@ def braid_word(name: str) -> Word:
 
 
 def _prime_word(part: str, name: str) -> Word:
+    """The word of a summand of a name."""
     squeezed = _squeezed(part)
     if (torus := _TORUS.fullmatch(squeezed)) is not None:
-        return _torus_word(*_torus(torus, name))
+        p, q = sorted(_torus(torus, name), key=abs)  # (σ₁ … σ_{p−1})^q
+        if p * q == 0 or abs(p * q) > 10_000:
+            given = "T({},{})".format(*_torus(torus, name))
+            raise CurveError(f"{given} in a sum or mirror image needs p and q that are not 0, and |pq| ≤ 10000")
+        word = tuple(range(1, abs(p))) * abs(q)
+        return word if p * q > 0 else mirror(word)
     if (braid := _BRAID.fullmatch(squeezed)) is not None:
         word, strands = _braid(braid, name)
         if checked_word(word, strands)[1] > checked_word(word)[1]:
@@ -108,7 +172,14 @@ def _prime_word(part: str, name: str) -> Word:
         return larger_word(larger)
     bare, mirrored = _unmirrored(part)
     if bare in ("", part):
-        raise _unknown(name)
+        plain = _plain(name)
+        alike = [key for key in _TABLE if "_" in plain and key.startswith(plain.partition("_")[0] + "_")]
+        close = difflib.get_close_matches(plain, alike or [*_TABLE, *ALIASES, *HARD_UNKNOTS], n=3, cutoff=0.5)
+        advice = f"did you mean {' or '.join(_TABLE.get(c, c) for c in close)}? " if close else ""
+        raise UnknownKnotError(
+            f"no knot is called {name[:60]!r}; {advice}known are 0_1 to 10_165, links such as L2a1, words such as "
+            "trefoil or goeritz, T(p,q), braid(1,-2,...), m before a name for the mirror image, and sums A#B"
+        )
     word = _prime_word(bare, name)
     return mirror(word) if mirrored else word
 
@@ -144,26 +215,6 @@ def _braid(match: re.Match[str], name: str) -> tuple[Word, int | None]:
     if word and match[0].startswith("{") and sorted(word) == sorted({side * abs(k) for k in word for side in (1, -1)}):
         raise UnknownKnotError(f"{name[:60]!r} may be a braid or a Gauss code; write braid(...) or Gauss: ...")
     return word, int(match["strands"]) if match.groupdict()["strands"] else None
-
-
-def _unknown(name: str) -> UnknownKnotError:
-    plain = _plain(name)
-    alike = [key for key in _TABLE if "_" in plain and key.startswith(plain.partition("_")[0] + "_")]
-    close = difflib.get_close_matches(plain, alike or [*_TABLE, *ALIASES, *HARD_UNKNOTS], n=3, cutoff=0.5)
-    advice = f"did you mean {' or '.join(_TABLE.get(c, c) for c in close)}? " if close else ""
-    return UnknownKnotError(
-        f"no knot is called {name[:60]!r}; {advice}known are 0_1 to 10_165, links such as L2a1, words such as trefoil "
-        "or goeritz, T(p,q), braid(1,-2,...), m before a name for the mirror image, and sums A#B"
-    )
-
-
-def _torus_word(p: int, q: int) -> Word:
-    """(σ₁ … σ_{p−1})^q, for torus knots within sums and mirror images."""
-    if p * q == 0 or abs(p * q) > _MAX_LETTERS:
-        raise CurveError(f"T({p},{q}) in a sum or mirror image needs p and q that are not 0, and |pq| ≤ {_MAX_LETTERS}")
-    p, q = sorted((p, q), key=abs)
-    word = tuple(range(1, abs(p))) * abs(q)
-    return word if p * q > 0 else mirror(word)
 
 
 def _squeezed(text: str) -> str:

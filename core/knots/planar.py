@@ -1,42 +1,40 @@
-"""Knots and links from diagrams, which are drawn with straight lines, and their crossings lifted into space.
+"""Knots and links from diagrams, which are drawn along the lines of a grid, and their crossings lifted into space.
 
-Crossings, edges and faces of a diagram become nodes of a triangulated disk, which Tutte's theorem (*How to draw a
-graph*, 1963) draws without overlaps for any positive weights; weights that grow with lengths make the drawing even.
+Drawings have as few bends as there can be, all lengths being whole numbers.  So strands are 1 or more apart, and the
+drawing is no wider than it has crossings, bends and cuts.  On the way round a face, which is on the left, the quarters
+turned to the left, less those to the right, are 4, and −4 round the outer one: crossings give one each, and bends what
+is missing, as a least flow between faces (R. Tamassia, *SIAM Journal on Computing* 16, 1987).  Then faces are cut into
+rectangles: in these it is enough that all lines have length 1 or more.
 """
 
+from collections import deque
 from collections.abc import Sequence
-from itertools import chain
+from itertools import islice, pairwise
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import spsolve
 
-from ..arguments import checked
+from ..base.arguments import checked
+from ..base.errors import CurveError
+from ..base.types import FloatArray
 from ..collision import check_embedded
 from ..curve import Curve, refine
 from ..curve.curve import MAKERS
-from ..diagrams import Diagram, PlanarCrossing, diagram_of
-from ..diagrams.codes import diagram_from_code
-from ..diagrams.rerouting import without_nugatory
-from ..errors import CurveError
-from ..types import FloatArray
+from .diagrams import Diagram, PlanarCrossing, diagram_of
+from .diagrams.codes import diagram_from_code
+from .diagrams.rerouting import without_nugatory
 from .inscribed import MAX_VERTICES
-
-_ROUNDS = 4  # in which weights grow with the square roots of lengths; with many more some lines collapse
-_LIFT = 0.5  # of the shortest line from a crossing: the height of its strands above and below the plane
-_CIRCLE = 12  # vertices of a component without crossings
-_GAP = 0.5  # between parts that no crossing joins, all of radius 1
 
 
 @checked
 def diagram_knot(code: Sequence[PlanarCrossing], vertices: int | None = None) -> Curve:
-    """Make the knot or link of a planar diagram code as a polygon with four vertices for every crossing, or more.
+    """Make the knot or link of a planar diagram code as a polygon with vertices at its crossings and bends, or more.
 
     The code has for each crossing its four edges, counterclockwise from the one that comes in below; nugatory crossings
     are left out.  Raises CurveError if there is no such diagram, or the vertices are too few or too many.
 
     >>> len(diagram_knot([(1, 5, 2, 4), (3, 1, 4, 6), (5, 3, 6, 2)]))
-    12
+    22
     """
     return _refined(drawn(diagram_of(code)), vertices)
 
@@ -50,9 +48,27 @@ def coded_knot(text: str, vertices: int | None = None, kind: str | None = None) 
 def drawn(diagram: Diagram) -> Curve:
     """A polygon that looks like a diagram from above, nugatory crossings left out; its parts lie side by side."""
     parts: list[FloatArray] = []
-    for k, piece in enumerate(without_nugatory(diagram).pieces()):
-        parts += [part + (2.0 + _GAP) * k * np.eye(3)[0] for part in _drawn_piece(piece)]
+    right = 0.0
+    for piece in without_nugatory(diagram).pieces():
+        if piece.crossings:
+            strands, places = [], grid_drawing(piece)
+            for (_, over), path, after in zip(piece.sequence, places, piece.next, strict=True):
+                # corners at bends are cut off, at 0.3 of a line of the grid on both sides
+                steps = 0.3 * np.sign(np.diff(path, axis=0, append=places[after][:1]))
+                corners = np.stack([path[1:] - steps[:-1], path[1:] + steps[1:]], axis=1).reshape(-1, 2)
+                heights = [0.5 if over else -0.5, *[0.0] * len(corners)]
+                strands.append(np.column_stack([np.concatenate([path[:1], corners]), heights]))
+            rest = iter(strands)
+            drawing = [np.concatenate(list(islice(rest, len(passes)))) for passes in piece.passes]
+        else:
+            angle = 2.0 * np.pi * np.arange(12) / 12
+            drawing = [np.column_stack([np.cos(angle), np.sin(angle), np.zeros(12)])]
+        left, *_ = np.min([part.min(axis=0) for part in drawing], axis=0)
+        parts += [part + np.array([right - left, 0.0, 0.0]) for part in drawing]
+        right = 1.0 + max(float(part[:, 0].max()) for part in parts)
     curve = Curve.from_components(parts)
+    low, high = curve.vertices.min(axis=0), curve.vertices.max(axis=0)
+    curve = curve.with_vertices((curve.vertices - 0.5 * (low + high)) * (2.0 / max(high - low)))
     check_embedded(curve)
     return curve
 
@@ -85,52 +101,107 @@ def _refined(curve: Curve, vertices: int | None) -> Curve:
     return refine(curve, vertices)
 
 
-def _drawn_piece(piece: Diagram) -> list[FloatArray]:
-    """The components of a connected diagram, each from after its first lower pass on; vertices of shape (n, 3)."""
-    if not piece.crossings:
-        angle = 2.0 * np.pi * np.arange(_CIRCLE) / _CIRCLE
-        return [np.column_stack([np.cos(angle), np.sin(angle), np.zeros(_CIRCLE)])]
-    places, middles = _drawing(piece)
-    lift = _LIFT * np.linalg.norm(middles[np.array(piece.planar_code)] - places[:, None], axis=2).min(axis=1)
-    crossing, over = np.array(piece.sequence).T
-    points = np.zeros((len(crossing), 2, 3))  # for each pass its crossing, and the middle of the edge after it
-    points[:, 0] = np.column_stack([places[crossing], np.where(over, lift[crossing], -lift[crossing])])
-    points[:, 1, :2] = middles
-    starts: dict[int, int] = {}
-    for start in chain(*zip(*piece.levels, strict=True)):
-        starts.setdefault(piece.component[start], start)
-    component, parts = np.array(piece.component), []
-    for k, start in starts.items():
-        own = np.flatnonzero(component == k)
-        parts.append(points[np.roll(own, own[0] - start - 1)].reshape(-1, 3))
-    return parts
+def grid_drawing(piece: Diagram) -> list[FloatArray]:
+    """Draw a connected diagram in the plane that has crossings, none of them nugatory.
+
+    Returns for each pass its place and those of the bends of the edge after it, shape (1 + bends, 2).
+    """
+    # by darts, 2k along line k and 2k + 1 back; weights by lines
+    tails, turns, weights = list[int](), list[int](), list[float]()
+
+    cutting = 0.01  # weight of the length of a line that only cuts faces, beside one of the drawing
+
+    def line(start: int, end: int, weight: float, turn: int, turn_back: int) -> int:
+        """The dart along a new line between two nodes, and the quarters to the left where it, and the one back, end."""
+        tails.extend([start, end])
+        turns.extend([turn, turn_back])
+        weights.append(weight)
+        return len(tails) - 2
+
+    outer = max(range(len(piece.faces)), key=lambda k: len(piece.faces[k]))
+    nodes, paths, lines = piece.crossings, [], []
+    # for each edge its bends to the left, or less than 0 to the right, as few as there can be
+    from scipy.optimize import linprog
+
+    edges = len(piece.sequence)
+    face, dart = np.array([(k, dart) for k, darts in enumerate(piece.faces) for dart in darts]).T
+    flow = sp.coo_array((1 - 2 * (dart % 2), (face, dart // 2)), shape=(len(piece.faces), edges))
+    missing = [(-4 if k == outer else 4) - len(darts) for k, darts in enumerate(piece.faces)]
+    found = linprog(np.ones(2 * edges), A_eq=sp.hstack([flow, -flow]).tocsc(), b_eq=missing, method="highs-ds").x
+    for edge, bends in enumerate([round(left - right) for left, right in found.reshape(2, edges).T.tolist()]):
+        begin, end = (piece.sequence[i][0] for i in (edge, piece.next[edge]))
+        count, way = abs(bends), 1 if bends > 0 else -1
+        path = [begin, *range(nodes, nodes + count), end]
+        nodes += count
+        paths.append(path[:-1])
+        quarters = [*[way] * count, 1], [1, *[-way] * count]
+        lines.append([line(a, b, 1.0, *both) for (a, b), *both in zip(pairwise(path), *quarters, strict=True)])
+    frame = [line(nodes + k, nodes + (k + 1) % 4, cutting, 1, -1) for k in range(4)]  # round everything
+    nodes += 4
+    cycles = [
+        [dart + back for edge, back in (divmod(each, 2) for each in face) for dart in lines[edge][:: 1 - 2 * back]]
+        for face in piece.faces
+    ]
+    around = [*cycles, frame, [dart + 1 for dart in frame[::-1]]]
+    after = {a: b for cycle in around for a, b in pairwise([*cycle, cycle[0]])}
+    before = {b: a for a, b in after.items()}
+
+    def cut(dart: int, opposite: int) -> int:
+        """Draw a line straight on from a dart's end to another dart, which cuts their face in two, or joins two."""
+        nonlocal nodes
+        rest = line(nodes, tails[opposite ^ 1], weights[opposite // 2], turns[opposite], 0)
+        new = line(tails[after[dart]], nodes, cutting, 1, 1)
+        tails[opposite ^ 1] = nodes
+        turns[opposite], turns[dart], nodes = 1, turns[dart] + 1, nodes + 1
+        here, beyond = [dart, new, rest, after[opposite]], [before[opposite ^ 1], rest + 1, opposite ^ 1]
+        for path in here, [opposite, new + 1, after[dart]], beyond:
+            for a, b in pairwise(path):
+                after[a], before[b] = b, a
+        return new
+
+    cut(next(dart for dart in cycles[outer] if turns[dart] < 0), frame[0])
+    for cycle in cycles:
+        face = [cycle[0]]
+        while (dart := after[face[-1]]) != cycle[0]:
+            face.append(dart)
+        corners = deque(dart for dart in face if turns[dart])
+        while len(corners) > 4:  # after a turn to the right and two to the left comes what is opposite the first
+            if [turns[corners[k]] for k in range(3)] == [-1, 1, 1]:
+                dart, _, side = (corners.popleft() for _ in range(3))
+                opposite = after[side]
+                new = cut(dart, opposite)
+                if corners[0] == opposite:
+                    corners[0] = after[new]
+                corners.appendleft(new)
+                corners.rotate(2)
+            else:
+                corners.rotate(-1)
+    heading, waiting = {frame[0]: 0}, [frame[0]]
+    for dart in waiting:
+        for other, way in ((after[dart], heading[dart] + turns[dart]), (dart ^ 1, heading[dart] + 2)):
+            if other not in heading:
+                heading[other] = way % 4
+                waiting.append(other)
+    places = [
+        _spread(
+            [(tails[d], tails[d ^ 1], weights[d // 2]) for d, way in heading.items() if way == axis],
+            [(tails[d], tails[d ^ 1]) for d, way in heading.items() if way == 1 - axis],
+            nodes,
+        )
+        for axis in (0, 1)
+    ]
+    return [np.column_stack(places)[path] for path in paths]
 
 
-def _drawing(piece: Diagram) -> tuple[FloatArray, FloatArray]:
-    """Places in the plane of crossings and middles of edges, those of the longest face on a circle; shapes (n, 2)."""
-    code, count = piece.planar_code, piece.crossings
-    node = {edge: count + k for k, edge in enumerate(dict.fromkeys(chain(*code)))}
-    begins = [crossing for crossing, _ in piece.sequence]
-    faces = []
-    for face in piece.faces:
-        ends = (piece.next[dart // 2] if dart % 2 else dart // 2 for dart in face)
-        faces.append([each for end, dart in zip(ends, face, strict=True) for each in (begins[end], node[dart // 2])])
-    outer = max(faces, key=len)
-    inner = [face for face in faces if face is not outer]
-    halves = [(node[edge], c) for c, edges in enumerate(code) for edge in edges]
-    spokes = [(3 * count + f, each) for f, face in enumerate(inner) for each in face]
-    tails, heads = np.array(halves + spokes).T
-    angles = -2 * np.pi * np.arange(len(outer)) / len(outer)  # the outer face is on its left
-    points = np.zeros((3 * count + len(inner), 2))
-    points[outer] = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    inside = np.ones(len(points), dtype=bool)
-    inside[outer] = False
-    weights = np.ones(len(tails))
-    for _ in range(_ROUNDS):
-        both_ways = np.r_[tails, heads], np.r_[heads, tails]
-        adjacency = sp.coo_array((np.r_[weights, weights], both_ways), shape=(len(points), len(points)))
-        rows = (sp.diags_array(adjacency.sum(axis=1)) - adjacency).tocsc()[inside]  # of the Laplacian
-        points[inside] = spsolve(rows[:, inside], -rows[:, ~inside] @ points[~inside])
-        lengths = np.linalg.norm(points[tails] - points[heads], axis=1)
-        weights *= np.sqrt(lengths / lengths.mean())
-    return points[:count], points[[node[edge] for edge in range(2 * count)]]
+def _spread(lines: list[tuple[int, int, float]], across: list[tuple[int, int]], nodes: int) -> FloatArray:
+    """A coordinate that lines across leave equal, and along others, with weights, grows by 1 or more, but little."""
+    from scipy.optimize import linprog
+
+    joined = sp.coo_array((np.ones(len(across)), np.array(across).T), shape=(nodes, nodes))
+    count, group = sp.csgraph.connected_components(joined, directed=False)
+    tail, head, weight = np.array(lines).T
+    rows = np.arange(len(lines))
+    signs, columns = np.repeat([1, -1], len(lines)), group[np.concatenate([tail, head]).astype(int)]
+    back = sp.coo_array((signs, (np.tile(rows, 2), columns)), shape=(len(lines), count)).tocsc()
+    found = linprog(-weight @ back, A_ub=back, b_ub=-np.ones(len(lines)), method="highs-ds").x
+    return np.asarray(np.round(found)[group])

@@ -10,14 +10,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arguments import checked
+from ..base.arguments import checked
+from ..base.errors import CurveError
+from ..base.types import FloatArray, IntArray
 from ..collision.planes import closest_chord
 from ..curve import Curve, check_closed
-from ..errors import CurveError
-from ..types import FloatArray, IntArray
-
-_MIN_GAP = 1e-6  # of the radius; rounding in the distances, at most 1e-8 of it, must stay far below the gap
-_TINY = 1e-300  # against division by 0
 
 
 @checked
@@ -52,8 +49,9 @@ def scramble(
         raise CurveError(f"seed is {seed}; it must be 0 or more")
     if moves < 0 or not 0 < reach < math.inf:
         raise CurveError(f"moves is {moves} and reach {reach}; moves must be 0 or more and reach above 0")
-    if not _MIN_GAP * radius <= gap < math.inf:
-        raise CurveError(f"gap is {gap}; it must be at least {_MIN_GAP:g} of the curve's radius, {radius:g}")
+    least = 1e-6  # of the radius: rounding in the distances, at most 1e-8 of it, must stay far below the gap
+    if not least * radius <= gap < math.inf:
+        raise CurveError(f"gap is {gap}; it must be at least {least:g} of the curve's radius, {radius:g}")
     if not 0 < least_angle < math.pi:
         raise CurveError(f"least_angle is {least_angle}; it must be above 0 and below π")
     polygons = Polygons(curve.vertices.copy(), curve.mesh.anticycle, curve.mesh.heads, gap, least_angle)
@@ -111,7 +109,7 @@ def angle_to_sector(direction: FloatArray, first: FloatArray, second: FloatArray
     least = min(_angle(direction, first), _angle(direction, second))
     normal = np.cross(first, second)
     size = np.sqrt(normal @ normal)
-    if size <= _TINY:
+    if size <= 1e-300:
         return least
     after, before = np.cross(normal, first) @ direction, np.cross(second, normal) @ direction
     if after < 0 or before < 0:

@@ -12,7 +12,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from ..arguments import checked
+from ..base.arguments import checked
 from ..curve import Curve
 from ..curve.fourier import FourierCurve
 from .inscribed import equal_steps, is_isotopic, shares, too_few
@@ -20,7 +20,6 @@ from .names import table_name
 
 FILE, TABLE = (Path(__file__).with_name(name) for name in ("shapes.npz", "least_energies.csv"))
 QUANTUM = 2.0**-13  # coefficients are stored as multiples of it, in 16 bits
-_PER_MODE, _FEWEST = 5, 64  # vertices of a component, by default
 
 
 @checked
@@ -39,7 +38,7 @@ def smooth_knot(name: str, vertices: int | None = None) -> Curve:
     """
     entry, mirrored = table_name(name)
     shape = shapes()[entry]
-    proved, sizes = shape.polygon(shape.sizes), [max(_PER_MODE * modes, _FEWEST) for modes in shape.modes]
+    proved, sizes = shape.polygon(shape.sizes), [max(5 * modes, 64) for modes in shape.modes]
     curve = shape.polygon(sizes if vertices is None else shares(vertices, proved.component_lengths))
     if not is_isotopic(proved, equal_steps(proved), curve, equal_steps(curve)):
         raise too_few(len(curve))

@@ -7,6 +7,9 @@ from sphinx.application import Sphinx
 
 _CODE = re.compile(r"(``.*?``|`.*?`|:\w+:`.*?`)")
 _ARRAY = re.compile(r"~?numpy\.ndarray\[.+?dtype\[[^]]*\]\]")
+_LIKE_ARRAY = re.compile(
+    r"(?:[~\w.]*Buffer \| )?[~\w.]*_SupportsArray\[.*?_NestedSequence\[(?:bool|complex)\b[^]]*\]"  # until NumPy 2.5
+)
 _MARKUP = re.compile(r"\||\*|(?<=\w)_(?!\w)")
 
 
@@ -21,7 +24,8 @@ def escape(_app: Sphinx, _what: str, _name: str, _object: object, _options: obje
 
 def shorten(*event: object) -> tuple[str | None, ...]:
     """Let arrays be arrays in signatures: shapes are in the docstrings, and numbers are doubles."""
-    return tuple(text and _ARRAY.sub("~numpy.ndarray", str(text)) for text in event[-2:])
+    named = (text and _ARRAY.sub("~numpy.ndarray", str(text)) for text in event[-2:])
+    return tuple(text and _LIKE_ARRAY.sub("~numpy.typing.ArrayLike", text) for text in named)
 
 
 def set_dashes(_app: Sphinx, document: nodes.document) -> None:

@@ -3,7 +3,7 @@
 import bpy
 import pytest
 from blender_scenes import add_curve, relax, stored
-from mobius_flow.addon.curves.baked_keys import BakedKeys
+from mobius_flow.addon.curves.recorded import BakedKeys
 from mobius_flow.core.knots import knot
 
 MOVES = {"untangle": "always", "max_iterations": 3}

@@ -8,9 +8,9 @@ import pytest
 from baked_curves import KEYED, again, blocks, clear, curve_of, go_on, last_frame, reopen, two_rings
 from blender_scenes import add_trefoil, evaluated, relax, stored
 from mobius_flow.addon.curves import bake, keyframes
-from mobius_flow.addon.engine import key_options
 from mobius_flow.core.collision import is_free
 from mobius_flow.core.curve import Mesh
+from mobius_flow.core.keys import key_options
 
 
 @pytest.mark.parametrize("reopened", [False, True])
@@ -43,8 +43,9 @@ def test_continuing_by_length_goes_on_after_the_rest(monkeypatch):
     go_on(timing="DISTANCE", length=100, hold_start=5, hold_end=2)
     curve = curve_of(obj)
     frames = [point.co[0] for point in curve.keyframe_points]
-    assert frames[3] == 40
-    assert (frames[4], frames[-1]) == (55, 148)
+    rest = frames.index(40)
+    assert frames[rest + 1] - 55 < np.diff(frames[rest + 1 :]).max() + 1e-3
+    assert frames[-1] == 148
     np.testing.assert_array_equal(evaluated(obj, 55), evaluated(obj, 40))
     clear()
     assert len(obj.data.splines[0].points) == 30
@@ -70,7 +71,7 @@ def test_no_motion_takes_no_length():
 def test_what_ends_where_it_begins_is_not_continued():
     add_trefoil()
     relax(max_iterations=3, timing="EVEN", length=50, loop=True)
-    with pytest.raises(RuntimeError, match="'Knot' ends where it begins; switch Loop off, and Relax it anew"):
+    with pytest.raises(RuntimeError, match="'Knot' ends where it begins; switch Loop off first"):
         go_on(max_iterations=1)
 
 

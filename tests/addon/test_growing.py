@@ -4,8 +4,8 @@ import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_curve, relax
-from mobius_flow.addon.curves.baked_keys import BakedKeys
-from mobius_flow.addon.curves.exchange import box
+from mobius_flow.addon.curves.recorded import BakedKeys
+from mobius_flow.addon.curves.splines import box
 from mobius_flow.addon.curves.surroundings import Surroundings
 from mobius_flow.addon.live.requirements import avoided
 from mobius_flow.core.collision.embedded import clears

@@ -6,10 +6,11 @@ import pytest
 from blender_scenes import add_curve, stored
 from mathutils import Vector
 from mobius_flow import Relaxation
-from mobius_flow.addon.curves import bake
+from mobius_flow.addon.curves import bake, surroundings
 from mobius_flow.addon.engine import wire
-from mobius_flow.addon.engine.placement import Link, Placement
+from mobius_flow.addon.scripting import begin
 from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, Task
+from mobius_flow.core.keys.placement import Link, Placement
 from mobius_flow.core.knots import knot
 
 SHORT = {"vertices": 12, "length": 30, "untangle": "never"}
@@ -29,10 +30,20 @@ def test_the_selected_curve_becomes_the_active_one():
     assert bpy.ops.curve.mobius_flow_morph(**SHORT) == {"FINISHED"}
     assert bake.scene_range([moving]) == (1, 30)
     np.testing.assert_array_equal(stored(goal.data), before)
+    assert (goal.hide_get(), goal.hide_render, moving.visible_get()) == (True, True, True), "both are in one place"
+    assert (bpy.context.selected_objects, bpy.context.active_object) == ([moving], moving)
     curves = Relaxation(moving).curves
     first, last = ({tuple(np.round(p, 4)) for p in each.vertices.tolist()} for each in (curves[0], curves[-1]))
     assert {(x + 1.0, y, z) for x, y, z in RECTANGLE} <= first
     assert {(5 + 2 * x, 6 + 2 * y, 7 + 2 * z) for x, y, z in ZIGZAG} <= last
+
+
+def test_its_goal_is_nothing_to_be_warned_of(operator):
+    moving, goal = add_curve([RECTANGLE]), add_curve([ZIGZAG])
+    operator.session = lambda _context, values: begin([moving], values, False, True, [goal])
+    operator.start()
+    assert goal.name in surroundings.warning(bpy.context, operator.run.group.objects)
+    assert surroundings.warning(bpy.context, operator.run.objects) is None
 
 
 def test_a_script_goes_over_several_and_says_what_it_proved():

@@ -2,7 +2,7 @@
 
 import bpy
 import pytest
-from mobius_flow.addon.engine.quality import QUALITIES
+from mobius_flow.addon.properties import QUALITIES
 
 
 def panel():
@@ -14,10 +14,14 @@ def test_the_first_quality_is_the_librarys():
 
 
 @pytest.mark.parametrize("name", QUALITIES)
-def test_choosing_a_quality_sets_its_options(name):
+def test_choosing_a_quality_sets_its_options(name, capfd):
     settings = bpy.context.scene.mobius_flow
     settings.method, settings.vertices, settings.energy = "flow-l2", 77, "edge"
     assert panel().quality == "CUSTOM"
+    settings.options += " nonsense"
+    panel().quality = name
+    assert (panel().quality, capfd.readouterr().err) == ("CUSTOM", "")
+    settings.options = settings.options.removesuffix(" nonsense")
     panel().quality = name
     assert panel().quality == name
     for option, value in QUALITIES[name].values.items():

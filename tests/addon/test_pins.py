@@ -7,12 +7,12 @@ from baked_curves import KEYED, SHORT, again, clear, go_on, reopen
 from blender_scenes import add_curve, add_trefoil, contents, place, relax, stored
 from mobius_flow import Relaxation
 from mobius_flow.addon.curves import pins
-from mobius_flow.addon.curves.baked_keys import BakedKeys
+from mobius_flow.addon.curves.recorded import BakedKeys
 from mobius_flow.core import MobiusFlowError
 from mobius_flow.core.knots import overhand
 
 ARC = overhand(60).vertices.astype(np.float32)
-PIN, ENDS, UNPIN = bpy.ops.curve.mobius_flow_pin, bpy.ops.curve.mobius_flow_pin_ends, bpy.ops.curve.mobius_flow_unpin
+PIN, UNPIN = bpy.ops.curve.mobius_flow_pin, bpy.ops.curve.mobius_flow_unpin
 
 
 def add_arc(**options):
@@ -82,18 +82,12 @@ def test_points_far_from_the_objects_origin_in_the_world_do_not_either():
     still(obj, ARC[[0, 30, 59]], atol=1e-4)
 
 
-def test_ends_are_pinned_and_the_knot_stays_on():
-    obj = add_arc()
-    assert ENDS() == {"FINISHED"}
-    assert held(obj) == [0, 59]
-    relax(max_iterations=8)
-    still(obj, ARC[[0, 59]])
-
-
 def test_tangents():
     obj = add_arc()
-    ENDS()
+    assert PIN() == {"FINISHED"}
+    assert held(obj) == [0, 59]
     relax(max_iterations=8, pin_tangents=True)
+    still(obj, ARC[[0, 59]])
     frames = np.stack(BakedKeys([obj]).frames)
     for edge in (frames[:, 1] - frames[:, 0], frames[:, -1] - frames[:, -2]):
         np.testing.assert_array_equal(edge, np.broadcast_to(edge[0], edge.shape))
@@ -172,7 +166,7 @@ def test_a_link_counts_on(capfd):
 @pytest.mark.parametrize("kind", ["BEZIER", "NURBS"])
 def test_ends_of_smooth_splines_may_be_pinned(kind):
     obj = add_arc(kind=kind)
-    ENDS()
+    PIN()
     relax(**SHORT, sample_splines=True)
     count = len(obj.data.splines[0].points)
     assert held(obj) == [0, count - 1]
@@ -193,14 +187,12 @@ def test_other_points_of_smooth_splines_may_not():
 
 
 def test_refusals_say_what_to_do():
-    with pytest.raises(RuntimeError, match="Go to Edit Mode and select the points to pin"):
-        PIN()
-    for button in (ENDS, UNPIN):
+    for button in (PIN, UNPIN):
         with pytest.raises(RuntimeError, match="Select a curve object first"):
             button()
     obj = add_trefoil()
     with pytest.raises(RuntimeError, match="All splines are closed"):
-        ENDS()
+        PIN()
     with pytest.raises(RuntimeError, match="No points of the selected curves are pinned"):
         UNPIN()
     select(obj)
@@ -210,7 +202,7 @@ def test_refusals_say_what_to_do():
 
 def test_no_size_but_the_length_can_be_kept():
     obj = add_arc()
-    ENDS()
+    PIN()
     before = contents()
     with pytest.raises(RuntimeError, match="where something is pinned or avoided; give keep_size='LENGTH'"):
         relax(keep_size="BOX")
@@ -219,14 +211,6 @@ def test_no_size_but_the_length_can_be_kept():
     with pytest.raises(RuntimeError, match="Scaling would move pinned points; unpin them first"):
         bpy.ops.curve.mobius_flow_keep_size()
     still(obj, ARC[[0, 59]])
-
-
-def test_balance_would_move_them():
-    add_arc()
-    ENDS()
-    relax(**SHORT)
-    with pytest.raises(RuntimeError, match="balance would move pins"):
-        bpy.ops.curve.mobius_flow_balance()
 
 
 def test_scripts_may_name_them():

@@ -1,7 +1,16 @@
 """Registering and unregistering leave Blender as it was."""
 
+import ast
+from pathlib import Path
+
 import bpy
 import pytest
+
+ADDON = Path(__file__).parents[2] / "addon"
+# of the types that annotations name, which are evaluated when a module is imported, all that the oldest Blender has
+OLD = """Action Collection Constraint Context Curve Depsgraph DepsgraphObjectInstance Event FCurve ID Image Material
+Menu Mesh Modifier Node NodeTree Object Operator OperatorMousePath Preferences Property PropertyGroup Scene ShapeKey
+Spline UILayout WindowManager World bpy_struct"""
 
 
 def traces():
@@ -38,12 +47,21 @@ def test_unregistering_leaves_nothing(addon):
     assert "mobius_flow" in dir(bpy.types.Scene)
 
 
+def test_no_annotation_is_beyond_the_oldest_blender():
+    """Quote what only newer ones have."""
+    nodes = [node for path in ADDON.rglob("*.py") for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))]
+    notes = [note for node in nodes for key in ("annotation", "returns") if (note := getattr(node, key, None))]
+    types = [ast.unparse(part) for note in notes for part in ast.walk(note) if isinstance(part, ast.Attribute)]
+    assert {name.split(".")[2] for name in types if name.startswith("bpy.types.")} <= {*OLD.split()}
+    assert all(hasattr(bpy.types, name) for name in OLD.split())  # tried with Blender 4.2, too
+
+
 def test_settings_are_the_librarys_defaults():
-    from mobius_flow.addon.properties import relax_options
+    from mobius_flow.addon.properties import SETTINGS, relax_options
     from mobius_flow.core import RelaxOptions
 
     settings = bpy.context.scene.mobius_flow
-    values = {name: getattr(settings, name) for name in settings.bl_rna.properties.keys()}  # noqa: SIM118
+    values = {name: getattr(settings, name) for name in SETTINGS}
     options = relax_options(values)
     assert options.tolerance == pytest.approx(RelaxOptions().tolerance)
     assert options.method == RelaxOptions().method

@@ -17,13 +17,6 @@ def expected(components, **options):
     return minimize(Curve.from_components(components), RelaxOptions(**options)).curve.vertices
 
 
-def test_the_result_is_the_librarys():
-    obj = add_trefoil()
-    start = stored(obj.data).astype(np.float64)
-    relax(**BOTTOM)
-    np.testing.assert_array_equal(stored(obj.data), expected([start], **BOTTOM).astype(np.float32))
-
-
 def test_a_script_in_blender_finds_its_blas_threads_as_they_were(monkeypatch):
     pools = threadpoolctl.ThreadpoolController().select(user_api="blas")
     seen = []

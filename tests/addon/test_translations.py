@@ -11,12 +11,12 @@ import bpy
 import pytest
 import shown_texts
 from mobius_flow.addon import registration, translations
-from mobius_flow.addon.curves.baked_keys import lay_flat
-from mobius_flow.addon.engine.words import named
+from mobius_flow.addon.curves.recorded import lay_flat
 from mobius_flow.addon.pictures.movie import target
 from mobius_flow.addon.translations import ANY, read_po
 from mobius_flow.core import MobiusFlowError
-from mobius_flow.core.messages import Message
+from mobius_flow.core.base.messages import Message
+from mobius_flow.core.driver.words import named
 
 FOLDER = Path(translations.__file__).parent
 TABLES = translations.tables(FOLDER)
@@ -172,7 +172,7 @@ def test_a_refusal_in_german():
     curve.name, curve.data.dimensions = "{Knot}", "2D"
     with pytest.raises(RuntimeError, match=r"'\{Knot\}' is a 2D curve"):
         bpy.ops.curve.mobius_flow_relax()
-    from mobius_flow.addon.live.checks import RELAXABLE
+    from mobius_flow.addon.live.requirements import RELAXABLE
 
     said = RELAXABLE(bpy.context).sentence.said(german)
     assert said.startswith("'{Knot}' ist eine 2D-Kurve")

@@ -11,7 +11,7 @@ import pytest
 from mobius_flow.cli import main
 from mobius_flow.cli.places import OUTPUTS
 from mobius_flow.core import read_curve, write_curve
-from mobius_flow.core.curve.io import FORMATS, WRITTEN_FORMATS
+from mobius_flow.core.io import FORMATS, written_formats
 from processes import finished
 from shapes import torus_trefoil
 
@@ -59,14 +59,14 @@ def error_of(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> str:
 
 def outputs_in(place: Path) -> dict[str, list[str]]:
     """Arguments that write one output each into a directory, by the file's name."""
-    named = {f"o{suffix}": [str(place / f"o{suffix}")] for suffix in WRITTEN_FORMATS}
+    named = {f"o{suffix}": [str(place / f"o{suffix}")] for suffix in written_formats()}
     elsewhere = str(place.parent / "elsewhere.txt")
     extras = {name: [elsewhere, option, str(place / name)] for name, option in EXTRAS.items()}
     return named | extras
 
 
 EXTRAS = {"r.json": "--report", "t.npz": "--trajectory"}
-NAMES = [*(f"o{suffix}" for suffix in WRITTEN_FORMATS), *EXTRAS]
+NAMES = [*(f"o{suffix}" for suffix in written_formats()), *EXTRAS]
 
 
 @pytest.mark.parametrize("name", NAMES)

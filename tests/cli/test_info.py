@@ -1,9 +1,15 @@
 """``mobius-flow info`` from the terminal's point of view."""
 
 import json
+import sys
+from importlib.machinery import ModuleSpec
+from types import ModuleType, SimpleNamespace
 
+import numpy as np
 import pytest
-from mobius_flow.core.knots import smooth_knot
+from mobius_flow.core import write_curve
+from mobius_flow.core.knots import KnotType, smooth_knot
+from mobius_flow.core.knots.exterior import names_by_census
 
 KEYS = {
     "input", "components", "vertices", "type", "energies", "length", "thickness", "ropelength", "writhe",
@@ -99,12 +105,44 @@ def test_refusals(trefoil, tmp_path, run):
     assert run("info", crossed)[0] == 2
 
 
-def test_arcs_have_no_type(tmp_path, run):
-    assert run("knot", "overhand", tmp_path / "arc.txt")[0] == 0
+def test_arcs_have_no_type_until_they_are_closed(tmp_path, run):
+    path = tmp_path / "an arc.txt"
+    assert run("knot", "overhand", path)[0] == 0
+    told = run("info", path)[1]
+    assert "type                    none: only closed curves have a knot type, and this one is open\n" in told
+    assert told.endswith(f"next                    mobius-flow info '{path}' --close\n")
+    told = run("info", path, "--close")[1]
+    assert " 3_1 (proved" in told
+    assert "next " not in told
+
+
+def test_noise_that_may_have_changed_the_type_is_told(trefoil, tmp_path, run):
+    assert "noise of" not in run("info", trefoil)[1]
+    curve = smooth_knot("3_1", 300)
+    noise = np.random.default_rng(3).standard_normal(curve.vertices.shape) * curve.length / 300
+    write_curve(tmp_path / "noisy.txt", curve.with_vertices(curve.vertices + noise))
     assert (
-        "type                    none: only closed curves have a knot type, and this one is open\n"
-        in (run("info", tmp_path / "arc.txt")[1])
+        ": far below the edges, so that noise of this size may have changed the type"
+        in run("info", tmp_path / "noisy.txt")[1]
     )
+
+
+@pytest.mark.parametrize("installed", [False, True])
+def test_larger_knots_are_named_by_snappy(installed, tmp_path, run, monkeypatch):
+    """By one that knows a single knot."""
+    exterior = SimpleNamespace(num_tetrahedra=lambda: 9, identify=lambda: [SimpleNamespace(name=lambda: "K11n34")])
+    snappy = ModuleType("snappy")
+    snappy.__spec__ = ModuleSpec("snappy", None)
+    snappy.Link = lambda code: SimpleNamespace(exterior=lambda **_: exterior)
+    monkeypatch.setitem(sys.modules, "snappy", snappy if installed else None)
+    monkeypatch.setattr(sys.modules[KnotType.__module__], "names_by_exterior", lambda _: ((), ""))
+    monkeypatch.setattr(KnotType, "group", None)
+    names_by_census.cache_clear()
+    assert run("knot", "DT: [4 8 -12 2 16 -6 20 18 10 22 14]", tmp_path / "k.txt")[0] == 0
+    told = run("info", tmp_path / "k.txt")[1]
+    names_by_census.cache_clear()
+    assert ("K11n34 or mK11n34 (not proved; it fits its complement" in told) is installed
+    assert ("pip install snappy" in told) is not installed
 
 
 def test_a_relaxed_shape_of_many_vertices(tmp_path, run):

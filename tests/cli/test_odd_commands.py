@@ -9,7 +9,7 @@ import pytest
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="limits, signals and devices of Linux")
 TOOLS = Path(__file__).resolve().parents[2] / "tools"
-KINDS = re.findall(r"^@kind\ndef (\w+)", (TOOLS / "odd_cases.py").read_text(encoding="utf-8"), re.MULTILINE)
+KINDS = re.findall(r"^@kind\ndef (\w+)", (TOOLS / "odd_commands.py").read_text(encoding="utf-8"), re.MULTILINE)
 PATIENT = ["--patience", "200"]  # on a machine that has other work to do
 
 

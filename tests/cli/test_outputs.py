@@ -12,10 +12,10 @@ import pytest
 from mobius_flow.cli import main, places
 from mobius_flow.cli import relax as relax_command
 from mobius_flow.core import read_curve, write_curve
-from mobius_flow.core.curve.io import FORMATS
-from mobius_flow.core.errors import MobiusFlowError
-from mobius_flow.core.files import atomic_write
-from mobius_flow.core.verify import verify
+from mobius_flow.core.base.errors import MobiusFlowError
+from mobius_flow.core.base.files import atomic_write
+from mobius_flow.core.io import FORMATS
+from mobius_flow.core.proof import verify
 from shapes import regular_polygon, torus_trefoil
 
 SHORT = ["--vertices", "60", "--max-iterations", "2", "--quiet"]
@@ -38,7 +38,7 @@ def refused(words: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: p
         raise AssertionError
 
     monkeypatch.setattr(relax_command, "relax", working)
-    monkeypatch.setattr("mobius_flow.core.driver.compare._run", working)
+    monkeypatch.setattr("mobius_flow.lab.compare.comparison._run", working)
     assert main(words) == 2
     said = capsys.readouterr().err
     assert said.count("\n") == 1
@@ -100,7 +100,6 @@ def test_what_an_output_cannot_hold_is_refused_before_the_work(
 @pytest.mark.parametrize(
     ("words", "expected"),
     [
-        (["--methods", "lbfgs,trust-region", "--energy", "tangent-point"], "second derivative"),
         (["--methods", "lbfgs,nonsense"], "unknown"),
         (["--methods", "lbfgs,lbfgs"], "give each of them once"),
         (["--methods", "cg", "--penalty", "3"], "penalty"),
@@ -207,7 +206,7 @@ def test_copying_that_fails_brings_the_old_contents_back(tmp_path: Path, monkeyp
             raise OSError(28, "No space left on device")
         return write(descriptor, data)
 
-    monkeypatch.setattr("mobius_flow.core.files._replace", lambda *_: False)
+    monkeypatch.setattr("mobius_flow.core.base.files._replace", lambda *_: False)
     monkeypatch.setattr(os, "write", full)
     with pytest.raises(OSError, match="No space"), atomic_write(target) as temporary:
         temporary.write_text("new and longer")

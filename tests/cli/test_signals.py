@@ -4,23 +4,23 @@ import json
 import os
 import re
 import signal
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from mobius_flow.cli import compare as compare_command
 from mobius_flow.cli import main, places, signals
-from mobius_flow.cli.progress import Progress
 from mobius_flow.core import Curve, Iterate, Result, Trajectory, read_curve, relax, write_curve
-from mobius_flow.core.deadline import termination_raises
+from mobius_flow.core.base.deadline import termination_raises
 from mobius_flow.core.driver import finish
-from mobius_flow.core.driver.compare import History, compare
-from mobius_flow.core.verify import verify
+from mobius_flow.core.proof import verify
+from mobius_flow.lab.compare import command as compare_command
+from mobius_flow.lab.compare.comparison import History, compare
 from shapes import torus_trefoil
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals")
+OnIterate = Callable[[Callable[[Iterate], object]], None]
 ENDING = [signal.SIGTERM, signal.SIGHUP]  # SIGINT is ignored where tests run in the background
 
 
@@ -118,13 +118,12 @@ def check_results(room: Path, status: str) -> None:
 
 @pytest.mark.parametrize("number", ENDING)
 def test_signals_while_results_are_written_cost_nothing(
-    command: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: signal.Signals
+    command: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, on_iterate: OnIterate, number: signal.Signals
 ) -> None:
     """Two at once in the run, and more while the trajectory is written."""
-    update, save = Progress.update, Trajectory.save
+    save = Trajectory.save
 
-    def interrupted(self: Progress, bar: Any, iterate: Iterate) -> None:
-        update(self, bar, iterate)
+    def interrupted(iterate: Iterate) -> None:
         if iterate.index == 3:
             send(number)
             send(signal.SIGTERM)
@@ -134,7 +133,7 @@ def test_signals_while_results_are_written_cost_nothing(
         save(self, path)
         send(number)
 
-    monkeypatch.setattr(Progress, "update", interrupted)
+    on_iterate(interrupted)
     monkeypatch.setattr(Trajectory, "save", interrupted_save)
     monkeypatch.setattr(signals, "_TOGETHER", 0.0)
     assert main([*command, "--max-iterations", "1000000"]) == 130
@@ -179,14 +178,13 @@ def test_a_film_can_be_interrupted_and_the_curve_is_kept(
     command: list[str],
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
+    on_iterate: OnIterate,
     capsys: pytest.CaptureFixture[str],
     before: bool,
 ) -> None:
     """Also that of a run which was interrupted itself."""
-    update = Progress.update
 
-    def interrupted(self: Progress, bar: Any, iterate: Iterate) -> None:
-        update(self, bar, iterate)
+    def interrupted(iterate: Iterate) -> None:
         if before and iterate.index == 2:
             send(signal.SIGTERM)
 
@@ -194,7 +192,7 @@ def test_a_film_can_be_interrupted_and_the_curve_is_kept(
         send(signal.SIGTERM)
         Path(path).write_text("too late")
 
-    monkeypatch.setattr(Progress, "update", interrupted)
+    on_iterate(interrupted)
     monkeypatch.setattr(signals, "_TOGETHER", 0.0)
     monkeypatch.setattr(places.export, "require_blender", lambda: None)
     monkeypatch.setattr(places.export, "write_movie", film)
@@ -232,16 +230,17 @@ def test_an_interrupt_while_a_report_is_written_keeps_the_curve_of_a_film_that_i
 
 
 def test_memory_that_runs_out_keeps_the_curve(
-    command: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    command: list[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    on_iterate: OnIterate,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
-    update = Progress.update
-
-    def failing(self: Progress, bar: Any, iterate: Iterate) -> None:
-        update(self, bar, iterate)
+    def failing(iterate: Iterate) -> None:
         if iterate.index == 3:
             raise MemoryError
 
-    monkeypatch.setattr(Progress, "update", failing)
+    on_iterate(failing)
     assert main([*command, "--max-iterations", "9"]) == 1
     check_results(tmp_path, "stalled")
     assert "memory ran out" in capsys.readouterr().err
@@ -263,7 +262,7 @@ def test_compare_keeps_the_methods_that_are_done(
             raise MemoryError
         send(signal.SIGTERM)
 
-    monkeypatch.setattr(compare_command, "compare", interrupted)
+    monkeypatch.setattr(compare_command, "compared", interrupted)
     table = tmp_path / "c.json"
     words = ["compare", command[1], "--methods", "cg,lbfgs", "--max-iterations", "2", "-o", str(table)]
     assert main(words) == status

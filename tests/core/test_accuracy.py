@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from hard_curves import bent_trefoil
 from mobius_flow.core import Curve, RelaxOptions, Result, minimize
-from mobius_flow.core.hierarchy import HierarchicalMoebiusEnergy, fields
+from mobius_flow.core.energies.hierarchy import HierarchicalMoebiusEnergy, fields
+from mobius_flow.core.knots import knot, overhand
+from mobius_flow.core.knots.shapes import least_energies
 
 INACCURATE = "the hierarchical solver misses the requested accuracy"
 
@@ -94,7 +96,7 @@ def test_a_defect_is_noticed(defect, monkeypatch: pytest.MonkeyPatch) -> None:  
 
 @pytest.mark.slow
 def test_every_mesh_and_the_end_are_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
-    from mobius_flow.core.driver.interventions import fallback
+    from mobius_flow.core.driver.moves import fallback
 
     looked_at: list[int] = []
     original = fallback.SampledErrors.at
@@ -111,11 +113,19 @@ def test_every_mesh_and_the_end_are_looked_at(monkeypatch: pytest.MonkeyPatch) -
     assert looked_at == [1700], "it ends where it has all vertices again; the coarse mesh is too small for errors"
 
 
-def test_the_last_line_says_the_error_of_an_energy_that_is_not_exact(monkeypatch: pytest.MonkeyPatch) -> None:
-    from mobius_flow.cli.relax import _summary
+def test_the_error_of_an_energy_that_is_not_exact(monkeypatch: pytest.MonkeyPatch) -> None:
+    from mobius_flow.cli.relax import _energies
 
-    assert "±" not in _summary(short(300), falls=True)
-    monkeypatch.setattr("mobius_flow.core.hierarchy.sampling.EXACT_UP_TO", 200)
+    told = dict(_energies(short(300), short(300).curve, 1e-4))
+    assert "(mesh error about " in told["energy"]
+    monkeypatch.setattr("mobius_flow.core.energies.hierarchy.sampling.EXACT_UP_TO", 200)
     result = short(300)
-    assert f" ± {result.final_energy * result.final_energy_error:.1g}, certified" in _summary(result, falls=True)
+    told = dict(_energies(result, result.curve, 1e-4))
+    assert told["energy"].endswith(f" (± {100.0 * result.final_energy_error:.1g} %, from a sample)")
     assert result.report()["final_energy_error"] == result.final_energy_error > 0.0
+
+
+def test_the_error_of_the_mesh_is_the_distance_from_the_smooth_curve() -> None:
+    result = minimize(knot("3_1"), RelaxOptions(vertices=120))
+    assert result.mesh_error == pytest.approx(abs(result.final_energy - least_energies()["3_1"][0]), rel=0.1)
+    assert minimize(overhand(40), RelaxOptions(vertices=40, max_iterations=0)).mesh_error is None

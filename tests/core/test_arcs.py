@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from families import family
 from mobius_flow.core import Curve, CurveError, Mesh, OptionError, RelaxOptions, Result, Status, minimize
-from mobius_flow.core.diagrams import linking_numbers, quick_invariants
-from mobius_flow.core.driver import Trajectory
-from mobius_flow.core.driver.interventions.links import split
+from mobius_flow.core.descent.task import Units
+from mobius_flow.core.driver.moves.links import split
+from mobius_flow.core.io.trajectory import Trajectory
 from mobius_flow.core.knots import knot_type, overhand
 from mobius_flow.core.knots.composite import knotted_ball
-from mobius_flow.core.task import Units
-from mobius_flow.core.verify import verify
+from mobius_flow.core.knots.diagrams import linking_numbers, quick_invariants
+from mobius_flow.core.proof import verify
 from shapes import half_circle, opened, regular_polygon, straight_arc, torus_trefoil
 
 

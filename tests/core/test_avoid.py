@@ -21,7 +21,7 @@ from mobius_flow.core.curve import at_edges
 from mobius_flow.core.descent import NoStep
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.knots import knot, scramble
-from mobius_flow.core.verify import verify
+from mobius_flow.core.proof import verify
 from shapes import regular_polygon, torus_trefoil
 from solids import box, plate, rod
 from tasks import wanted

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from families import family
 from mobius_flow.core import METHODS, Curve, Iterate, RelaxOptions, Trajectory, minimize, relax
+from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.collision import FreeMotion, Limit, survives_rounding
-from mobius_flow.core.descent import NoStep, Point, State, Step, problem
+from mobius_flow.core.descent import NoStep, Point, SearchState, Step, problem
 from mobius_flow.core.driver import run as driver
 from mobius_flow.core.knots import knot
-from mobius_flow.core.types import FloatArray
-from mobius_flow.core.verify import verify
+from mobius_flow.core.proof import verify
 from shapes import torus_trefoil
 
 PENALISED = [name for name, method in METHODS.items() if not method.geometry.prescribes]
@@ -92,7 +92,7 @@ class Forgetful:
         self._rule, self._limit, self._count = METHODS["lbfgs"].rule, limit, 0
         self.second_order, self.other_metrics = False, ()
 
-    def step(self, point: Point, state: State) -> tuple[Step | NoStep, State]:
+    def step(self, point: Point, state: SearchState) -> tuple[Step | NoStep, SearchState]:
         step, state = self._rule.step(point, state)
         self._count += 1
         if self._count == 3:

@@ -8,7 +8,7 @@ import pytest
 from mobius_flow.core import Curve, Result, Status, Trajectory, minimize, read_curve, read_obstacle
 from mobius_flow.core.knots import overhand
 from mobius_flow.core.knots.knot_type import knot_type
-from mobius_flow.core.verify import verify
+from mobius_flow.core.proof import verify
 from tasks import wanted
 
 SCENES = Path(os.environ.get("MOBIUS_FLOW_SCENES", "scenes"))

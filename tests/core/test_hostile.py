@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 from mobius_flow.cli import main
 from mobius_flow.core import METHODS, Curve, CurveError, Mesh, OptionError, RelaxOptions, relax
 from mobius_flow.core.collision import is_free
-from mobius_flow.core.diagrams import quick_invariants
 from mobius_flow.core.driver.options import EDGE_LENGTHS, MESHES
 from mobius_flow.core.energies import ENERGIES
-from mobius_flow.core.metrics import METRICS
+from mobius_flow.core.knots.diagrams import quick_invariants
+from mobius_flow.core.solve.metrics import METRICS
 from shapes import regular_polygon, torus_trefoil
 
 Array = npt.NDArray[np.float64]

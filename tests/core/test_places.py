@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError, RelaxOptions, Status, WithOutcome, relax
+from mobius_flow.core.base.errors import Place
 from mobius_flow.core.collision import Contact
 from mobius_flow.core.descent import NoStep
 from mobius_flow.core.driver.run import Run
-from mobius_flow.core.errors import Place
 from shapes import regular_polygon, torus_trefoil
 
 SQUARE = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0]]

@@ -24,18 +24,18 @@ from mobius_flow.core import (
     WithOutcome,
     curve,
     energies,
+    io,
     knots,
-    metrics,
     minimize,
     relax,
 )
-from mobius_flow.core.arguments import checked
-from mobius_flow.core.curve import io
-from mobius_flow.core.driver.compare import compare
+from mobius_flow.core.base.arguments import checked
+from mobius_flow.core.driver.info import info, measure
 from mobius_flow.core.energies import Objective, moebius_kpoint
-from mobius_flow.core.extrapolation import Extrapolation, extrapolated
-from mobius_flow.core.info import info, measure
-from mobius_flow.core.verify import verify
+from mobius_flow.core.proof import verify
+from mobius_flow.core.solve import metrics
+from mobius_flow.lab.compare.comparison import compare
+from mobius_flow.lab.extrapolation import Extrapolation, extrapolated
 from shapes import torus_trefoil
 
 NONSENSE = [
@@ -126,7 +126,7 @@ FINE: dict[str, tuple[Callable[..., object], dict[str, object]]] = {
     "verify": (verify, {"path": "missing.npz", "callback": lambda *_: None}),
     "knot": (knots.knot, {"name": "3_1", "vertices": 20}),
     "knot_type": (knots.knot_type, {"curve": TREFOIL, "effort": knots.Effort()}),
-    "Effort": (knots.Effort, {"vertices": 1000, "views": 3, "doubled": 10, "names": 4}),
+    "Effort": (knots.Effort, {"vertices": 1000, "views": 3, "work": 5000, "doubled": 10, "names": 4}),
     "smooth_knot": (knots.smooth_knot, {"name": "3_1", "vertices": 20}),
     "rounded": (knots.rounded, {"curve": TREFOIL, "least": 40}),
     "torus_knot": (knots.torus_knot, {"p": 2, "q": 3, "vertices": 20, "major": 1.0, "minor": 0.3}),
@@ -145,6 +145,7 @@ FINE: dict[str, tuple[Callable[..., object], dict[str, object]]] = {
         {"curve": TREFOIL, "seed": 1, "moves": 2, "reach": 0.1, "gap": 0.01, "least_angle": 0.2},
     ),
     "overhand": (knots.overhand, {"vertices": 40}),
+    "freedman": (knots.freedman, {"vertices": 500}),
     "Drawing.of": (knots.Drawing.of, {"curve": PLANAR}),
     "Drawing.seen": (knots.Drawing.seen, {"curve": TREFOIL}),
 }

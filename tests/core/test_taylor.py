@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from mobius_flow.core.base.errors import OptionError
 from mobius_flow.core.energies import MoebiusEnergy
-from mobius_flow.core.errors import OptionError
-from mobius_flow.core.taylor import derivative_slope, hessian_slope, taylor_slope
 from smooth_curves import random_polygon
+from taylor import derivative_slope, hessian_slope, taylor_slope
 
 
 @pytest.mark.parametrize("terms", [1, 2, 3, 4])

@@ -4,10 +4,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...types import FloatArray
-from ..problem import Point
-from ..step import Leg, NoStep, Step, attempt
-from .armijo import FirstTrial
+from ..base.types import FloatArray
+from .line_searches import FirstTrial
+from .problem import Point
+from .step import Leg, NoStep, Step, attempt
 
 
 @dataclass(frozen=True)

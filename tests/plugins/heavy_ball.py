@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...types import FloatArray
-from ..problem import Point
+from ..base.types import FloatArray
+from .problem import Point
 
 
 @dataclass(frozen=True)

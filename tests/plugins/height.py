@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.types import FloatArray
 from ..curve import Curve
-from ..types import FloatArray
 
 
 @dataclass(frozen=True)

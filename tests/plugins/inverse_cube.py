@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 
-from ..quadrature import MIDPOINT
-from ..types import FloatArray
+from ..base.types import FloatArray
 from .density import Partials, PointPairs
 from .kpoint import KPointEnergy
+from .quadrature import MIDPOINT
 
 
 @dataclass(frozen=True)

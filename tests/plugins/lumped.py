@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import scipy.sparse as sp
 
-from ..curve import Curve
+from ...curve import Curve
 from .inner_product import InnerProduct, SparseInnerProduct
 from .local import WithoutRule, lumped_mass
 

@@ -112,6 +112,21 @@ def found(operator: str) -> Generator[None, None, tuple[int, int]]:
     raise AssertionError(f"no button for {operator}")
 
 
+def entry(command: str, x: int, ys: range) -> Steps:
+    """Find an entry of the menu that is open, by a part of its command, which Ctrl-C copies, and choose it."""
+    manager = bpy.context.window_manager
+    for y in ys:
+        yield from move(x, y)
+        manager.clipboard = ""
+        for value in ("PRESS", "RELEASE"):
+            window().event_simulate(type="C", value=value, ctrl=True, x=x, y=y)
+            yield
+        if command in manager.clipboard:
+            yield from key("RET", over=(x, y))  # opened again, the last entry is active, not that here
+            return
+    raise AssertionError(f"no entry for {command}")
+
+
 def _under_mouse(sidebar: bpy.types.Region) -> str:
     """The Python command of the button under the mouse, as Blender's own context menu copies it."""
     with bpy.context.temp_override(window=window(), area=view(), region=sidebar):

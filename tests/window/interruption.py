@@ -13,11 +13,11 @@ MOVED = 2  # iterates
 
 
 def relax() -> Steps:
-    """Start a run that is not over by itself, with an undo step to come back to; wait until the curve has moved."""
+    """Start a run anew that is not over by itself, with an undo step before it; wait until the curve has moved."""
     endless()
     with here():
         bpy.ops.ed.undo_push(message="Before")
-        assert bpy.ops.curve.mobius_flow_relax("INVOKE_DEFAULT") == {"RUNNING_MODAL"}
+        assert bpy.ops.curve.mobius_flow_relax("INVOKE_DEFAULT", again=True) == {"RUNNING_MODAL"}
     yield from reaches(MOVED)
     assert len(workers()) == 1, (state(), workers())
 

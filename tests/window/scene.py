@@ -54,6 +54,12 @@ def points() -> np.ndarray:
     return np.array([p.co[:] for spline in obj().data.splines for p in spline.points], dtype=np.float32)
 
 
+def seen() -> np.ndarray:
+    """Points of the knot in the world, where a constraint scales it; shape (n, 3)."""
+    matrix = np.array(obj().matrix_world)
+    return points()[:, :3] @ matrix[:3, :3].T + matrix[:3, 3]
+
+
 def run() -> Any:
     """The run that is going on, or None."""
     return addon("live.registry").current()

@@ -11,4 +11,3 @@ settings.timing = "EVEN"
 settings.length = 120
 settings.hold_start = 12
 settings.hold_end = 24
-settings.fit_bevel = True

@@ -14,11 +14,11 @@ from functools import lru_cache
 import numpy as np
 import scipy.sparse as sp
 
+from ...base.types import FloatArray
 from ...curve import Curve
-from ...obstacle import Obstacle
-from ...quadrature import gauss_legendre
-from ...types import FloatArray
+from ...curve.obstacle import Obstacle
 from ..edge_pairs import change, stepped
+from ..quadrature import gauss_legendre
 from .schedule import Schedule
 from .simplices import Clusters, Simplices, norm
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...base.types import BoolArray, FloatArray, IntArray
 from ...curve import Curve
-from ...types import BoolArray, FloatArray, IntArray
 from .simplices import Clusters, norm
 
 Potential = Callable[[IntArray, FloatArray], tuple[FloatArray, FloatArray]]
@@ -140,18 +140,15 @@ def _traverse(view: _View, edges: IntArray, theta: float) -> tuple[Panels, Panel
         single.append(seen[fine])
         left = np.ones(len(panels), dtype=bool)
         left[leaf] = ~fine
-        panels = _split(view, panels[left])
+        # each with both children of the cluster it sees, or both of its halves if these are larger
+        panels = panels[left]
+        child = view.clusters.tree.child[panels.source]
+        opened = (child > 0) & (view.clusters.radius[panels.source] >= view.half(panels))
+        same, halved, child = panels[opened], panels[~opened], child[opened]
+        first = replace(halved, width=0.5 * halved.width)
+        second = replace(first, begin=first.begin + first.width)
+        panels = Panels.joined([replace(same, source=child), replace(same, source=child + 1), first, second])
     return Panels.joined(single), Panels.joined(clustered)
-
-
-def _split(view: _View, panels: Panels) -> Panels:
-    """Each panel with both children of the cluster it sees, or both of its halves if these are larger."""
-    child = view.clusters.tree.child[panels.source]
-    opened = (child > 0) & (view.clusters.radius[panels.source] >= view.half(panels))
-    same, halved, child = panels[opened], panels[~opened], child[opened]
-    first = replace(halved, width=0.5 * halved.width)
-    second = replace(first, begin=first.begin + first.width)
-    return Panels.joined([replace(same, source=child), replace(same, source=child + 1), first, second])
 
 
 def _grouped(panels: Panels, ratio: FloatArray, least: FloatArray) -> Groups:

@@ -16,8 +16,8 @@ from functools import cached_property
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 
-from ...clusters import ClusterTree, ranges
-from ...types import BoolArray, FloatArray, IntArray, frozen
+from ...base.types import BoolArray, FloatArray, IntArray, frozen
+from ..clusters import ClusterTree, ranges
 from ..edge_pairs import arctan2
 from ..inverse_square import CONTACT
 
@@ -126,8 +126,8 @@ def _arctangent_quotient(square: FloatArray, d: FloatArray) -> tuple[FloatArray,
     by_square = (d * inverse - value) / (2.0 * square)
     flat = (d.real > 0.0) & (square.real < _FLAT * d.real**2)
     x, y = d[flat], square[flat] / d[flat] ** 2
-    value[flat] = polyval(y, _VALUE) / x  # type: ignore[no-untyped-call]
-    by_square[flat] = polyval(y, _SLOPE) / x**3  # type: ignore[no-untyped-call]
+    value[flat] = polyval(y, _VALUE) / x
+    by_square[flat] = polyval(y, _SLOPE) / x**3
     return value, by_square, -inverse
 
 
@@ -180,7 +180,18 @@ class Clusters:
 
         tree = ClusterTree.halved(order, 1, cut)
         simplices = Simplices(frozen(np.ascontiguousarray(corners[:, :, order])))
-        size, center, spread = _moments(simplices, tree)
+        # sizes W, centroids c and second moments Q of all clusters, from the leaves up
+        k = len(simplices.corners)
+        size, center = simplices.sizes[tree.start], np.mean(simplices.corners, axis=0)[:, tree.start]
+        from_center = simplices.corners[:, :, tree.start] - center
+        spread = size / (k * (k + 1)) * np.einsum("aif,ajf->ijf", from_center, from_center)
+        for inner, child in tree.upward():
+            size[inner] = size[child] + size[child + 1]
+            share = size[child + 1] / size[inner]
+            between = center[:, child + 1] - center[:, child]
+            center[:, inner] = center[:, child] + share * between
+            apart = size[child] * share * (between[:, None] * between)
+            spread[:, :, inner] = spread[:, :, child] + spread[:, :, child + 1] + apart
         radius = np.concatenate([_radii(simplices.corners, center, tree, level) for level in tree.levels])
         return cls(simplices, tree, *map(frozen, (center, radius, size, spread)))
 
@@ -211,22 +222,6 @@ def _sort_across(points: FloatArray, order: IntArray, start: IntArray, count: In
     owner = np.repeat(np.arange(start.size), count)
     along = x[np.argmax(widths, axis=0)[owner], np.arange(len(places))]
     order[places] = order[places][np.lexsort((along, owner))]
-
-
-def _moments(simplices: Simplices, tree: ClusterTree) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Sizes W, centroids c and second moments Q of all clusters, from the leaves up."""
-    k = len(simplices.corners)
-    size, center = simplices.sizes[tree.start], np.mean(simplices.corners, axis=0)[:, tree.start]
-    from_center = simplices.corners[:, :, tree.start] - center
-    spread = size / (k * (k + 1)) * np.einsum("aif,ajf->ijf", from_center, from_center)
-    for inner, child in tree.upward():
-        size[inner] = size[child] + size[child + 1]
-        share = size[child + 1] / size[inner]
-        between = center[:, child + 1] - center[:, child]
-        center[:, inner] = center[:, child] + share * between
-        apart = size[child] * share * (between[:, None] * between)
-        spread[:, :, inner] = spread[:, :, child] + spread[:, :, child + 1] + apart
-    return size, center, spread
 
 
 def _radii(corners: FloatArray, center: FloatArray, tree: ClusterTree, level: slice) -> FloatArray:

@@ -1,12 +1,14 @@
 """Open splines are closed where nothing depends on their being open."""
 
+from functools import partial
+
 import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_curve, contents, relax, stored
 from mended_curves import SHAPE, two
 
-CLOSE = bpy.ops.curve.mobius_flow_close
+CLOSE = partial(bpy.ops.curve.mobius_flow_mend, remedy="CLOSE")
 
 
 def refused(why):
@@ -30,15 +32,7 @@ def test_open_splines_are_closed():
 def test_what_is_closed_or_baked_stays():
     """Keys of an open spline are proved for an open one."""
     add_curve([SHAPE])
-    refused("No selected curve has an open spline without keys")
+    refused("Nothing selected needs that")
     add_curve([SHAPE + 9], cyclic=False)
     relax(max_iterations=1)
-    refused("No selected curve has an open spline without keys")
-
-
-def test_not_during_a_run(operator):
-    add_curve([SHAPE], cyclic=False)
-    operator.start()
-    with pytest.raises(RuntimeError, match="is being relaxed; stop that first"):
-        CLOSE()
-    operator.run.cancel()
+    refused("Nothing selected needs that")

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from blender_scenes import add_curve, contents, sentence, stored
 from knot_type import UNKNOT, knot_invariants
-from mobius_flow.addon.buttons import stroke
+from mobius_flow.addon.buttons import drawing
 from mobius_flow.core import Curve
 from mobius_flow.core.collision import check_embedded
-from mobius_flow.core.knots import torus_knot
+from mobius_flow.core.knots import Drawing, torus_knot
 
 
 def scribble(p=2, q=3, n=60):
@@ -49,7 +49,7 @@ def test_an_open_stroke_is_closed_by_its_chord():
 
 def test_a_stroke_is_named_as_it_stands():
     """In a thread; one with many crossings is only counted, and one that touches itself has no name for a moment."""
-    path, name = [120.0 * place[:2] for place in scribble()], stroke._Name()
+    path, name = [120.0 * place[:2] for place in scribble()], drawing._Name()
     wanted = {len(path): "3 crossings: m3_1, proved", len(path) // 3: "0 crossings: it is not knotted", 2: ""}
     for length, said in wanted.items():
         name.look(path[:length])
@@ -59,6 +59,29 @@ def test_a_stroke_is_named_as_it_stands():
     name.look([*(100.0 * np.stack([turns / 20 + np.sin(turns), np.cos(turns)], axis=1))])
     name._thread.join()
     assert re.fullmatch(r"\d+ crossings", name.said)
+
+
+def sharpest(points):
+    edges = np.roll(points, -1, axis=0) - points
+    edges /= np.linalg.norm(edges, axis=1, keepdims=True)
+    return np.degrees(np.arccos((edges * np.roll(edges, 1, axis=0)).sum(axis=1).clip(-1.0, 1.0)).max())
+
+
+def test_a_coarse_stroke_has_no_corners_and_its_type():
+    path = [200.0 * place[:2] for place in scribble(n=15)]
+    smooth = drawing._even(path)
+    assert sharpest(np.array(path)) > 50
+    assert sharpest(smooth) < 8
+    knotted = Drawing.of(Curve(smooth)).lifted()
+    assert knot_invariants(knotted.vertices).genus == 1
+
+
+def test_a_stroke_crosses_where_its_polygon_does(monkeypatch):
+    """A spline may swing out and cross what the stroke does not; then its corners are rounded only."""
+    zigzag = [np.array(place) for place in ((0.0, 0), (400, 0), (400, 20), (40, 20), (40, 40), (400, 40), (0.0, 300))]
+    assert len(Drawing.of(Curve(drawing._even(zigzag))).crossings) == 0
+    monkeypatch.setattr(drawing, "_crossings", lambda _points: [])
+    assert len(Drawing.of(Curve(drawing._even(zigzag))).crossings) > 0
 
 
 def test_strokes_want_a_view():

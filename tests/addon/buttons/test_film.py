@@ -38,6 +38,52 @@ def test_stage_and_film(scene, tmp_path):
     assert scene.mobius_flow_film.filepath == str(tmp_path / "film.mp4")
 
 
+def test_a_film_in_a_look_shows_its_stage_and_gives_the_scene_back(scene, tmp_path):
+    OPS.mobius_flow_set_up_stage()
+    before, curve = contents(), bpy.context.object.data
+    worn, sky = curve.materials[0].name, scene.world.node_tree.nodes["Background"].inputs["Color"]
+    dark = tuple(sky.default_value)
+    film = Filming(scene, str(tmp_path / "film.mp4"), "PAPER")
+    (copy,) = [each for each in bpy.data.scenes if each != scene]
+    pale = tuple(copy.world.node_tree.nodes["Background"].inputs["Color"].default_value)
+    assert (dark[:3], pale[:3]) == (pytest.approx((0.018, 0.022, 0.032)), pytest.approx((0.36, 0.39, 0.43)))
+    assert (worn, curve.materials[0].name) == ("Dark Studio 6", "Paper 6")
+    assert copy.camera not in (None, scene.camera)
+    assert not set(copy.objects) & {obj for obj in scene.objects if obj.type == "LIGHT"}
+    film.render()
+    bpy.data.images.remove(bpy.data.images["Render Result"])
+    assert contents() == before
+    assert curve.materials[0].name == worn
+
+
+def test_a_stage_that_cannot_be_set_up_anew_is_filmed_as_it_stands(scene, tmp_path):
+    OPS.mobius_flow_set_up_stage()
+    for point in bpy.context.object.data.splines[0].points:
+        point.co = (0, 0, 0, 1)
+    before = contents()
+    film = Filming(scene, str(tmp_path / "film.mp4"), "PAPER")
+    (copy,) = [each for each in bpy.data.scenes if each != scene]
+    assert set(copy.objects) == set(scene.objects)
+    film.finish()
+    assert contents() == before
+
+
+def test_other_objects_are_left_out_until_the_stage_goes(scene, capfd):
+    for name in ("Cube", "Hidden", "Post"):
+        obj = bpy.data.objects.new(name, bpy.data.meshes.new(name))
+        scene.collection.objects.link(obj)
+    bpy.data.objects["Hidden"].hide_render = True
+    scene.mobius_flow_surroundings.container = bpy.data.objects["Post"]
+    OPS.mobius_flow_set_up_stage()
+    assert "Renders leave out 'Cube' until you press Remove Stage" in capfd.readouterr().out
+    OPS.mobius_flow_set_up_stage()
+    assert {obj.name for obj in scene.objects if obj.hide_render} == {"Cube", "Hidden"}
+    OPS.mobius_flow_remove_stage()
+    assert {obj.name for obj in scene.objects if obj.hide_render} == {"Hidden"}
+    OPS.mobius_flow_set_up_stage(hide_others=False)
+    assert not bpy.data.objects["Cube"].hide_render
+
+
 def test_the_stage_is_one_step_of_undo(scene):
     bpy.ops.ed.undo_push(message="Before")
     before = contents()
@@ -133,14 +179,18 @@ def test_in_a_window_it_waits_for_the_end(scene, tmp_path, monkeypatch):
     assert list(bpy.data.scenes) == [scene]
 
 
-def test_play_film_needs_one(scene, tmp_path, monkeypatch):
+def test_play_film_needs_one_of_this_scene(scene, tmp_path, monkeypatch):
     scene.mobius_flow_film.filepath = str(tmp_path / "film.mp4")
+    (tmp_path / "film.mp4").write_bytes(b"another project's")
     assert not OPS.mobius_flow_play_film.poll()
-    (tmp_path / "film.mp4").touch()
+    OPS.mobius_flow_set_up_stage()
+    OPS.mobius_flow_render_film(overwrite=True)
     played = []
     monkeypatch.setattr(buttons, "play", played.append)
     assert OPS.mobius_flow_play_film() == {"FINISHED"}
     assert played == [tmp_path / "film.mp4"]
+    (tmp_path / "film.mp4").write_bytes(b"another project's, rendered later")
+    assert not OPS.mobius_flow_play_film.poll()
 
 
 @pytest.mark.parametrize("how", ["event", "cancel"])

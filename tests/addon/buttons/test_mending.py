@@ -1,32 +1,26 @@
 """What is refused is mended by the button that the refusal names: in one step, on all that need it, losing nothing."""
 
+from types import SimpleNamespace
+
 import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_curve, add_trefoil, contents, evaluated, linked, show, stored
 from mended_curves import SHAPE, call, may_be_relaxed, mend, relax_once, two, with_material
-from mobius_flow.addon import registration
 from mobius_flow.addon.buttons import mending
 from mobius_flow.addon.live import registry
-from mobius_flow.addon.live.checks import POLYGONS, RELAXABLE
-from mobius_flow.addon.live.requirements import Remedy
+from mobius_flow.addon.live.requirements import POLYGONS, RELAXABLE, Remedy
 from modal_operator import keys
 
 
-def test_every_remedy_has_its_button():
-    classes = registration.declared(mending)
-    assert {cls.bl_idname for cls in classes} == {remedy.value for remedy in Remedy}
-    for remedy in Remedy:
-        rna = call(remedy).get_rna_type()
-        assert rna.name.istitle() or rna.name in (
-            "Back to Object Mode",
-            "Make 3D",
-            "Convert to Curve",
-            "Convert to Poly",
-        )
-        assert 20 < len(rna.description) < 120
-        assert not rna.description.endswith(".")
-    assert all({"UNDO", "REGISTER"} <= cls.bl_options for cls in classes)
+def test_every_remedy_has_its_words():
+    items = bpy.ops.curve.mobius_flow_mend.get_rna_type().properties["remedy"].enum_items
+    assert {item.identifier: item.name for item in items} == {each.name: each.value for each in Remedy}
+    for item in items:
+        assert 20 < len(item.description) < 120
+        assert not item.description.endswith(".")
+        asked = SimpleNamespace(remedy=item.identifier)
+        assert mending.CURVE_OT_mobius_flow_mend.description(bpy.context, asked) == item.description
 
 
 @pytest.mark.parametrize("remedy", list(Remedy), ids=lambda remedy: remedy.name)
@@ -35,7 +29,7 @@ def test_what_needs_nothing_is_left_alone(remedy):
     if remedy is not Remedy.COPY:
         before = contents()
         with pytest.raises(RuntimeError, match="Nothing selected needs that"):
-            call(remedy)()
+            call(remedy)
         assert contents() == before
 
 
@@ -45,7 +39,7 @@ def test_not_during_a_run(operator, remedy):
     operator.start()
     add_curve([SHAPE + 9], cyclic=False)
     with pytest.raises(RuntimeError, match="is being relaxed; stop that first"):
-        call(remedy)()
+        call(remedy)
     registry.current().cancel()
 
 
@@ -120,7 +114,7 @@ def test_smooth_splines_become_what_is_drawn(kind):
     drawn = evaluated(obj)
     assert RELAXABLE(bpy.context) is None, "relaxing asks by itself"
     assert POLYGONS.of([obj]).remedy is Remedy.TO_POLY
-    assert bpy.ops.curve.mobius_flow_to_poly() == {"FINISHED"}
+    assert bpy.ops.curve.mobius_flow_mend(remedy="TO_POLY") == {"FINISHED"}
     assert {spline.type for spline in obj.data.splines} == {"POLY"}
     assert obj.data.splines[1].material_index == 1
     np.testing.assert_array_equal(stored(obj.data), drawn)
@@ -135,7 +129,7 @@ def test_what_cannot_become_a_polygon_is_said_and_the_rest_does():
     spline.bezier_points.add(1)
     spline.use_cyclic_u = True
     with pytest.raises(RuntimeError, match="Spline 2 of 'B' is drawn with only 2 points"):
-        bpy.ops.curve.mobius_flow_to_poly()
+        bpy.ops.curve.mobius_flow_mend(remedy="TO_POLY")
     assert {spline.type for spline in good.data.splines} == {"POLY"}
     assert {spline.type for spline in bad.data.splines} == {"BEZIER"}
 

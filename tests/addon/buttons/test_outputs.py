@@ -16,9 +16,9 @@ from blender_scenes import (
 from mobius_flow.addon.curves import bevel, splines
 from mobius_flow.addon.curves.keyframes import end_of
 from mobius_flow.addon.curves.surroundings import near
-from mobius_flow.addon.engine.colours import PALETTE, ramp, strand_distances
 from mobius_flow.core import Curve
 from mobius_flow.core.energies.moebius import moebius_by_length
+from mobius_flow.core.keys.colours import PALETTE, ramp, strand_distances
 from shapes import hopf_link, torus_trefoil
 
 

@@ -95,23 +95,8 @@ def test_what_is_picked_is_saved_with_the_file(tmp_path):
     assert bpy.context.scene.mobius_flow_knots.knot == "9_42"
 
 
-def test_icons_are_drawn_once_and_when_they_are_asked_for(monkeypatch):
-    drawn = []
-    monkeypatch.setattr(icons, "smooth_knot", lambda name: drawn.append(name) or smooth_knot(name))
-    icons.forget()
-    assert not drawn
-    icons.icon("4_1")
-    icons.icon("4_1")
-    assert drawn == ["4_1"]
-    preview = icons._drawn()["4_1"]
-    assert tuple(preview.icon_size) == (32, 32)
-    pixels = np.array(preview.image_pixels_float[:]).reshape(96, 96, 4)
-    assert 0.1 < (pixels[..., 3] > 0).mean() < 0.6
-    icons.forget()
-
-
 def test_every_setting_says_what_it_does():
-    for name in ("pick_knot", "add_family", "draw_knot"):
+    for name in ("pick_knot", "add_knot", "draw_knot"):
         own = getattr(bpy.ops.curve, f"mobius_flow_{name}").get_rna_type().properties
         for each in own:
             if each.identifier not in ("rna_type", "align", "location", "rotation"):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from blender_scenes import add_curve, add_trefoil
 from mobius_flow.addon.curves.splines import control_points
-from mobius_flow.core.errors import Place
+from mobius_flow.core.base.errors import Place
 from shapes import torus_trefoil
 
 CROSSED = np.array([[0.0, 0, 0], [2, 2, 0], [2, 0, 0], [0, 2, 0]])

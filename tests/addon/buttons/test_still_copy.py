@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 from blender_scenes import add_trefoil, contents, evaluated, stored
 from mended_curves import may_be_relaxed, mend, relax_once, two, with_material
-from mobius_flow.addon.live.checks import RELAXABLE, UNEDITED
-from mobius_flow.addon.live.requirements import Remedy
+from mobius_flow.addon.live.requirements import RELAXABLE, UNEDITED, Remedy
 
 
 def copied():
@@ -15,7 +14,7 @@ def copied():
     original = bpy.context.object
     before = contents()["splines"]
     shown = evaluated(original)
-    assert bpy.ops.curve.mobius_flow_copy() == {"FINISHED"}
+    assert bpy.ops.curve.mobius_flow_mend(remedy="COPY") == {"FINISHED"}
     (copy,) = bpy.context.selected_objects
     assert copy == bpy.context.object != original
     assert {name: value for name, value in contents()["splines"].items() if name in before} == before
@@ -53,7 +52,7 @@ def test_a_copy_has_no_animation():
     obj.data.bevel_depth = 0.1
     obj.data.keyframe_insert("bevel_depth", frame=1)
     assert RELAXABLE(bpy.context).remedy is Remedy.COPY
-    copy = bpy.ops.curve.mobius_flow_copy() and bpy.context.object
+    copy = bpy.ops.curve.mobius_flow_mend(remedy="COPY") and bpy.context.object
     assert copy.data.animation_data is None
     assert copy.data.bevel_depth == pytest.approx(0.1)
     assert obj.data.animation_data.action is not None

@@ -4,8 +4,9 @@ import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_curve, add_hopf_link, add_trefoil, contents, relax, sentence
-from mobius_flow.addon.engine.colours import PALETTE
-from shapes import hopf_link
+from mobius_flow.addon.curves import bevel
+from mobius_flow.core.keys.colours import PALETTE
+from shapes import hopf_link, lattice_knot
 
 BUTTONS = ("fit_tube", "color_components", "tube_mesh", "smooth_curve")
 
@@ -53,6 +54,22 @@ def test_colours_and_keys_do_not_mind_each_other():
     before = colours(obj)
     relax(max_iterations=2)
     assert colours(obj) == before
+
+
+def thicknesses(obj):
+    """How thick the tube is drawn at each key."""
+    data = obj.data
+    return data.bevel_depth * np.array([block.data[0].radius for block in data.shape_keys.key_blocks])
+
+
+def test_a_tube_of_constant_thickness_stays_one_until_it_is_fitted_otherwise():
+    obj = add_curve([lattice_knot("4_1").vertices])
+    relax(max_iterations=8, vertices=120)
+    for constant in (False, True, False):
+        press("fit_tube", constant=constant)  # which acts on the finished film
+        for _ in range(2):
+            assert (np.ptp(thicknesses(obj)) < 1e-6) == constant == bevel.is_constant(obj.data)
+            bpy.ops.curve.mobius_flow_relax(max_iterations=8, vertices=120, timing="ITERATE")
 
 
 def nothing():

@@ -17,7 +17,7 @@ from blender_scenes import (
     stored,
 )
 from mobius_flow.addon.curves import bake
-from mobius_flow.addon.curves.baked_keys import BakedKeys
+from mobius_flow.addon.curves.recorded import BakedKeys
 from mobius_flow.core import Curve
 from shapes import torus_trefoil
 

@@ -9,7 +9,7 @@ from blender_scenes import add_curve, contents, in_world, relax, sentence, store
 from knot_diagrams import linking_number
 from mathutils import Euler, Matrix, Vector
 from mobius_flow import Relaxation
-from mobius_flow.addon.curves.exchange import key_points
+from mobius_flow.addon.curves.splines import key_points
 from mobius_flow.addon.curves.surroundings import Surroundings
 from mobius_flow.core import MobiusFlowError
 from mobius_flow.core.collision import is_free
@@ -49,6 +49,7 @@ def placed(obj, matrix):
     there = np.array(obj.matrix_world, dtype=np.float64)
     local = np.linalg.solve(there[:3, :3], (points - there[:3, 3]).T).T
     obj.data.splines[0].points.foreach_set("co", np.column_stack([local, np.ones(len(local))]).ravel())
+    obj.data.update_tag()  # Blender 4.2 does not notice by itself
     return obj
 
 
@@ -92,24 +93,6 @@ def test_a_curve_that_is_avoided_stays_linked(capfd, matrix):
     assert free(moving, Surroundings.of([still], []).obstacles)
 
 
-def test_without_it_the_curve_would_have_left():
-    add_curve([circle()], "A").select_set(False)
-    moving = add_curve([ring()], "B")
-    relax(vertices=60)
-    assert not free(moving, Surroundings.of([bpy.data.objects["A"]], []).obstacles)
-    assert {linking_number(circle(), key) for key in keys(moving)} == {linking_number(circle(), ring()), 0}
-
-
-def test_a_ring_around_a_torus_stays_around_it(capfd):
-    tube, moving = torus(), add_curve([ring()], "Ring")
-    avoid(tube)
-    relax(vertices=60)
-    assert "proved free of contact with itself, and with 'Torus'" in capfd.readouterr().out
-    assert abs(linking_number(circle(), ring())) == 1
-    assert {linking_number(circle(), key) for key in keys(moving)} == {linking_number(circle(), ring())}
-    assert free(moving, Surroundings.of([tube], []).obstacles)
-
-
 def test_scripts_give_objects_and_operators_the_name_of_a_collection():
     tube, by_script = torus(), add_curve([ring()], "Ring")
     by_script.select_set(False)
@@ -151,7 +134,7 @@ def test_images_of_equal_energy_are_not_taken():
     assert refused(balance=True) == said
     relax(**SHORT)
     with pytest.raises(RuntimeError, match=said):
-        bpy.ops.curve.mobius_flow_balance()
+        bpy.ops.curve.mobius_flow_continue(balance=True)
 
 
 def refused(**options):
@@ -191,15 +174,6 @@ def test_a_curve_that_moves_avoids_nothing():
     assert refused().startswith("'Ring' is moved by animation, and curves that avoid something must keep their places")
 
 
-def test_what_is_selected_is_relaxed_and_not_avoided(capfd):
-    first, second = add_curve([circle()], "A"), add_curve([ring()], "B")
-    avoid(first, second)
-    first.select_set(True)
-    second.select_set(True)
-    relax(**SHORT)
-    assert "with themselves and each other\n" in capfd.readouterr().out
-
-
 @pytest.mark.parametrize("wrong", [None, "Torus"])
 def test_scripts_name_objects(wrong):
     add_curve([ring()], "Ring")
@@ -207,13 +181,3 @@ def test_scripts_name_objects(wrong):
         Relaxation(bpy.data.objects["Ring"]).relax(avoid=[wrong])
     with pytest.raises(MobiusFlowError, match="avoid is of type NoneType; give a list of objects"):
         Relaxation(bpy.data.objects["Ring"]).relax(avoid=None)
-
-
-def test_obstacles_are_left_alone():
-    tube = torus()
-    avoid(tube)
-    before = tube.data.vertices[0].co.copy()
-    add_curve([ring()], "Ring")
-    relax(**SHORT)
-    assert tube.data.vertices[0].co == before
-    assert [each.name for each in bpy.data.meshes] == ["Torus"]

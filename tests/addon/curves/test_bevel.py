@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from blender_scenes import add_curve, add_hopf_link, add_trefoil, in_world, stored
 from mobius_flow.addon.curves import bevel
-from mobius_flow.addon.engine.tube import free_radius, thickest_radius
 from mobius_flow.core import Curve
+from mobius_flow.core.keys.tube import free_radius, thickest_radius
 from shapes import hopf_link, torus_trefoil
 
 SHORT = {"max_iterations": 4, "timing": "ITERATE"}

@@ -7,11 +7,10 @@ from blender_scenes import add_trefoil, contents, evaluated, sentence, stored
 from mobius_flow.addon.curves import member
 from mobius_flow.addon.curves.moving import deforms, what_deforms
 from mobius_flow.addon.curves.session import Session
-from mobius_flow.addon.engine.key_options import KeyOptions
-from mobius_flow.addon.live.checks import RELAXABLE
-from mobius_flow.addon.live.requirements import Remedy
+from mobius_flow.addon.live.requirements import RELAXABLE, Remedy
 from mobius_flow.core import Curve, CurveError, RelaxOptions
 from mobius_flow.core.collision import check_embedded
+from mobius_flow.core.keys.key_options import KeyOptions
 
 ADDING = {
     "ARRAY",
@@ -191,7 +190,7 @@ def test_a_parent_that_deforms_is_refused():
     assert what_deforms(obj) is None
     obj.parent_type = "LATTICE"
     assert "The parent of 'Knot' moves its points" in refused()
-    assert bpy.ops.curve.mobius_flow_copy() == {"FINISHED"}
+    assert bpy.ops.curve.mobius_flow_mend(remedy="COPY") == {"FINISHED"}
     assert bpy.ops.curve.mobius_flow_relax(max_iterations=1) == {"FINISHED"}
 
 
@@ -213,7 +212,7 @@ def test_a_copy_has_the_deformed_shape_and_may_be_relaxed():
     bpy.context.view_layer.update()
     shown = evaluated(obj)
     assert np.abs(shown - stored(obj.data)).max() > 0.2
-    assert bpy.ops.curve.mobius_flow_copy() == {"FINISHED"}
+    assert bpy.ops.curve.mobius_flow_mend(remedy="COPY") == {"FINISHED"}
     copy = bpy.context.object
     assert [modifier.name for modifier in copy.modifiers] == ["Array"]
     np.testing.assert_allclose(stored(copy.data), shown, atol=1e-6)

@@ -4,9 +4,9 @@ import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_curve, add_trefoil, evaluated, relax
-from mobius_flow.addon.engine.colours import strand_distances
 from mobius_flow.core import Curve
 from mobius_flow.core.curve.distances import vertex_positions
+from mobius_flow.core.keys.colours import strand_distances
 from shapes import hopf_link, regular_polygon, torus_trefoil
 
 SIDES = 6

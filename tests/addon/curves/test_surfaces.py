@@ -51,6 +51,8 @@ def used(*parts):
     ],
 )
 def test_what_has_faces_is_avoided_once_as_triangles(kind, name):
+    if name == "metaball_add" and bpy.app.version < (5, 0):
+        pytest.skip("this Blender shows nothing of a mirrored metaball")
     obj = turned(added(kind, name))
     (faces,) = obstacles(obj)
     assert faces.faces.shape[1] == 3

@@ -1,42 +1,12 @@
-"""Where relaxations lead: minimum or saddle, and the least energy: 4 for each component unless it seems knotted."""
+"""The least energy that relaxations lead to: 4 for each component unless it seems knotted."""
 
 import numpy as np
 import pytest
-from mobius_flow.addon.engine import rest
-from mobius_flow.addon.engine.rest import CIRCLE, Rest, target_of
-from mobius_flow.core import Curve, CurveError, Mesh, MoebiusEnergy, Obstacle, RelaxOptions, minimize
-from mobius_flow.core.knots import knot, overhand, torus_knot
-from shapes import hopf_link, lattice_knot, regular_polygon, torus_trefoil
+from mobius_flow.addon.engine.rest import CIRCLE, target_of
+from mobius_flow.core import Curve, Mesh, MoebiusEnergy, Obstacle, RelaxOptions, minimize
+from mobius_flow.core.knots import knot, overhand
+from shapes import hopf_link, torus_trefoil
 from tasks import wanted
-
-OPTIONS = RelaxOptions(max_iterations=3)  # what was asked of the relaxation before does not matter
-
-
-def as_stored(curve):
-    return curve.with_vertices(curve.vertices.astype(np.float32))
-
-
-def test_a_minimum():
-    found = Rest.of(as_stored(minimize(torus_knot(2, 3, 120)).curve), OPTIONS)
-    assert found == Rest(0, "at a minimum, no small motion lowers the energy")
-
-
-def test_a_saddle():
-    curve = minimize(torus_knot(3, 4, 160), RelaxOptions(vertices=160)).curve
-    assert Rest.of(as_stored(curve), OPTIONS) == Rest(
-        2, "at a saddle, 2 independent ways lead down; press Leave Saddle"
-    )
-
-
-def test_a_curve_that_was_stopped_on_its_way(monkeypatch):
-    monkeypatch.setattr(rest, "_ITERATIONS", 3)
-    assert Rest.of(lattice_knot("4_1"), OPTIONS) == Rest(None, "not at rest yet; press Continue first")
-
-
-def test_too_many_points():
-    with pytest.raises(CurveError, match=r"have 1501 points; minimum or saddle is decided up to 1500$"):
-        Rest.of(regular_polygon(1501), OPTIONS)
-
 
 MOEBIUS = RelaxOptions()
 
@@ -58,10 +28,9 @@ def test_a_link_has_a_circles_energy_for_each_component():
     assert minimize(hopf_link(24)).final_energy > target.energy
 
 
-def test_the_type_of_curves_with_very_many_vertices_is_left_open(monkeypatch):
-    monkeypatch.setattr("mobius_flow.addon.engine.rest._MOST", 59)
-    assert target_of(torus_trefoil(60), MOEBIUS).label == "circle = 4"
-    assert target_of(torus_trefoil(59), MOEBIUS) is None
+def test_the_type_of_curves_with_very_many_vertices_is_left_open():
+    assert target_of(torus_trefoil(60), MOEBIUS, most=59).label == "circle = 4"
+    assert target_of(torus_trefoil(59), MOEBIUS, most=59) is None
 
 
 def test_other_energies_have_other_minima():

@@ -4,12 +4,12 @@ import re
 
 import pytest
 from mobius_flow.addon.engine import wire
-from mobius_flow.addon.engine.words import in_blenders_words, spline_names
 from mobius_flow.core import Curve, CurveError, Obstacle, OptionError, Outcome, Status, Task, relax
+from mobius_flow.core.base.errors import Place
+from mobius_flow.core.base.messages import Message
 from mobius_flow.core.collision import Contact
 from mobius_flow.core.driver.outcome import converged, stalled
-from mobius_flow.core.errors import Place
-from mobius_flow.core.messages import Message
+from mobius_flow.core.driver.words import in_blenders_words, spline_names
 from shapes import torus_trefoil
 
 NAMES = spline_names(["Ring", "Knot"], [1, 2])

@@ -8,7 +8,7 @@ import pytest
 from blender_scenes import add_curve, relax
 from mobius_flow.addon.curves.splines import Splines
 from mobius_flow.addon.engine import worker
-from mobius_flow.addon.live.run import State
+from mobius_flow.addon.live.run import RunState
 from modal_operator import keys, restored
 from shapes import hopf_link
 
@@ -48,6 +48,7 @@ def test_the_worker_proves_what_is_stored(operator, ring, monkeypatch):
     """Motions beside the torus come proved from the worker."""
     again = []
     monkeypatch.setattr(worker, "is_free", lambda *given: again.append(given[-1]) or True)
+    operator.given["timing"] = "ITERATE"  # which leaves no room for keys in between
     operator.start()
     assert operator.until(lambda: False) == {"FINISHED"}
     assert operator.run.report.certified
@@ -86,7 +87,7 @@ def test_what_happens_to_what_is_avoided_ends_the_run(operator, ring, torus, act
     said = act(ring, torus)
     bpy.context.view_layer.update()
     assert operator.event() == {"CANCELLED"}
-    assert operator.run.state is State.LOST
+    assert operator.run.state is RunState.LOST
     assert operator.reports[-1][1] == f"{said}; the relaxation has ended, and every curve is as it was"
     restored(ring, before)
     if bpy.context.mode != "OBJECT":

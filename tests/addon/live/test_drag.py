@@ -8,9 +8,9 @@ import pytest
 from blender_scenes import add_curve, add_hopf_link, add_trefoil, stored
 from mathutils import Matrix
 from mobius_flow import Relaxation
-from mobius_flow.addon.curves import pins
+from mobius_flow.addon.curves import bake, pins
 from mobius_flow.addon.live.drag import Drag, projected
-from mobius_flow.addon.live.run import State
+from mobius_flow.addon.live.run import RunState
 from mobius_flow.core import MobiusFlowError
 from modal_operator import keys
 from shapes import regular_polygon, torus_trefoil
@@ -127,7 +127,7 @@ def test_what_is_beside_the_curve_or_pressed_with_a_key_is_blenders(operator):
     begin(operator)
     place = on_curve(operator)
     assert press(operator, [5.5, 5.5, 0.0]) == {"PASS_THROUGH"}
-    for modifier in ("ctrl", "shift", "alt", "oskey"):
+    for modifier in ("shift", "alt", "oskey"):
         assert press(operator, place, **{modifier: True}) == {"PASS_THROUGH"}
     assert operator.event("MIDDLEMOUSE", pixel(place)) == {"PASS_THROUGH"}
     assert move(operator, place) == {"PASS_THROUGH"}
@@ -143,7 +143,7 @@ def test_at_rest_it_waits_for_the_mouse(operator):
     add_curve([regular_polygon(30).vertices])
     begin(operator)
     operator.until(lambda: at_rest(operator))
-    assert operator.run.state is State.RUNNING
+    assert operator.run.state is RunState.RUNNING
     place = on_curve(operator)
     press(operator, place)
     move(operator, 1.3 * place)
@@ -157,16 +157,17 @@ def at_rest(operator):
     return bool(last.path) and last.step_size == 0.0
 
 
-@pytest.mark.parametrize("size", ["LENGTH", "RADIUS"])
-def test_ctrl_leaves_a_pin_that_is_kept(operator, size):
+@pytest.mark.parametrize(("size", "early"), [("LENGTH", False), ("RADIUS", True)])
+def test_ctrl_leaves_a_pin_that_is_kept(operator, size, early):
+    """Whether it is held when a strand is taken, or when it is let go."""
     obj = add_curve([torus_trefoil(40).vertices])
     begin(operator, keep_size=size)
     place = on_curve(operator, 7)
-    press(operator, place)
+    assert press(operator, place, ctrl=early) == {"RUNNING_MODAL"}
     target = moved(place, 0.5, 0.0, 0.0)
     move(operator, target)
     operator.until(lambda: gap(operator, target) < 0.2)
-    release(operator, target, ctrl=True)
+    release(operator, target, ctrl=not early)
     operator.until(lambda: operator.run.shown.pins)
     assert pins.count(obj.data) == 1
     (vertex,) = operator.run.shown.pins
@@ -177,7 +178,8 @@ def test_ctrl_leaves_a_pin_that_is_kept(operator, size):
     assert operator.until(lambda: False) == {"FINISHED"}
     assert operator.run.report.certified
     assert pins.count(obj.data) == 1
-    np.testing.assert_array_equal(pins.places(obj.data)[0], held.astype(np.float32))
+    pinned = bake.sizes(obj.data)[-1].of(pins.places(obj.data)[0].astype(np.float64))
+    np.testing.assert_allclose(pinned, held, rtol=0.0, atol=1e-6)
 
 
 @pytest.mark.parametrize("let_go", [True, False], ids=["after", "meanwhile"])
@@ -207,7 +209,7 @@ def test_a_drag_is_taken_back(operator, let_go, pressed):
     operator.until(lambda: at_rest(operator) and np.abs(stored(obj.data) - before).max() < 1e-4)
     assert operator.run.drag is None
     assert pins.count(obj.data) == 0
-    assert operator.run.state is State.RUNNING
+    assert operator.run.state is RunState.RUNNING
     key(operator, "RET")
     assert operator.until(lambda: False) == {"FINISHED"}
     assert operator.run.report.certified

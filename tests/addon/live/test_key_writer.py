@@ -4,8 +4,7 @@ import threading
 from types import SimpleNamespace
 
 import pytest
-from mobius_flow.addon.live import viewing
-from mobius_flow.addon.live.viewing import KeyWriter
+from mobius_flow.addon.live.run import KeyWriter
 from mobius_flow.core import MobiusFlowError
 from processes import PATIENCE
 
@@ -19,13 +18,15 @@ def started(session, proof):
 
 
 def test_keys_are_written_a_piece_at_a_time(monkeypatch):
-    monkeypatch.setattr(viewing, "_SLICE", 0.0)
+    monkeypatch.setattr(KeyWriter, "slice", 0.0)
     written = []
-    session = SimpleNamespace(
-        prepare=lambda proof: proof("mesh", "start", "end"),
-        writing=lambda prepared: (written.append((prepared, k)) for k in range(3)),
-        report=lambda prepared: f"{prepared} is done",
-    )
+
+    def bake(prepared):
+        for k in range(3):
+            yield written.append((prepared, k))
+        yield f"{prepared} is done"
+
+    session = SimpleNamespace(prepare=lambda proof: proof("mesh", "start", "end"), bake=bake)
     writer = started(session, lambda *motion: " ".join(motion))
     for k in range(3):
         assert writer.advance() is None

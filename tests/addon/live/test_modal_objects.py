@@ -7,8 +7,7 @@ from blender_scenes import add_curve, add_trefoil, stored
 from mobius_flow.addon.curves import keyframes
 from mobius_flow.addon.curves.splines import Splines
 from mobius_flow.addon.engine import worker
-from mobius_flow.addon.live import viewing
-from mobius_flow.addon.live.run import State
+from mobius_flow.addon.live.run import KeyWriter, RunState
 from modal_operator import keys, restored
 from shapes import hopf_link
 
@@ -49,6 +48,7 @@ def test_the_worker_proves_what_is_stored(operator, rings, monkeypatch):
     """Nothing is proved twice: the motions of rounded points of all objects come proved from the worker."""
     again = []
     monkeypatch.setattr(worker, "is_free", lambda *_: again.append(1) or True)
+    operator.given["timing"] = "ITERATE"  # which leaves no room for keys in between
     operator.start()
     assert operator.until(lambda: False) == {"FINISHED"}
     assert operator.run.report.certified
@@ -105,7 +105,7 @@ def test_what_happens_to_one_object_restores_the_others(operator, rings, act):
     operator.reach(2)
     said = act(second)
     assert operator.event() == {"CANCELLED"}
-    assert operator.run.state is State.LOST
+    assert operator.run.state is RunState.LOST
     rest = "every curve is as it was" if act in (edit, move) else "the others are as they were"
     assert operator.reports[-1][1] == f"{said}; the relaxation has ended, and {rest}"
     restored(first, before)
@@ -141,7 +141,7 @@ def test_a_file_saved_meanwhile_has_all_objects_as_they_were(operator, rings, tm
 
 
 def test_esc_while_keys_of_the_second_object_are_written(operator, rings, monkeypatch):
-    monkeypatch.setattr(viewing, "_SLICE", 0.0)  # a key at a tick
+    monkeypatch.setattr(KeyWriter, "slice", 0.0)  # a key at a tick
     before = [Splines.of(obj.data) for obj in rings]
     operator.start()
     operator.until(lambda: rings[1].data.shape_keys is not None)
@@ -154,10 +154,10 @@ def test_esc_while_keys_of_the_second_object_are_written(operator, rings, monkey
 
 
 def test_an_error_while_keys_are_written_loses_nothing(operator, rings, monkeypatch):
-    before = [Splines.of(obj.data) for obj in rings]
+    before, writing = [Splines.of(obj.data) for obj in rings], keyframes.writing
 
     def failing(*arguments):
-        yield next(keyframes._shape_keys(arguments[0], arguments[1], arguments[2]))
+        yield next(writing(*arguments))
         raise MemoryError
 
     monkeypatch.setattr(keyframes, "writing", failing)

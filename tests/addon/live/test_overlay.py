@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from blender_scenes import add_curve, add_trefoil
 from mobius_flow.addon.curves import pins
-from mobius_flow.addon.engine.colours import contrast
 from mobius_flow.addon.live import overlay, registry
+from mobius_flow.core.keys.colours import contrast
 from mobius_flow.core.knots import knot
 from shapes import torus_trefoil
 
@@ -61,7 +61,7 @@ def test_the_plot_is_in_the_view_beside_the_sidebar(run, drawn, sidebar):
     assert (low > 0).all()
     assert high[0] < (sidebar or 900)
     words = [said for kind, _, _, said in drawn if kind == "text"]
-    assert words == ["circle = 4", f"Energy {run.last.energy:.4f}", "Iteration 8"]
+    assert words == ["circle = 4", f"Energy {run.last.energy:.4f}", "Step 8"]
 
 
 @pytest.mark.parametrize("size", [(250, 700), (900, 150)])

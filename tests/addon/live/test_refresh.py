@@ -4,7 +4,7 @@ import pytest
 
 pytest.importorskip("bpy")
 
-from mobius_flow.addon.live.viewing import Refresh
+from mobius_flow.addon.live.run import Refresh
 
 
 class Window:

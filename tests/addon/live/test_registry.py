@@ -18,7 +18,7 @@ def done(monkeypatch):
 
 
 def test_undo_is_about_what_was_done_since(done):
-    past = registry.History()
+    past = registry.ActionCount()
     past.begin()
     past.look()
     assert (past.others, past.undone) == (0, 0)
@@ -42,7 +42,7 @@ def test_drags_have_one_step_that_is_made_anew(done, monkeypatch):
     monkeypatch.setattr(registry.bpy.ops.ed, "undo_push", lambda message: None, raising=False)
     hidden = []
     group = SimpleNamespace(hide=lambda: hidden.append(True), resume=lambda: hidden.append(False))
-    run, past = SimpleNamespace(drags=0, endures=True, group=group), registry.History()
+    run, past = SimpleNamespace(drags=0, endures=True, group=group), registry.ActionCount()
     past.begin()
     past.push(run)
     assert past.others == 0, "nothing was dragged"
@@ -66,7 +66,7 @@ def test_drags_have_one_step_that_is_made_anew(done, monkeypatch):
 
 
 def test_what_is_done_anew_cannot_be_done_again(done):
-    past = registry.History()
+    past = registry.ActionCount()
     past.begin()
     done.append(8)
     past.look()

@@ -6,15 +6,14 @@ import pytest
 from baked_curves import two_rings
 from blender_scenes import add_trefoil, evaluated, relax, stored
 from mobius_flow.addon.curves import bake, keyframes
-from mobius_flow.addon.live import viewing
-from mobius_flow.addon.live.run import State
+from mobius_flow.addon.live.run import KeyWriter, RunState
 from modal_operator import keys
 
 
 @pytest.fixture(autouse=True)
 def slowly(monkeypatch):
     """Let a key be written at a tick."""
-    monkeypatch.setattr(viewing, "_SLICE", 0.0)
+    monkeypatch.setattr(KeyWriter, "slice", 0.0)
 
 
 def save(path):
@@ -33,7 +32,7 @@ def test_keys_whose_writing_has_begun_are_all_in_the_file(operator, tmp_path):
     operator.until(lambda: bpy.data.objects["A"].data.shape_keys is not None)
     assert bpy.data.objects["B"].data.shape_keys is None, "saved in the middle"
     save(tmp_path)
-    assert operator.run.state is State.DONE
+    assert operator.run.state is RunState.DONE
     assert operator.event() == {"FINISHED"}, "the operator ends, and with it comes one undo step"
     assert operator.reports[-1][0] == {"INFO"}
     written = {name: keys(bpy.data.objects[name]) for name in before}
@@ -61,7 +60,7 @@ def test_keys_that_are_still_being_proved_are_not_in_the_file(operator, tmp_path
     monkeypatch.setattr(operator.run._keys._thread, "is_alive", lambda: True)
     shown = stored(obj.data)
     save(tmp_path)
-    assert operator.run.state is State.FINISHING
+    assert operator.run.state is RunState.FINISHING
     np.testing.assert_array_equal(stored(obj.data), shown)
     monkeypatch.undo()
     operator.run.cancel()
@@ -101,7 +100,7 @@ def test_a_failure_while_saving_puts_everything_back(operator, tmp_path, monkeyp
     operator.start()
     operator.until(lambda: obj.data.shape_keys is not None)
     save(tmp_path)
-    assert operator.run.state is State.CANCELLED
+    assert operator.run.state is RunState.CANCELLED
     assert operator.event() == {"CANCELLED"}
     assert operator.reports[-1] == ({"ERROR"}, "Memory ran out; all is as it was")
     reopen(tmp_path)

@@ -6,11 +6,11 @@ import pytest
 from blender_scenes import drawn
 from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
-from mobius_flow.addon.engine import playing
-from mobius_flow.addon.engine.motion import Key, Keys
 from mobius_flow.addon.pictures import film, rendering
 from mobius_flow.addon.pictures.looks import LOOKS
 from mobius_flow.core.curve import Mesh
+from mobius_flow.core.keys.motion import Key, Keys, Playing
+from mobius_flow.core.keys.placement import Origin
 
 SIZES = [(640, 360), (360, 640)]
 
@@ -30,7 +30,7 @@ def tumbling(keys):
 def composed(keys, size, origin=None):
     scene = bpy.context.scene
     rendering.use_cycles(scene, LOOKS["PAPER"], *size, 1)
-    film.compose(scene, keys, 1.0 + 10 * np.arange(len(keys.keys)), Mesh((40,)), playing.Playing(), origin)
+    film.compose(scene, keys, 1.0 + 10 * np.arange(len(keys.keys)), Mesh((40,)), Playing(), origin)
     return scene
 
 
@@ -38,7 +38,7 @@ def composed(keys, size, origin=None):
 @pytest.mark.parametrize("keys", [1, 2, 12])
 @pytest.mark.parametrize("far", [False, True])
 def test_all_is_seen_in_every_frame(size, keys, far):
-    origin = playing.Origin(np.array([900.0, -500.0, 64.0]), 256.0) if far else None
+    origin = Origin(np.array([900.0, -500.0, 64.0]), 256.0) if far else None
     scene = composed(tumbling(keys), size, origin)
     obj = bpy.data.objects["Curve"]
     widest = 0.0

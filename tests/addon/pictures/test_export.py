@@ -9,9 +9,9 @@ import bpy
 import numpy as np
 import pytest
 from blender_scenes import evaluated, in_world
-from mobius_flow.addon.engine import playing
 from mobius_flow.addon.pictures import export, film, movie, rendering
 from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, relax
+from mobius_flow.core.keys.motion import Playing, recorded
 from processes import finished
 from shapes import hopf_link, regular_polygon, torus_trefoil
 
@@ -27,8 +27,8 @@ def tiny(monkeypatch):
     monkeypatch.setattr(export, "_FILM_SAMPLES", 1)
     monkeypatch.setattr(export, "_FILM", TINY)
     monkeypatch.setattr(rendering, "workbench_works", lambda: False)
-    for name, value in (("_FILM", (4, 4)), ("_PAUSE", 1), ("_END", 1)):
-        monkeypatch.setattr(playing, name, value)
+    for name, value in (("MOVING", (4, 4)), ("RESTS", (1, 1))):
+        monkeypatch.setattr(Playing, name, value)
 
 
 def iterates_of(curve, **options):
@@ -121,14 +121,14 @@ def test_a_film(tmp_path, tiny, iterates, capfd):
 
 
 def test_a_film_rests_before_and_after(iterates):
-    motion, _ = playing.recorded(iterates)
+    motion, _ = recorded(iterates)
     keys = motion.keys(lambda *_: True)
-    timing = playing.Playing().timed(motion).timing
+    timing = Playing().timed(motion).timing
     frames = timing.frames(motion.course(keys))
     scene = bpy.context.scene
-    film.compose(scene, keys, frames, motion.start.mesh, playing.Playing())
+    film.compose(scene, keys, frames, motion.start.mesh, Playing())
     scene.frame_start, scene.frame_end = timing.scene_range(frames)
-    assert (frames[0] - scene.frame_start, scene.frame_end - frames[-1]) == (playing._PAUSE, playing._END)
+    assert (frames[0] - scene.frame_start, scene.frame_end - frames[-1]) == (6, 12)
 
 
 def test_a_film_is_as_long_as_the_way_of_the_fastest_vertex():
@@ -139,12 +139,9 @@ def test_a_film_is_as_long_as_the_way_of_the_fastest_vertex():
     places.append(50.0 * places[-1])
     start = next(relax(ring, RelaxOptions(vertices=30)))
     moves = (replace(start, index=k, curve=ring.with_vertices(p), path=(p,)) for k, p in enumerate(places[1:], 1))
-    motion, _ = playing.recorded([replace(start, curve=ring), *moves])
+    motion, _ = recorded([replace(start, curve=ring), *moves])
     assert motion.way == pytest.approx(12 * 0.5 + 0.5 * 49 / 50, rel=0.1)
-    assert (
-        playing.Playing().timed(motion).timing.length
-        == 1 + playing._PAUSE + round(playing._FRAMES_PER_SIZE * motion.way) + playing._END
-    )
+    assert Playing().timed(motion).timing.length == 1 + 6 + round(20 * motion.way) + 12
 
 
 def test_workbench_is_set_up():
@@ -246,11 +243,11 @@ def test_a_missing_module_and_a_missing_library_of_it(monkeypatch, error, said):
 
 def test_a_film_that_loops_ends_where_it_begins(iterates, tmp_path, monkeypatch):
     monkeypatch.setattr(rendering, "workbench_works", lambda: True)
-    monkeypatch.setattr(playing, "_FILM", (6, 6))
+    monkeypatch.setattr(Playing, "MOVING", (6, 6))
     monkeypatch.setattr(movie, "render_movie", lambda _scene, path, _progress: path.touch())
-    export.write_movie(tmp_path / "a.mp4", iterates, None, playing.Playing(loop=True, constant_radius=True))
+    export.write_movie(tmp_path / "a.mp4", iterates, None, Playing(loop=True, constant_radius=True))
     scene, (curve,) = bpy.context.scene, [obj for obj in bpy.data.objects if obj.type == "CURVE"]
-    half = playing._PAUSE + 6 + playing._END
+    half = 6 + 6 + 12
     assert (scene.frame_start, scene.frame_end) == (1, 2 * half)
     assert len({point.radius for block in curve.data.shape_keys.key_blocks for point in block.data}) == 1
     for k in (0, 7, 9, half):

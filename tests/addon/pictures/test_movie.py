@@ -186,7 +186,7 @@ def test_a_signal_ends_it_tidily(tmp_path, number, status):
 
 
 def test_termination_is_as_before_afterwards(tmp_path):
-    from mobius_flow.core.deadline import termination_raises
+    from mobius_flow.core.base.deadline import termination_raises
 
     before = signal.getsignal(signal.SIGTERM)
     with termination_raises(SystemExit(143)):

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from mobius_flow.core import Mesh
+from mobius_flow.core.base.types import BoolArray, IntArray
 from mobius_flow.core.collision import boxes
 from mobius_flow.core.collision.boxes import BoxTree, Level, contact_window
-from mobius_flow.core.types import BoolArray, IntArray
 
 MESHES = [Mesh((3,)), Mesh((4,)), Mesh((100,)), Mesh((3, 3)), Mesh((7, 3, 31)), Mesh((3,) * 40), Mesh((257, 4, 64))]
 

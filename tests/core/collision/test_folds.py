@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from exact_times import meet
 from mobius_flow.core import Curve, Mesh
 from mobius_flow.core.collision import Limit, free_motion, is_free, minimal_gap, survives_rounding
 from mobius_flow.core.collision.gap import folds
-from mobius_flow.core.verify import Verdict, verify
-from mobius_flow.core.verify.segments import meet
+from mobius_flow.core.proof import Verdict, verify
 from shapes import opened, straight_arc, torus_trefoil
 
 Motion = tuple[np.ndarray, np.ndarray]

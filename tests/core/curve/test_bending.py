@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, MoebiusEnergy
 from mobius_flow.core.curve.measures import bending, bending_and_derivative
-from mobius_flow.core.driver.interventions.balance import moebius_image, moebius_pullback
-from mobius_flow.core.taylor import taylor_slope
+from mobius_flow.core.driver.moves.balance import moebius_image, moebius_pullback
 from shapes import hopf_link, regular_polygon, torus_trefoil
 from smooth_curves import SMOOTH_CURVES, random_polygon
+from taylor import taylor_slope
 
 QS = [(1.0, 0.0, 0.0, 0.0), (0.9, 0.1, -0.2, 0.3), (0.0, 0.0, 1.0, 0.0), (-0.5, 2.0, 0.1, 0.4)]
 

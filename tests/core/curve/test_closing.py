@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, Mesh
 from mobius_flow.core.collision import check_embedded
-from mobius_flow.core.curve.closing import closed_far_away
+from mobius_flow.core.curve.refine import closed_far_away
 from mobius_flow.core.knots import knot, knot_type
 
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError, Mesh
 from mobius_flow.core.curve.measures import writhe_and_crossings
-from mobius_flow.core.diagrams import views
 from mobius_flow.core.knots import knot, smooth_knot
+from mobius_flow.core.knots.diagrams import views
 
 
 def test_flat_curves_do_not_writhe() -> None:

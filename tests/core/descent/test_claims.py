@@ -1,5 +1,8 @@
 """What the paper and the README claim about the methods."""
 
+from dataclasses import replace
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from dense_stability import lagrangian_hessian_matrix
@@ -7,11 +10,12 @@ from descent_contracts import with_geometry
 from mobius_flow.core import METHODS, Curve, OptionError, RelaxOptions, Status, minimize, relax
 from mobius_flow.core.descent.geometries import Constrained
 from mobius_flow.core.descent.hessian import lagrangian_hessian
-from mobius_flow.core.driver.interventions.rest import stability
+from mobius_flow.core.driver.moves.rest import stability
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.energies import ENERGIES, MoebiusEnergy
-from mobius_flow.core.taylor import taylor_slope
+from mobius_flow.core.knots import knot
 from shapes import lattice_knot, torus_trefoil
+from taylor import taylor_slope
 from torus_energies import torus_knot_minimum
 
 
@@ -49,6 +53,33 @@ def test_the_l2_flow_depends_on_the_mesh():
     assert left[1] > 1.5 * left[0] > 0
     assert iterations("flow-l2", 80, 60) == 60
     assert iterations("flow-moebius", 80, 60) < 20
+
+
+@pytest.mark.parametrize(("method", "most"), [("penalty-cg", 20), ("penalty-nesterov", 25)])
+def test_penalised_methods_take_no_steps_that_gain_nothing(method, most):
+    """With c₁ = 10⁻⁴ in the Wolfe conditions, which lets them pass, these are 111 and 51 iterations."""
+    assert minimize(knot("trefoil", 48), RelaxOptions(method=method, vertices=48, max_iterations=most)).status is (
+        Status.CONVERGED
+    )
+
+
+def test_the_papers_method_is_section_6_and_nothing_else():
+    """Freedman's unknot becomes a circle on its own mesh and energy, by steps that meet Armijo's rule with ½."""
+    iterates = []
+    options = RelaxOptions(method="paper", tolerance=0.01)
+    result = minimize(knot("freedman", 420), options, iterates.append)
+    assert result.status is Status.CONVERGED
+    assert result.certified
+    assert result.energies[-1] < 4.1
+    assert {(each.method, len(each.path)) for each in iterates[1:]} == {("paper", 1)}
+    for before, after in pairwise(iterates):
+        gain = 0.5 * after.step_size * before.gradient_norm**2
+        assert after.energy <= before.energy - gain + 1e-9
+        assert after.edge_length_error < 1e-10
+    for each in iterates[:: len(iterates) - 1]:
+        assert each.energy == pytest.approx(MoebiusEnergy().value(each.curve), rel=1e-12)
+    with_barrier = next(relax(knot("freedman", 420), replace(options, barrier="on"))).energy
+    assert abs(with_barrier - result.energies[0]) > 1.0
 
 
 @pytest.fixture(scope="module")
@@ -212,13 +243,28 @@ def test_an_energy_may_be_an_object():
         ({"penalty": -1.0}, "penalty is -1"),
         ({"penalty": 5.0}, "has no penalty"),
         ({"edge_lengths": "odd"}, "edge_lengths is 'odd'"),
-        ({"method": "trust-region", "energy": "edge"}, "second derivative"),
+        ({"method": "trust-region", "terms": [("bending", 0.1)]}, "second derivative"),
         ({"method": "penalty-cg", "stability": True}, "penalises lengths"),
     ],
 )
 def test_bad_options(options, message):
     with pytest.raises(OptionError, match=message):
         relax(torus_trefoil(60), RelaxOptions(**options))
+
+
+@pytest.mark.parametrize("energy", ENERGIES)
+@pytest.mark.parametrize(("method", "most"), [("trust-region", 10), ("implicit-moebius", 20), ("implicit-h1", 20)])
+def test_every_energy_has_methods_of_second_order_and_an_index(energy, method, most):
+    """A bent ring becomes round, a minimum; as fast as it does for `moebius`."""
+    t = 2.0 * np.pi * np.arange(30) / 30
+    x, y = np.cos(t) + 0.2 * np.cos(2 * t + 0.5), np.sin(t) - 0.1 * np.sin(3 * t)
+    ring, tolerance = Curve(np.column_stack([x, y, np.sin(2 * t) / 3])), 1e-9 if method == "trust-region" else 1e-6
+    options = RelaxOptions(energy=energy, method=method, tolerance=tolerance, vertices=30, mesh="fixed", stability=True)
+    result = minimize(ring, replace(options, max_iterations=most))
+    assert result.status is Status.CONVERGED
+    assert result.outcome.negative_eigenvalues == 0
+    radii = np.linalg.norm(result.curve.vertices - result.curve.vertices.mean(axis=0), axis=1)
+    assert np.ptp(radii) < 1e-4 * radii.mean()
 
 
 @pytest.mark.parametrize("energy", ["edge", "vertex", "moebius-k2", "tangent-point"])

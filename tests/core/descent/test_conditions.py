@@ -7,20 +7,12 @@ import pytest
 from descent_cases import GEOMETRIES, start
 from descent_contracts import assert_armijo, assert_certified, assert_weak_wolfe, taken
 from mobius_flow.core import Curve, Objective
-from mobius_flow.core.descent import Point, State, Step
+from mobius_flow.core.base.types import FloatArray
+from mobius_flow.core.descent import Point, SearchState, Step
 from mobius_flow.core.descent.directions import SteepestDescent
 from mobius_flow.core.descent.hessian import lagrangian_hessian
-from mobius_flow.core.descent.searches import (
-    Accelerated,
-    Armijo,
-    BackwardEuler,
-    Escape,
-    FirstTrial,
-    LineSearch,
-    TrustRegion,
-    WeakWolfe,
-)
-from mobius_flow.core.types import FloatArray
+from mobius_flow.core.descent.line_searches import Accelerated, Armijo, FirstTrial, LineSearch, WeakWolfe
+from mobius_flow.core.descent.second_order import BackwardEuler, Escape, TrustRegion
 
 
 def test_armijo_asks_for_half_of_the_predicted_decrease() -> None:
@@ -31,10 +23,10 @@ def test_armijo_asks_for_half_of_the_predicted_decrease() -> None:
     point, seen = start(), 0
     for _ in range(6):
         direction = -point.gradient
-        first, _ = taken(lenient.step(point, State()))
+        first, _ = taken(lenient.step(point, SearchState()))
         slope = first.size * float(np.sum(point.derivative * direction))
         if first.point.energy > point.energy + 0.45 * slope:
-            step, _ = taken(strict.step(point, State()))
+            step, _ = taken(strict.step(point, SearchState()))
             assert_armijo(point, step, direction)
             assert step.size < first.size
             seen += 1
@@ -65,10 +57,10 @@ def test_trust_region_rejects_what_the_model_did_not_foresee() -> None:
     point = start()
     point = point.within(replace(point.problem, objective=Underestimating()))
     lenient = TrustRegion(first_radius=30.0, newton_threshold=1e-12, first=FirstTrial(max_displacement=30.0))
-    step, _ = taken(lenient.step(point, State()))
+    step, _ = taken(lenient.step(point, SearchState()))
     assert 0.05 < ratio(point, step.point) < 0.85
     strict = replace(lenient, accept=0.9, poor=0.9, good=0.95)
-    shorter, _ = taken(strict.step(point, State()))
+    shorter, _ = taken(strict.step(point, SearchState()))
     assert ratio(point, shorter.point) > 0.89
 
 
@@ -82,7 +74,7 @@ def ratio(start: Point, end: Point) -> float:
 def test_trust_region_uses_the_last_gradient() -> None:
     """Far from the minimum steps lie in the plane of this gradient and the last one, not in the line of this one."""
     rule = TrustRegion(newton_threshold=1e-12)
-    point, state = start(), State()
+    point, state = start(), SearchState()
     first, state = taken(rule.step(point, state))
     last, point = point.gradient, first.point
     step, _ = taken(rule.step(point, state))
@@ -97,7 +89,7 @@ def test_trust_region_uses_the_last_gradient() -> None:
 def test_backward_euler_takes_the_gradient_at_the_end() -> None:
     """w + τ S_P DE(Q) = 0 to a few per cent; with the gradient at the start it is not even near."""
     point = start()
-    step, _ = taken(BackwardEuler(first_step=1.0).step(point, State()))
+    step, _ = taken(BackwardEuler(first_step=1.0).step(point, SearchState()))
     w = point.tangent_space.project(step.point.vertices - point.vertices)
     explicit = -step.size * point.gradient
     implicit = -step.size * point.tangent_space.gradient(step.point.derivative)[0]
@@ -108,7 +100,7 @@ def test_backward_euler_takes_the_gradient_at_the_end() -> None:
 
 def test_nesterov_goes_on_in_the_direction_of_the_last_step() -> None:
     rule = Accelerated()
-    point, state = start("penalised"), State()
+    point, state = start("penalised"), SearchState()
     points = [point]
     for _ in range(4):
         step, state = taken(rule.step(points[-1], state))

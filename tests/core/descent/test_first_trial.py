@@ -5,9 +5,9 @@ import pytest
 from descent_cases import start
 from descent_contracts import point_on, taken
 from mobius_flow.core import Curve
-from mobius_flow.core.descent import Point, State, Step
+from mobius_flow.core.descent import Point, SearchState, Step
 from mobius_flow.core.descent.directions import SteepestDescent
-from mobius_flow.core.descent.searches import Armijo, FirstTrial, LineSearch
+from mobius_flow.core.descent.line_searches import Armijo, FirstTrial, LineSearch
 
 
 def crossed_rods() -> Point:
@@ -46,5 +46,5 @@ def test_step_sizes_recover_where_the_way_to_the_lengths_made_them_short(lengths
 
 def test_steps_grow_by_a_bounded_factor() -> None:
     point = start()
-    step, _ = taken(LineSearch(SteepestDescent(), Armijo()).step(point, State(None, 1e-5)))
+    step, _ = taken(LineSearch(SteepestDescent(), Armijo()).step(point, SearchState(None, 1e-5)))
     assert step.size <= 4e-5

@@ -6,11 +6,11 @@ import numpy as np
 from descent_cases import narrow, start
 from descent_contracts import point_on, taken
 from mobius_flow.core import Curve, Iterate, RelaxOptions, Status, minimize, relax
-from mobius_flow.core.descent import NoStep, Point, State, Step
+from mobius_flow.core.base.types import FloatArray
+from mobius_flow.core.descent import NoStep, Point, SearchState, Step
 from mobius_flow.core.descent.directions import LimitedMemoryBFGS
-from mobius_flow.core.descent.searches import Armijo, LineSearch
-from mobius_flow.core.metrics import InnerProduct, MoebiusMetric
-from mobius_flow.core.types import FloatArray
+from mobius_flow.core.descent.line_searches import Armijo, LineSearch
+from mobius_flow.core.solve.metrics import InnerProduct, MoebiusMetric
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ def counted(point: Point) -> tuple[Point, list[Curve]]:
 
 def test_a_metric_serves_several_steps() -> None:
     point, curves = counted(start())
-    state, steps = State(), []
+    state, steps = SearchState(), []
     for _ in range(7):
         steps.append(point)
         step, state = taken(LineSearch(LimitedMemoryBFGS(), Armijo(), metric_steps=3).step(point, state))
@@ -44,7 +44,7 @@ def test_a_metric_serves_several_steps() -> None:
 
 def test_a_metric_serves_no_longer_where_contact_limits_a_step() -> None:
     point, curves = counted(start())
-    point, state = narrow(point, 1e-3), State()
+    point, state = narrow(point, 1e-3), SearchState()
     for _ in range(3):
         step, state = taken(LineSearch(LimitedMemoryBFGS(), Armijo(), metric_steps=3).step(point, state))
         assert step.limited_by is not None
@@ -62,7 +62,7 @@ class Unless:
 
 def test_a_search_that_fails_gets_the_metric_of_its_curve() -> None:
     rule = LineSearch(LimitedMemoryBFGS(), Unless(), metric_steps=3)
-    step, state = taken(rule.step(start(), State()))
+    step, state = taken(rule.step(start(), SearchState()))
     assert step.point.metric_age == 1
     step, _ = taken(rule.step(step.point, state))
     assert step.point.metric_age == 1  # that of the point at which the search succeeded

@@ -4,16 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from changed_interventions import change
+from changed_moves import change
 from dense_stability import POINTS, dense_modes, lagrangian_hessian_matrix, tangent_basis
 from mobius_flow.core import RelaxOptions, Status, Task, minimize
 from mobius_flow.core.descent.hessian import lagrangian_matrix
-from mobius_flow.core.descent.newton import Curvature, Newton
-from mobius_flow.core.descent.searches import Armijo
-from mobius_flow.core.descent.searches.armijo import FirstTrial
-from mobius_flow.core.driver.interventions.rest import Rest
+from mobius_flow.core.descent.line_searches import Armijo, FirstTrial
+from mobius_flow.core.descent.second_order import Curvature, Newton
+from mobius_flow.core.driver.moves.rest import Settle
 from mobius_flow.core.knots import torus_knot
-from mobius_flow.core.saddle.indefinite import FactorisedHessian
+from mobius_flow.core.solve.saddle.indefinite import FactorisedHessian
 from shapes import lattice_knot, torus_trefoil
 
 EXACT = [name for name in POINTS if name != "hierarchical"]
@@ -77,7 +76,7 @@ def test_energies_at_rest_are_exact_on_their_mesh(
     pins: tuple[int, ...], points: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Though gradients are those of the default tolerance a run to the last digits gains nothing more."""
-    change(monkeypatch, Rest, gradient=1e-300)  # L-BFGS goes as far as it has to
+    change(monkeypatch, Settle, gradient=1e-300)  # L-BFGS goes as far as it has to
     wanted = replace(FIXED, quadrature_points=points)
     found = minimize(Task(curve=lattice_knot("4_1"), pins=pins), wanted)
     sharp = replace(wanted, method="trust-region", tolerance=1e-9, edge_lengths="keep")
@@ -98,7 +97,7 @@ def test_second_derivatives_take_over_from_gradients(monkeypatch: pytest.MonkeyP
     """Along the valleys of Möbius maps L-BFGS takes several times as many steps in the metric."""
     sharp = replace(FIXED, tolerance=1e-7)
     few = minimize(lattice_knot("4_1"), sharp)
-    change(monkeypatch, Rest, gradient=1e-300)
+    change(monkeypatch, Settle, gradient=1e-300)
     many = minimize(lattice_knot("4_1"), sharp)
     assert few.outcome.converged
     assert few.certified
@@ -117,7 +116,7 @@ def test_where_steps_gain_little_gradients_end_the_run(monkeypatch: pytest.Monke
         return definite(self, curvature, shift)
 
     monkeypatch.setattr(Newton, "definite", noted)
-    change(monkeypatch, Rest, newton=short)
+    change(monkeypatch, Settle, newton=short)
     result = minimize(lattice_knot("4_1"), FIXED)
     assert result.status is Status.CONVERGED
     assert 3 <= len(assembled) < 15

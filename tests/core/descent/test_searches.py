@@ -17,19 +17,11 @@ from descent_contracts import (
 )
 from mobius_flow.core import OptionError
 from mobius_flow.core.collision import Contact
-from mobius_flow.core.descent import NoStep, State
+from mobius_flow.core.descent import NoStep, SearchState
 from mobius_flow.core.descent.directions import SteepestDescent
 from mobius_flow.core.descent.geometries import Constrained, Penalised
-from mobius_flow.core.descent.searches import (
-    Armijo,
-    BackwardEuler,
-    Escape,
-    FirstTrial,
-    LineSearch,
-    TowardsTargets,
-    TrustRegion,
-    WeakWolfe,
-)
+from mobius_flow.core.descent.line_searches import Armijo, FirstTrial, LineSearch, TowardsTargets, WeakWolfe
+from mobius_flow.core.descent.second_order import BackwardEuler, Escape, TrustRegion
 from mobius_flow.core.descent.step import Leg, Rejected, attempt
 from shapes import hopf_link
 
@@ -38,7 +30,7 @@ from shapes import hopf_link
 @pytest.mark.parametrize("direction", DIRECTIONS)
 @pytest.mark.parametrize("search", SEARCHES)
 def test_line_searches_keep_their_promises(search: str, direction: str, geometry: str) -> None:
-    point, state = start(geometry), State()
+    point, state = start(geometry), SearchState()
     for _ in range(4):
         along, _ = DIRECTIONS[direction].propose(point, state.memory)
         step, state = taken(LineSearch(DIRECTIONS[direction], SEARCHES[search]).step(point, state))
@@ -54,7 +46,7 @@ def test_line_searches_keep_their_promises(search: str, direction: str, geometry
 @pytest.mark.parametrize("name", RULES)
 def test_other_rules_keep_theirs(name: str) -> None:
     rule, geometry = RULES[name]
-    point, state = start(geometry), State()
+    point, state = start(geometry), SearchState()
     for _ in range(4):
         step, state = taken(rule.step(point, state))
         assert step.point.energy < point.energy
@@ -68,7 +60,7 @@ def test_no_leg_is_taken_that_is_not_proved(name: str) -> None:
     rule, geometry = RULES.get(name) or (LineSearch(SteepestDescent(), SEARCHES[name.split()[0]]), name.split()[1])
     width = 1e-3
     point = narrow(start(geometry), width)
-    step, _ = taken(rule.step(point, State()))
+    step, _ = taken(rule.step(point, SearchState()))
     corners = [point, *(leg.end for leg in step.legs)]
     for a, b in pairwise(corners):
         assert np.abs(b.placed - a.placed).max() / point.problem.units.scale <= width
@@ -78,7 +70,7 @@ def test_no_leg_is_taken_that_is_not_proved(name: str) -> None:
 @pytest.mark.parametrize("name", [*RULES, *(f"{s} {g}" for s in SEARCHES for g in GEOMETRIES)])
 def test_what_can_not_be_proved_is_said(name: str) -> None:
     rule, geometry = RULES.get(name) or (LineSearch(SteepestDescent(), SEARCHES[name.split()[0]]), name.split()[1])
-    step, _ = rule.step(narrow(start(geometry), 0.0), State())
+    step, _ = rule.step(narrow(start(geometry), 0.0), SearchState())
     assert isinstance(step, NoStep)
     assert step.limited_by == Contact((0, 2))
     assert "edge 1 and edge 3 are so close" in step.reason

@@ -5,9 +5,9 @@ import pytest
 from mobius_flow.core import Curve, Mesh, MoebiusEnergy
 from mobius_flow.core.energies import ENERGIES
 from mobius_flow.core.energies.components import ComponentShares
-from mobius_flow.core.taylor import taylor_slope
 from shapes import half_circle, hopf_link, opened, regular_polygon, straight_arc
 from smooth_curves import random_polygon
+from taylor import taylor_slope
 
 CURVES = {
     "one edge": straight_arc(1),

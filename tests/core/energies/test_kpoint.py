@@ -1,10 +1,15 @@
 """Energies by quadrature of a density: sums done the slow way, circles, rates, the arc distance and its derivative."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from dense_stability import tangent_basis
+from descent_contracts import point_on
 from energy_references import arc_density, circle_density, pair_sum, tangent_point_density
 from mobius_flow.core import Curve, MoebiusEnergy
-from mobius_flow.core.constraints import Constraints
+from mobius_flow.core.base.errors import OptionError
+from mobius_flow.core.descent.hessian import lagrangian_hessian
 from mobius_flow.core.energies import ENERGIES, Energy, KPointEnergy, Rule, moebius_kpoint
 from mobius_flow.core.energies.barrier import exact
 from mobius_flow.core.energies.densities import (
@@ -15,11 +20,11 @@ from mobius_flow.core.energies.densities import (
     TangentPointDensity,
 )
 from mobius_flow.core.energies.edge_pairs import EdgePairs
-from mobius_flow.core.errors import OptionError
-from mobius_flow.core.metrics import MoebiusMetric
-from mobius_flow.core.taylor import derivative_slope
-from shapes import regular_polygon
+from mobius_flow.core.solve.constraints import Constraints
+from mobius_flow.core.solve.metrics import MoebiusMetric
+from shapes import hopf_link, regular_polygon
 from smooth_curves import SMOOTH_CURVES, dual_circles, random_polygon
+from taylor import derivative_slope
 
 GAUSS_2 = ([0.5 - np.sqrt(3) / 6, 0.5 + np.sqrt(3) / 6], [0.5, 0.5])
 REFERENCES = {
@@ -103,6 +108,22 @@ def test_arc_derivative(energy: KPointEnergy, sizes: tuple[int, ...]) -> None:
     saddle = MoebiusMetric().at(curve).tangent_space(Constraints.of(curve).derivative(curve))
     projected, expected = saddle.gradient(partial)[0], saddle.gradient(full)[0]
     np.testing.assert_allclose(projected, expected, rtol=0, atol=1e-10 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("energy", [VERTEX_ENERGY, EDGE_ENERGY], ids=lambda e: e.name)
+def test_second_derivatives_along_the_constraints_need_no_arc_derivative(energy: KPointEnergy) -> None:
+    """Nor does the Lagrangian change where arcs are equally long, though the energy has a kink there."""
+    without = KPointEnergy(energy.name, energy.description, energy.density, energy.rule, arc_derivative=False)
+    for curve in (random_polygon(7, (12,), 3), regular_polygon(12), hopf_link(10)):
+        point = point_on(curve, energy=energy)
+        points = [point, point.changing(objective=replace(point.problem.objective, energy=without))]
+        basis = tangent_basis(points[0].tangent_space.constraints)
+        full, partial = (
+            basis.T @ np.array([lagrangian_hessian(point)(b.reshape(curve.vertices.shape)).ravel() for b in basis.T]).T
+            for point in points
+        )
+        np.testing.assert_allclose(partial, full, rtol=0, atol=1e-11 * np.abs(full).max())
+        np.testing.assert_allclose(full, full.T, rtol=0, atol=1e-11 * np.abs(full).max())
 
 
 @pytest.mark.parametrize("energy", [VERTEX_ENERGY, EDGE_ENERGY], ids=lambda e: e.name)

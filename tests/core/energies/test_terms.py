@@ -5,9 +5,9 @@ import pytest
 from mobius_flow.core import Curve, MobiusFlowError, MoebiusEnergy, Objective, OptionError, RelaxOptions, minimize
 from mobius_flow.core.curve.measures import bending
 from mobius_flow.core.energies import ENERGIES, TERMS, Bending, Term, Weighted, is_moebius_invariant
-from mobius_flow.core.taylor import derivative_slope
 from shapes import regular_polygon, torus_trefoil
 from smooth_curves import random_polygon
+from taylor import derivative_slope
 
 TERM = pytest.mark.parametrize("term", TERMS.values(), ids=lambda term: term.name)
 

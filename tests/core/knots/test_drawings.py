@@ -10,8 +10,8 @@ from knot_diagrams import pairwise_linking, simplified
 from knot_type import UNKNOT, knot_invariants
 from mobius_flow.core import Curve, CurveError
 from mobius_flow.core.collision import check_embedded
-from mobius_flow.core.diagrams.projection import plane_crossings
 from mobius_flow.core.knots import Drawing, knot, torus_knot
+from mobius_flow.core.knots.diagrams.projection import plane_crossings
 
 
 def flat(curve: Curve) -> Curve:

@@ -3,10 +3,10 @@
 import sys
 
 import pytest
-from mobius_flow.core.diagrams import diagram_of
 from mobius_flow.core.knots import HARD_UNKNOTS, KNOTS, braid_word, exterior
 from mobius_flow.core.knots.braids import braid_diagram, connected_sum
-from mobius_flow.core.knots.exterior import GENUS, GROUP, Group, floer, group, names_by_exterior
+from mobius_flow.core.knots.diagrams import diagram_of
+from mobius_flow.core.knots.exterior import GENUS, GROUP, KnotGroup, floer, group, names_by_exterior
 from mobius_flow.core.knots.knot_type import type_of_diagram
 
 GENERA = {"3_1": 1, "4_1": 1, "5_1": 2, "7_4": 1, "8_19": 3, "10_132": 2}
@@ -23,8 +23,8 @@ def missing(monkeypatch):
     """Say that a program is not installed."""
 
     def forget():
-        exterior._group.cache_clear()
-        exterior._floer.cache_clear()
+        exterior.group.cache_clear()
+        exterior.floer.cache_clear()
 
     def missing(name):
         monkeypatch.setitem(sys.modules, name, None)
@@ -59,7 +59,7 @@ def test_groups_are_presented(name):
     found = group(diagram)
     matrix = sympy.Matrix([[_abelian(each, a) for a in found.generators] for each in found.relators])
     assert len(found.generators) - matrix.rank() == len(diagram.passes)
-    exterior._group.cache_clear()
+    exterior.group.cache_clear()
     group(braid_diagram(KNOTS["9_32"]))
     assert group(diagram) == found  # whatever was asked before
     assert str(group(braid_diagram(KNOTS["3_1"]))) == "⟨a, b | aabbb⟩"
@@ -70,7 +70,7 @@ def test_what_is_large_or_falls_apart_has_no_group():
     assert group(circle) is None
     assert group(braid_diagram((1, 1, 3, 3))) is None
     assert group(braid_diagram((1,) * 151)) is None
-    assert group(diagram_of(HARD_UNKNOTS["ochiai-1"])) in (Group(("a",), ()), None)
+    assert group(diagram_of(HARD_UNKNOTS["ochiai-1"])) in (KnotGroup(("a",), ()), None)
 
 
 def test_only_three_knots_are_fibered_of_genus_one():

@@ -1,11 +1,14 @@
 """What polygons are called, and how surely."""
 
+import re
+import sys
+from collections.abc import Iterator
+
 import numpy as np
 import pytest
 from families import family
-from hard_curves import hard_unknot
+from hard_curves import hard_unknot, lattice_closure
 from mobius_flow.core import Curve, Mesh
-from mobius_flow.core.diagrams.codes import diagram_from_code
 from mobius_flow.core.knots import (
     HARD_UNKNOTS,
     KNOTS,
@@ -17,10 +20,10 @@ from mobius_flow.core.knots import (
     scramble,
     smooth_knot,
 )
-from mobius_flow.core.knots.braids import lattice_closure
-from mobius_flow.core.knots.catalogue import crossing_number
-from mobius_flow.core.knots.knot_type import ALEXANDER, DOUBLED, JONES, Effort, type_of_diagram
-from mobius_flow.core.knots.table import AMPHICHEIRAL, ROLFSEN
+from mobius_flow.core.knots.diagrams import Diagram, simplifying
+from mobius_flow.core.knots.diagrams.codes import diagram_from_code
+from mobius_flow.core.knots.knot_type import ALEXANDER, DOUBLED, JONES, Effort, crossing_number, type_of_diagram
+from mobius_flow.core.knots.names import AMPHICHEIRAL, ROLFSEN
 
 # The one prime knot to ten crossings whose mirror image has the same invariants of all those that are computed.
 UNTOLD = {"10_71": ("10_71", "m10_71"), "m10_71": ("10_71", "m10_71")}
@@ -124,6 +127,25 @@ def test_why_a_curve_has_no_type(step: int, dimension: int, ends: tuple[int, ...
     found = knot_type(Curve(circle, Mesh(sizes, closed)))
     assert found == KnotType((), False, None, (), told)
     assert found.sentence == told
+
+
+def test_tangles_are_given_up_after_a_bounded_amount_of_work(monkeypatch: pytest.MonkeyPatch) -> None:
+    visited = 0
+
+    def counting(view: Diagram) -> Iterator[Diagram]:
+        nonlocal visited
+        for diagram in simplifying(view):
+            visited += diagram.crossings
+            yield diagram
+
+    monkeypatch.setattr(sys.modules[KnotType.__module__], "simplifying", counting)
+    tangle = Curve(np.random.default_rng(1).normal(size=(200, 3)))  # of 3768 crossings at first
+    found = knot_type(tangle, Effort(work=20_000))
+    assert 20_000 < visited < 24_000
+    assert str(found) == "not identified"
+    assert re.fullmatch(r"not identified: \d,\d{3} crossings are left after .* allowed", found.sentence)
+    # what is simplified from one side counts, however little is left for others
+    assert str(knot_type(scramble(knot("4_1"), 1), Effort(work=visited // 20))) == "4_1"
 
 
 def test_lattice_polygons_whose_edges_hide_each_other() -> None:

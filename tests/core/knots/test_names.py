@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 from knot_type import knot_invariants
 from mobius_flow.core import Curve
-from mobius_flow.core.diagrams import diagram_of, jones
-from mobius_flow.core.errors import CurveError, MobiusFlowError
+from mobius_flow.core.base.errors import CurveError, MobiusFlowError
 from mobius_flow.core.knots import (
-    ARCS,
+    FORMULAS,
     HARD_UNKNOTS,
     KNOTS,
     UnknownKnotError,
@@ -22,6 +21,7 @@ from mobius_flow.core.knots import (
     smooth_knot,
 )
 from mobius_flow.core.knots.braids import braid_diagram
+from mobius_flow.core.knots.diagrams import diagram_of, jones
 from spherogram import Link
 
 BRAIDS = ["{1,1,1}", "{1, 1, 1}", "BR[2, {1, 1, 1}]", "BR[{1,1,1}]", "br(2,(1,1,1))", "m{-1,-1,-1}"]
@@ -122,7 +122,7 @@ def test_larger_tables_are_an_extra(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_listed_names_are_names() -> None:
     names = knot_names()
     assert {"3_1", "L5a1", "figure-eight", "haken"} < set(names)
-    no_words = {*HARD_UNKNOTS, *ARCS, "0_1", "unknot", "circle"}
+    no_words = {*HARD_UNKNOTS, *FORMULAS, "0_1", "unknot", "circle"}
     assert all(name in no_words or braid_word(name) for name in names)
 
 

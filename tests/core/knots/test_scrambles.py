@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from knot_diagrams import pairwise_linking
 from knot_type import knot_invariants
+from mobius_flow.core.base.errors import CurveError
 from mobius_flow.core.curve import Curve
-from mobius_flow.core.errors import CurveError
 from mobius_flow.core.knots import knot, scramble
 from mobius_flow.core.knots.scrambles import Polygons, triangle_distances
 

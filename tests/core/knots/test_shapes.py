@@ -1,5 +1,6 @@
 """Stored shapes: each has the type its name says, faces +z, and makes polygons that are proved to have its type."""
 
+import importlib.util
 import re
 from pathlib import Path
 
@@ -10,11 +11,14 @@ from families import family
 from jones import jones
 from knot_diagrams import pairwise_linking, simplified
 from knot_type import knot_invariants
-from mobius_flow.core import CurveError
+from mobius_flow.core import Curve, CurveError, knots
+from mobius_flow.core.collision import is_free
+from mobius_flow.core.curve.fourier import FourierCurve
+from mobius_flow.core.curve.refine import subdivide
 from mobius_flow.core.knots import ALIASES, KNOTS, UnknownKnotError, knot, smooth_knot
 from mobius_flow.core.knots.inscribed import equal_steps, is_isotopic
-from mobius_flow.core.knots.shapes import FILE, least_energies, shapes
-from mobius_flow.core.smooth.rest import energy_of
+from mobius_flow.core.knots.shapes import FILE, QUANTUM, least_energies, shapes
+from mobius_flow.lab.smooth.rest import energy_of
 
 _LINES = (Path(__file__).parent / "known_knots.txt").read_text(encoding="utf-8").splitlines()
 KNOWN = {line.split()[0]: line.split()[1:] for line in _LINES if not line.startswith("#")}
@@ -85,7 +89,7 @@ def test_the_number_of_vertices_is_the_one_asked_for(vertices: int) -> None:
     assert knot_invariants(smooth_knot("3_1", vertices).vertices) == knot_invariants(smooth_knot("3_1").vertices)
 
 
-def test_coarse_polygons_are_the_right_knot_or_refused() -> None:
+def test_coarse_shapes_are_the_right_knot_or_refused() -> None:
     for name in ("3_1", "6_2", "10_124"):
         expected = knot_invariants(smooth_knot(name).vertices)
         refused = 0
@@ -120,6 +124,60 @@ def test_names_without_a_shape(name: str, said: str) -> None:
         smooth_knot(name)
 
 
-def test_too_many_vertices() -> None:
+def test_too_many_vertices_of_shapes() -> None:
     with pytest.raises(CurveError, match="too many"):
         smooth_knot("3_1", 10**9)
+
+
+def sharpest(curve):
+    """The largest angle between an edge and the next, in degrees."""
+    edges = np.diff(curve.components[0], axis=0)
+    edges /= np.linalg.norm(edges, axis=1, keepdims=True)
+    return np.degrees(np.arccos(np.clip((edges[1:] * edges[:-1]).sum(axis=1), -1, 1))).max()
+
+
+@pytest.mark.parametrize("name", ["goeritz", "thistlethwaite", "3_1", "L6a4", "overhand"])
+def test_corners_are_rounded_by_a_free_motion(name):
+    curve = knots.knot(name)
+    round_ = knots.rounded(curve)
+    assert len(round_) >= 320
+    assert sharpest(round_) < 0.4 * sharpest(curve)
+    split = subdivide(curve, np.full(curve.mesh.edges, round_.mesh.edges // curve.mesh.edges))
+    assert is_free(split.mesh, split.vertices, round_.vertices)
+    np.testing.assert_array_equal(round_.vertices[round_.mesh.ends], split.vertices[split.mesh.ends])
+
+
+def test_a_corner_that_holds_another_strand_stays_around_it():
+    corner = [[0, 0, 0], [10, 1, 0], [10, -1, 0]]
+    held = [[0.5, 0, -1], [0.5, 0, 1], [-5, 0, 1], [-5, 0, -1]]
+    link = Curve.from_components([corner, held])
+    assert str(knots.knot_type(knots.rounded(link))) == str(knots.knot_type(link)) == "L2a1"
+
+
+_FILE = Path(__file__).resolve().parents[3] / "tools" / "knot_shapes.py"
+_SPEC = importlib.util.spec_from_file_location("knot_shapes", _FILE)
+tool = importlib.util.module_from_spec(_SPEC)
+_SPEC.loader.exec_module(tool)
+
+
+@pytest.mark.kernels
+@pytest.mark.parametrize("name", family(["3_1", "4_1"], every=2))
+def test_shapes_are_made_anew_as_they_are_stored(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """To a few quanta, as linear algebra may round otherwise than where they were made; links turn over freely."""
+    monkeypatch.setattr(tool, "KEPT", tmp_path)
+    made, stored = tool.shape(name).coefficients, shapes()[name].coefficients
+    assert len(made) == len(stored)
+    for one, other in zip(made, stored, strict=True):
+        np.testing.assert_allclose(one, other, rtol=0, atol=4 * QUANTUM)
+
+
+def test_what_is_stored_is_read_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    rng = np.random.default_rng(3)
+    parts = [QUANTUM * rng.integers(-9000, 9000, size=(n, 3, 2)) for n in (4, 2, 7)]
+    first, second, third = (part[..., 0] + 1j * part[..., 1] for part in parts)
+    tool.store({"a": FourierCurve((first, second)), "b": FourierCurve((third,))}, tmp_path / "shapes.npz")
+    monkeypatch.setattr("mobius_flow.core.knots.shapes.FILE", tmp_path / "shapes.npz")
+    found = shapes.__wrapped__()
+    assert list(found) == ["a", "b"]
+    for got, given in zip((*found["a"].coefficients, *found["b"].coefficients), (first, second, third), strict=True):
+        assert np.array_equal(got, given)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from knot_diagrams import linking_number
 from knot_type import UNKNOT, knot_invariants
-from mobius_flow.core.curve.io import read_curve
+from mobius_flow.core.io import read_curve
 from mobius_flow.core.knots import knot
 
 INPUTS = Path(__file__).parents[3].parent / "shared" / "knots"

@@ -28,7 +28,7 @@ def case() -> Steps:
     yield from key("RETURN")
     yield from is_("done")
     report = addon("translations").rpt_(addon("live.registry").latest().message)
-    assert "Iterationen beendet; " in report, report
+    assert "Schritten beendet; " in report, report
     assert report.endswith("bewiesen berührungsfrei mit sich selbst"), report
     yield from picture("german-3-kept")
 

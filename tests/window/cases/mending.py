@@ -42,11 +42,11 @@ def case() -> Steps:
 def pressed(name: str, wanted: str) -> Steps:
     """Press a button, undo it, press it again, and see what is refused next."""
     hindered = said()
-    yield from button(f"curve.mobius_flow_{name}")
+    yield from button("curve.mobius_flow_mend")
     yield from until(lambda: said() != hindered, f"{name} to help")
     yield from key("Z", ctrl=True)
     yield from until(lambda: said() == hindered, f"{name} to be undone")
-    yield from button(f"curve.mobius_flow_{name}")
+    yield from button("curve.mobius_flow_mend")
     yield from until(lambda: said() != hindered, f"{name} to help again")
     assert wanted in said(), said()
 
@@ -54,5 +54,5 @@ def pressed(name: str, wanted: str) -> Steps:
 def said() -> str:
     """What is refused now."""
     with here():
-        refusal = addon("live.checks").RELAXABLE(bpy.context)
+        refusal = addon("live.requirements").RELAXABLE(bpy.context)
     return refusal.sentence if refusal else ""

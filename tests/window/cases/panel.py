@@ -30,16 +30,11 @@ def case() -> Steps:
 
 
 def menus() -> Steps:
-    """The presets, and the methods under their headings."""
+    """The presets."""
     yield from move(500, 500)  # menus open at the mouse
     with here():
         bpy.ops.wm.call_panel(name="VIEW3D_PT_mobius_flow_presets", keep_open=True)
     yield from picture("panel-1-presets", differs_from="panel-1-ready")
-    yield from key("ESC")
-    yield from move(500, 500)
-    with here():
-        bpy.ops.wm.context_menu_enum(data_path="scene.mobius_flow.method")
-    yield from picture("panel-1-methods", differs_from="panel-1-ready")
     yield from key("ESC")
 
 

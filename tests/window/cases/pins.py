@@ -62,8 +62,8 @@ def look_down() -> Steps:
 def add_arc() -> np.ndarray:
     """An overhand knot in an arc, with a tube; its points."""
     curve = core("knots").overhand(100)
-    data = addon("curves.exchange").new_curve_data("Arc", curve.mesh)
-    addon("curves.exchange").write_points(data, curve.vertices.astype("f4"))
+    data = addon("curves.splines").new_curve_data("Arc", curve.mesh)
+    addon("curves.splines").write_points(data, curve.vertices.astype("f4"))
     with here():
         arc = bpy.data.objects.new("Arc", data)
         bpy.context.collection.objects.link(arc)
@@ -87,4 +87,4 @@ def pinned() -> int:
 
 def keyed() -> list[np.ndarray]:
     """The points at all keys."""
-    return list(addon("curves.baked_keys").keyed_points(obj().data))
+    return list(addon("curves.recorded").keyed_points(obj().data))

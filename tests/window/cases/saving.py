@@ -13,7 +13,7 @@ FILE = os.path.join(os.environ["ROOM"], "saved.blend")
 
 
 def case() -> Steps:
-    addon("live.key_writer")._SLICE = 0.0  # a key at a tick
+    addon("live.run").KeyWriter.slice = 0.0  # a key at a tick
     yield from ready()
     before = points()
     yield from relax()

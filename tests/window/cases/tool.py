@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from case import Steps, picture, until
-from hands import addon, click, here, key, region, view, window
+from hands import addon, click, core, here, key, region, view, window
 from mathutils import Vector
 from scene import clear, is_, obj
 
@@ -62,8 +62,11 @@ def stroke() -> Steps:
 
 def crossing() -> tuple[int, int]:
     """Where the knot's first crossing is in the window."""
-    drawn = addon("buttons.stroke").Drawn.at(obj())
-    place = drawn.places[0]
+    values = np.array(obj().data["mobius_flow_plane"])
+    plane = core("keys.placement").DrawingPlane(values[:3], values[3:].reshape(3, 3))
+    curve = core().Curve.from_components(addon("curves.splines").read_splines(obj()))
+    drawing = core("knots").Drawing.seen(curve.with_vertices((curve.vertices - plane.origin) @ plane.axes.T))
+    place = plane.raised(np.column_stack([drawing.crossings[:1], [0.0]]))[0]
     main = region("WINDOW")
     there = location_3d_to_region_2d(main, view().spaces.active.region_3d, obj().matrix_world @ Vector(place))
     return int(main.x + there[0]), int(main.y + there[1])

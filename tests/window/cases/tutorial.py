@@ -31,6 +31,8 @@ def added() -> Steps:
         bpy.ops.ed.undo_push(message="Knot added")
     yield from open_sidebar()
     yield from look()
+    with here():
+        bpy.ops.view3d.zoom(delta=-1)  # the sidebar hides nothing
     bpy.ops.wm.save_as_mainfile(filepath=str(FOLDER / "tutorial.blend"))
     yield from picture("tutorial-1-added")
 
@@ -99,7 +101,7 @@ def interrupted() -> Steps:
     with here():
         bpy.ops.curve.mobius_flow_set_up_stage()
     bpy.ops.wm.save_mainfile()
-    window().scene.mobius_flow_film.look = "FINE"  # slow enough
+    window().scene.mobius_flow_film.look = "PAPER"  # slow enough
     bpy.context.preferences.view.render_display_type = "NONE"
     with here():
         assert bpy.ops.curve.mobius_flow_render_film("INVOKE_DEFAULT", overwrite=True) == {"RUNNING_MODAL"}

@@ -6,8 +6,8 @@ import pytest
 from mobius_flow.core.energies.barrier import exact
 from mobius_flow.core.energies.edge_pairs import EdgePairs, change, stepped
 from mobius_flow.core.energies.repulsion.simplices import Simplices
-from mobius_flow.core.taylor import taylor_slope
 from repulsion_references import potential_by_quadrature, solid_angle_potential
+from taylor import taylor_slope
 
 TRIANGLE = np.array([[0.1, 0.2, -0.3], [1.3, 0.0, 0.4], [0.2, 0.9, 0.5]])
 SEGMENT = TRIANGLE[:2]

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 from mobius_flow.core import Curve
+from mobius_flow.core.curve.obstacle import Obstacle
 from mobius_flow.core.energies.edge_pairs import change, stepped
 from mobius_flow.core.energies.repulsion.repulsion import THETA
 from mobius_flow.core.energies.repulsion.schedule import Schedule
 from mobius_flow.core.energies.repulsion.simplices import Clusters
-from mobius_flow.core.obstacle import Obstacle
-from mobius_flow.core.taylor import taylor_slope
 from repulsion_references import quartered, repulsion, soup, sphere, wavy
+from taylor import taylor_slope
 
 
 def wires(seed: int, count: int) -> Obstacle:

@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, MoebiusEnergy, Objective, OptionError
+from mobius_flow.core.curve.obstacle import Obstacle
 from mobius_flow.core.driver.prepare import start_problem
-from mobius_flow.core.energies import ENERGIES
+from mobius_flow.core.energies import ENERGIES, Bending, Weighted
 from mobius_flow.core.energies.repulsion import Repulsion
 from mobius_flow.core.energies.repulsion.repulsion import OUTDATED, THETA
-from mobius_flow.core.obstacle import Obstacle
-from mobius_flow.core.taylor import derivative_slope, hessian_slope
 from repulsion_references import potential_by_quadrature, repulsion, soup, sphere, wavy
 from shapes import hopf_link
 from tasks import wanted
+from taylor import derivative_slope, hessian_slope
 
 BALL = sphere(2)
 FRAME = Obstacle([[1.2, -1, -1], [1.2, 1, -1], [1.2, 1, 1], [1.1, -1, 1]], [[0, 1], [1, 2], [2, 3], [3, 0]])
@@ -169,16 +169,19 @@ def test_without_obstacles_nothing_is_new() -> None:
     assert Objective.of(MoebiusEnergy()).value(wavy(30)) == Objective().value(wavy(30))
 
 
-def test_obstacles_have_second_derivatives_only_if_the_energy_has() -> None:
-    objective = Objective.of(ENERGIES["edge"], [TRIANGLE])
+def test_obstacles_have_second_derivatives_only_if_all_terms_have() -> None:
+    assert Objective.of(ENERGIES["edge"], [TRIANGLE]).has_hessian
+    objective = Objective.of(ENERGIES["edge"], [TRIANGLE], [Weighted(Bending())])
     assert not objective.has_hessian
-    with pytest.raises(OptionError, match="'edge' has no second derivative"):
+    with pytest.raises(OptionError, match="'bending' has no second derivative"):
         objective.hessian_product(over_triangle(0.1), np.zeros((6, 3)))
 
 
 def test_weight() -> None:
     curve, v = wavy(20), direction_for(wavy(20))
-    none, once, heavy = (Objective.of(MoebiusEnergy(), [BALL], weight=weight) for weight in (0.0, 1.0, 2.5))
+    none, once, heavy = (
+        Objective(further=[Weighted(wall, weight) for wall in Repulsion.of([BALL])]) for weight in (0.0, 1.0, 2.5)
+    )
     for each in ("value", "hessian", "clearance"):
         a, b, c = (np.asarray(getattr(objective, each)(curve)) for objective in (none, once, heavy))
         expected = b if each == "clearance" else a + 2.5 * (b - a)

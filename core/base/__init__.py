@@ -1,0 +1,1 @@
+"""What every room stands on: errors, messages, checked arguments, files, time, threads, types of arrays."""

@@ -1,0 +1,6 @@
+"""Symmetry: the isometries that map a curve to itself, their names, and their action on the vertices of a mesh."""
+
+from .action import NO_SYMMETRY, Symmetry
+from .group import IS_NAME, TOLERANCE, SymmetryGroup, standing, symmetries
+
+__all__ = ["IS_NAME", "NO_SYMMETRY", "TOLERANCE", "Symmetry", "SymmetryGroup", "standing", "symmetries"]

@@ -1,0 +1,282 @@
+"""Line searches: what is tried first, Armijo's rule along the constraints, and Wolfe's (Section 6 of [RS21])."""
+
+import math
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import ClassVar, Protocol
+
+import numpy as np
+
+from ..base.arguments import checked_fields, number
+from ..base.errors import OptionError
+from ..base.tolerances import ENERGY_ROUNDING
+from ..base.types import FloatArray
+from ..collision import Contact
+from ..energies.components import energy_scale
+from ..solve.metrics import Metric
+from ..solve.saddle import TangentSpace
+from .directions import Direction
+from .problem import Point
+from .step import Leg, NoStep, Rejected, SearchState, Step, attempt, leg
+
+NOTHING = 1e-15  # displacement, in the program's units, that changes no coordinate
+
+
+@checked_fields
+@dataclass(frozen=True)
+class FirstTrial:
+    """The first step size worth trying (Section 6.3 of [RS21])."""
+
+    collision_fraction: float = number(2.0 / 3.0, most=1)  # of the first step with a contact: the paper's 2/3
+    max_displacement: float = number(0.5)  # of any vertex, in the program's units, in which a component is 4 to 8 long
+    growth: float = number(4.0, above=1)  # the first trial is at most this many times the last accepted step
+
+    def __call__(self, point: Point, direction: FloatArray, longest: float) -> tuple[float, Contact | None]:
+        """The first trial τ ≤ ``longest`` along a direction, and the contact that limits it, if any.
+
+        Nothing is proved yet: the points on the way are rounded.
+        """
+        speed = float(np.max(np.linalg.norm(direction, axis=1)))
+        if speed == 0.0:
+            return 0.0, None
+        tau = min(longest, self.max_displacement / speed)
+        free = leg(point, point.problem.at(point.vertices + tau * direction)).proof
+        if free.time < 1.0:
+            tau *= self.collision_fraction * free.time
+        return tau, free.contact
+
+
+def on_target(point: Point) -> bool:
+    """Whether a point is on the constraints, or on its way there no more."""
+    return point.infeasibility <= 1e-7  # error below which a curve counts as being on the constraints
+
+
+@dataclass(frozen=True, eq=False)
+class NormalStep:
+    """The way to the targets of the constraints from one point."""
+
+    full: FloatArray  # −C^† Φ, the displacement that reaches them to first order; shape (n, m)
+    cost: float  # DE·full, the energy that takes
+    longest: float  # the share of it that changes no length by more than a bounded factor
+    least: float  # the share taken even where it costs more energy than can be gained
+    # the energy that all of it may cost where there is nothing left to gain: there the first order says nothing
+    allowance: float
+
+    def share(self, gain: float) -> float:
+        """The share to take along with a tangential step that gains so much energy.
+
+        It costs at most half the gain, so that the objective goes down; but where there is nothing left to gain the
+        lengths go on, slowly, all the same.
+        """
+        affordable = 0.5 * max(gain, self.allowance)
+        if self.longest * self.cost <= affordable:
+            return self.longest
+        return max(affordable / self.cost, self.least)
+
+    def slack(self, share: float, gain: float) -> float:
+        """By how much a step with such a share may miss its prediction."""
+        return share * max(0.0, self.allowance - gain)
+
+
+@checked_fields
+@dataclass(frozen=True)
+class TowardsTargets:
+    """How fast lengths go to their targets."""
+
+    length_change: float = number(0.25)  # largest logarithmic change of an edge length in one step
+    least_share: float = number(0.01, most=1)  # of that step, taken even where it costs more energy than can be gained
+    # part of the energy, by its scale, that reaching the targets may cost where there is nothing left to gain
+    allowance: float = number(1e-3, most=1)
+
+    def at(self, point: Point, space: TangentSpace) -> NormalStep:
+        """The normal step at a point, none if it is on target; ``space`` gives the pseudo-inverse."""
+        if on_target(point):
+            return NormalStep(np.zeros_like(point.vertices), 0.0, 1.0, 1.0, 0.0)
+        full = space.pseudo_inverse(-point.residual)
+        longest = min(1.0, self.length_change / point.infeasibility)
+        cost = float(np.sum(point.derivative * full))
+        allowance = self.allowance * energy_scale(point.problem.mesh, point.energy)
+        return NormalStep(full, cost, longest, self.least_share * longest, allowance)
+
+
+class AlongLine(Protocol):
+    """A search for the step size."""
+
+    def along(self, point: Point, direction: FloatArray, natural: float, last: float) -> Step | NoStep:
+        """Find a step along a descent direction, with its own and the last accepted step size; see `Armijo.along`."""
+
+
+@checked_fields
+@dataclass(frozen=True)
+class LineSearch:
+    """Direction × search."""
+
+    direction: Direction
+    search: AlongLine
+    # number of steps that a metric is made for, unless contact limits one of them: building and inverting it is most
+    # of the work, and a few steps on it is a metric all the same
+    metric_steps: int = number(1)
+    second_order: ClassVar[bool] = False
+    other_metrics: ClassVar[tuple[Metric, ...]] = ()
+
+    def step(self, point: Point, state: SearchState) -> tuple[Step | NoStep, SearchState]:
+        """Take one step; what fails is tried again without the direction's memory and in the metric of this curve."""
+        direction, memory = self.direction.propose(point, state.memory)
+        step = self.search.along(point, direction, self.direction.natural_step, state.last_step)
+        if isinstance(step, NoStep):
+            if state.memory is None and point.metric_age == 0:
+                return step, state
+            return self.step(point.with_own_metric(), SearchState())
+        if step.limited_by is None and point.metric_age + 1 < self.metric_steps:
+            step = step.with_metric_of(point)
+        return step, SearchState(memory, step.size)
+
+
+@checked_fields
+@dataclass(frozen=True)
+class Armijo:
+    """Shrink the first trial until the energy goes down enough and the motion is proved."""
+
+    decrease: float = number(0.5, most=1)  # required fraction of the predicted decrease: the paper's ½
+    first: FirstTrial = field(default_factory=FirstTrial)
+    lengths: TowardsTargets = field(default_factory=TowardsTargets)  # how fast lengths go to their targets
+    max_trials: int = number(40)
+
+    def along(self, point: Point, direction: FloatArray, natural: float, last: float) -> Step | NoStep:
+        """Find a step along a tangent direction with DE·direction < 0; shape (n, m).
+
+        The motion is the straight one from P to Q, where Q = P + τ·direction, moved towards the target lengths if they
+        are not reached yet, and back onto that level of the constraints by (42).  It is accepted if E(Q) ≤ E(P) + ½
+        DE·(Q₀ − P) and the motion from P to Q is proved free of contact.  τ is at most the direction's own step size,
+        ``natural``, and a multiple of the last accepted one.
+        """
+        longest, speed = self.first.growth * last, float(np.max(np.abs(direction)))
+        if speed > 0.0 and longest * speed < 1e-3 and not on_target(point):
+            # the lengths' part may be what made the last step short: it would be left alone, which costs energy and
+            # sees no strands, by step sizes that shrink again and again
+            longest = 1e-3 / speed
+        tau, limited_by = self.first(point, direction, min(natural, longest))
+        normal = self.lengths.at(point, point.tangent_space)
+        slope_along = float(np.sum(point.derivative * direction))
+        shrink = 1.0
+        for _ in range(self.max_trials):
+            share = normal.share(-shrink * tau * slope_along) * min(1.0, 4.0 * shrink)
+            move = shrink * tau * direction + share * normal.full
+            slope = shrink * tau * slope_along + share * normal.cost
+            if not np.max(np.abs(move)) > NOTHING:
+                break
+            level = (1.0 - share) * point.residual
+            slack = normal.slack(share, -shrink * tau * slope_along)
+            trial = attempt(point, point.vertices + move, level, partial(self.sufficient, point, slope, slack))
+            if isinstance(trial, Leg):
+                return Step((trial,), shrink * tau, limited_by)
+            limited_by = trial.in_the_way or limited_by
+            if trial.proof is not None:
+                shrink *= max(0.1, self.first.collision_fraction * trial.proof.time)
+            elif trial.trial is None or not slope < 0.0:
+                shrink *= 0.5
+            else:  # the minimum of the parabola through what is known, within bounds
+                excess = trial.trial.energy - point.energy
+                shrink *= min(0.6, max(0.1, -0.5 * slope / (excess - slope)))
+        return NoStep.because(limited_by)
+
+    def sufficient(self, point: Point, slope: float, slack: float, trial: Point) -> bool:
+        """Armijo's rule; where the lengths' cost makes the slope positive, the energy may rise by twice the prediction.
+
+        Where there is nothing left to gain, the way to the lengths may cost ``slack`` in addition.  Differences below
+        the rounding of the energy count as none.
+        """
+        wanted = self.decrease * slope if slope < 0.0 else 2.0 * slope
+        return trial.energy - point.energy <= wanted + slack + ENERGY_ROUNDING * abs(point.energy)
+
+
+@checked_fields
+@dataclass(frozen=True)
+class WeakWolfe:
+    """Widen or halve a bracket until the energy goes down enough and its slope has become flat enough.
+
+    Bisection after Lewis and Overton (Nonsmooth optimization via quasi-Newton methods, 2013): it needs no more than the
+    two conditions and ends for every function that is bounded below.
+    """
+
+    # decrease, curvature: c₁ < c₂ of the two conditions, for which [RS21] has no numbers. On a parabola they accept
+    # steps of 1 − c₂ to 2 (1 − c₁) times the way to its minimum: of twice, with the usual 10⁻⁴, which gain nothing
+    decrease: float = number(0.25, most=1)
+    curvature: float = number(0.9, most=1)
+    first: FirstTrial = field(default_factory=FirstTrial)
+    # on the way to target lengths, where these are prescribed
+    underway: Armijo = field(default_factory=Armijo)
+    max_trials: int = number(40)
+
+    def __post_init__(self) -> None:
+        if self.decrease >= self.curvature:
+            raise OptionError(f"decrease is {self.decrease}; it must be less than curvature, {self.curvature}")
+
+    def along(self, point: Point, direction: FloatArray, natural: float, last: float) -> Step | NoStep:
+        """Find a step with E(Q) ≤ E(P) + c₁ τ DE·d and DE(Q)·d ≥ c₂ DE(P)·d, d moved along to Q.
+
+        If contact ends the line before the second condition holds, the longest step found is taken.  Parameters are
+        those of `Armijo.along`.
+        """
+        if not on_target(point):
+            return self.underway.along(point, direction, natural, last)
+        end, limited_by = self.first(point, direction, math.inf)
+        slope = float(np.sum(point.derivative * direction))
+        low, high = 0.0, math.inf
+        best: Step | None = None
+        tau = min(natural, self.first.growth * last if math.isfinite(last) else 1.0, end)
+        for _ in range(self.max_trials):
+            if not tau * np.max(np.abs(direction)) > NOTHING:
+                break
+            # differences below the rounding of the energy count as none
+            most = point.energy + self.decrease * tau * slope + ENERGY_ROUNDING * abs(point.energy)
+            acceptable = partial(lambda most, trial: trial.energy <= most, most)
+            trial = attempt(point, point.vertices + tau * direction, point.residual, acceptable)
+            if isinstance(trial, Leg):
+                best, low = Step((trial,), tau, limited_by), tau
+                flat = np.sum(trial.end.derivative * trial.end.transport(direction)) >= self.curvature * slope
+                if flat or tau >= end:
+                    break
+            else:
+                high, limited_by = tau, trial.in_the_way or limited_by
+            tau = min(end, 2.0 * low) if math.isinf(high) else 0.5 * (low + high)
+        return NoStep.because(limited_by) if best is None else best
+
+
+@dataclass(frozen=True, eq=False)
+class Momentum:
+    """The point before, and Nesterov's sequence t_k."""
+
+    vertices: FloatArray
+    t: float
+
+
+@dataclass(frozen=True)
+class Accelerated:
+    """Nesterov's accelerated gradient: y = x + β (x − x_last), then x_next = y − τ u(y).
+
+    (Yu. Nesterov, A method for solving the convex programming problem with convergence rate O(1/k²), 1983.)  Both
+    sub-steps are truncated by collision detection, and the momentum is reset when the objective goes up (O'Donoghue and
+    Candès, Adaptive restart for accelerated gradient schemes, 2015).
+    """
+
+    search: WeakWolfe = field(default_factory=WeakWolfe)  # finds τ
+    second_order: ClassVar[bool] = False
+    other_metrics: ClassVar[tuple[Metric, ...]] = ()
+
+    def step(self, point: Point, state: SearchState) -> tuple[Step | NoStep, SearchState]:
+        """Extrapolate, then take a gradient step from there; the path has both legs."""
+        memory = Momentum(point.vertices, 1.0) if state.memory is None else state.memory
+        t = 0.5 * (1.0 + math.sqrt(1.0 + 4.0 * memory.t**2))
+        momentum = (memory.t - 1.0) / t * (point.vertices - memory.vertices)
+        part, _ = self.search.first(point, momentum, 1.0)
+        end = point.vertices + part * momentum
+        first = attempt(point, end, point.residual, lambda q: True) if part else Rejected()
+        start = first.end if isinstance(first, Leg) else point
+        step = self.search.along(start, -start.gradient, np.inf, state.last_step)
+        if isinstance(step, NoStep):
+            return (step, state) if state.memory is None else self.step(point, replace(state, memory=None))
+        if isinstance(first, Leg):
+            step = replace(step, legs=(first, *step.legs))
+        rising = step.point.energy > point.energy
+        return step, SearchState(None if rising else Momentum(point.vertices, t), step.size)

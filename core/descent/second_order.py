@@ -1,0 +1,355 @@
+"""Steps by second derivatives: trust regions, implicit flows, the way off a saddle, and the quadratic end.
+
+The trust region and backward Euler are those of Section 6.4 of [RS21].
+
+Near a minimum J_C⁻¹ D²L has a few eigenvalues far below its bulk, those of Möbius maps being some 11/N²: in the metric
+hundreds of steps crawl along their valleys.  With a multiple of the metric that makes it positive definite on the
+tangent space, D²L + σ J_C is assembled, which is as dear as a few steps, and factorised; the next steps share it, and
+the pairs of L-BFGS tell what changes on the way (`Newton`).  Newton's method it is where one step suffices.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import partial
+from typing import ClassVar
+
+import numpy as np
+from scipy.linalg import eigh
+
+from ..base.arguments import checked_fields, number
+from ..base.deadline import check_time
+from ..base.errors import OptionError
+from ..base.tolerances import ENERGY_ROUNDING
+from ..base.types import FloatArray
+from ..energies.components import energy_scale
+from ..energies.energy import Approximate
+from ..solve.metrics import Metric, MoebiusMetric
+from ..solve.saddle import TangentSpace
+from ..solve.saddle.indefinite import Chains, FactorisedHessian
+from .directions import LimitedMemoryBFGS
+from .hessian import ASSEMBLED_SIZE, energy_hessian, lagrangian_hessian, lagrangian_matrix, projected_conjugate_gradient
+from .line_searches import NOTHING, Armijo, FirstTrial, LineSearch, on_target
+from .problem import Point
+from .step import Leg, NoStep, SearchState, Step, attempt, judged
+
+
+@dataclass(frozen=True, eq=False)
+class Region:
+    """The radius, and the last projected gradient (None at the start)."""
+
+    radius: float
+    gradient: FloatArray | None
+
+
+@checked_fields
+@dataclass(frozen=True)
+class TrustRegion:
+    """Shrink the radius until the step is feasible, free of contact and as good as predicted.
+
+    A quadratic model of the Lagrangian is minimised within a ball of the metric, in the span of the projected gradient,
+    the previous projected gradient moved to this tangent space, and, once the gradient is short, the Newton direction:
+    a blend of Byrd, Schnabel and Shultz, A trust region algorithm for nonlinearly constrained optimization (1987), with
+    the two-dimensional subspaces of Shultz, Schnabel and Byrd, A family of trust-region-based algorithms (1985).
+    """
+
+    newton_threshold: float = number(0.3)  # of √E: longer gradients are not worth a Newton direction
+    first_radius: float = number(1.0)  # in the metric's norm
+    # accept, good, poor: ratios of actual to predicted reduction: below ``accept`` a step is rejected, above ``good``
+    # the radius grows, below ``poor`` it shrinks
+    accept: float = 0.05
+    good: float = 0.7
+    poor: float = 0.25
+    first: FirstTrial = field(default_factory=FirstTrial)
+    # the search on the way to target lengths, where there is no Lagrangian to model
+    underway: Armijo = field(default_factory=Armijo)
+    max_trials: int = number(40)
+    second_order: ClassVar[bool] = True
+    other_metrics: ClassVar[tuple[Metric, ...]] = ()
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.accept <= self.poor < self.good < 1.0:
+            raise OptionError(
+                f"accept, poor and good are {self.accept}, {self.poor} and {self.good}; they must ascend within (0, 1)"
+            )
+
+    def step(self, point: Point, state: SearchState) -> tuple[Step | NoStep, SearchState]:
+        if not on_target(point):
+            step = self.underway.along(point, -point.gradient, math.inf, state.last_step)
+            return step, (SearchState(None, step.size) if isinstance(step, Step) else state)
+        region = Region(self.first_radius, None) if state.memory is None else state.memory
+        radius, limited_by = region.radius, None
+        # the model DE·s + ½ ⟨s, D²L s⟩ on the span of a few vectors, orthonormal in the metric
+        hessian, vectors = lagrangian_hessian(point), [-point.gradient]
+        threshold = self.newton_threshold * math.sqrt(energy_scale(point.problem.mesh, point.energy))
+        if point.gradient_norm < threshold:
+            # Newton's direction, superlinear: the inner tolerance goes to 0 with the gradient
+            right, space, inner = -point.derivative, point.tangent_space, min(0.1, point.gradient_norm / threshold)
+            vectors.append(projected_conjugate_gradient(hessian, right, space, inner, 200))
+        if region.gradient is not None:
+            vectors.append(point.transport(region.gradient))
+        # Gram–Schmidt in the metric, twice for stability; vectors that add nothing new are left out.  What is left of a
+        # nearly dependent vector is largely its rounding error, which need not be tangent: along its normal part the
+        # energy changes as along no step.  So the rest is projected before it is made orthogonal once more.
+        space, rows = point.tangent_space, list[FloatArray]()
+        for vector in vectors:
+            for least in (1e-8, 0.5):
+                size = space.norm(vector)
+                vector = point.transport(vector / size) if size > 0.0 else vector
+                for known in rows:
+                    vector = vector - np.sum(known * space.apply(vector)) * known
+                if not space.norm(vector) > least:
+                    break
+            else:
+                rows.append(vector / space.norm(vector))
+        basis = np.array(rows)
+        images = np.array([hessian(b) for b in basis])
+        linear, quadratic = np.einsum("kij,ij->k", basis, point.derivative), np.einsum("kij,lij->kl", basis, images)
+        quadratic = 0.5 * (quadratic + quadratic.T)
+        for _ in range(self.max_trials):
+            c = _minimum_in_ball(quadratic, linear, radius)
+            s = np.einsum("k,kij->ij", c, basis)
+            length = point.tangent_space.norm(s)
+            if not np.max(np.abs(s)) > NOTHING:
+                break
+            part, limited_by = self.first(point, s, 1.0)
+            if part < 1.0:
+                radius = max(part, 0.1) * length
+                c, s = part * c, part * s
+            predicted = -float(linear @ c + 0.5 * c @ quadratic @ c)
+            acceptable = partial(self.acceptable, point, predicted)
+            trial = attempt(point, point.vertices + s, np.zeros_like(point.residual), acceptable)
+            if isinstance(trial, Leg):
+                ratio = _ratio(point, trial.end, predicted)
+                if ratio < self.poor:
+                    radius *= 0.5
+                elif ratio > self.good and length > 0.8 * radius:
+                    radius *= 2.0
+                return Step((trial,), 1.0, limited_by), SearchState(Region(radius, point.gradient), length)
+            limited_by = trial.in_the_way or limited_by
+            if trial.proof is None:
+                radius = 0.4 * min(length, radius)
+            else:
+                radius = self.first.collision_fraction * max(trial.proof.time, 0.1) * length
+        return NoStep.because(limited_by), state
+
+    def acceptable(self, point: Point, predicted: float, trial: Point) -> bool:
+        """Whether enough of the predicted reduction, a positive number, is real."""
+        return _ratio(point, trial, predicted) >= self.accept
+
+
+def _ratio(point: Point, trial: Point, predicted: float) -> float:
+    # reductions below some roundings of the energy cannot be measured: there the model is believed
+    rounding = 10.0 * ENERGY_ROUNDING * abs(point.energy)
+    return (point.energy - trial.energy + rounding) / (predicted + rounding)
+
+
+def _minimum_in_ball(q: FloatArray, g: FloatArray, radius: float) -> FloatArray:
+    """Minimise g·c + ½ c·q c over |c| ≤ radius for a small matrix, exactly: (q + σ) c = −g with the right σ ≥ 0."""
+    values, vectors = eigh(q)
+    h = vectors.T @ g
+    if values[0] > 0.0 and np.linalg.norm(h / values) <= radius:
+        return np.asarray(-vectors @ (h / values))
+    low, high = max(0.0, -values[0]), max(0.0, -values[0]) + np.linalg.norm(g) / radius + abs(values[-1])
+    for _ in range(200):
+        sigma = 0.5 * (low + high)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            longer = not np.linalg.norm(h / (values + sigma)) <= radius
+        low, high = (sigma, high) if longer else (low, sigma)
+    c = -h / (values + high)
+    missing = radius**2 - float(c @ c)
+    if values[0] < 0.0 and missing > 1e-10 * radius**2:  # the hard case: go on along the lowest eigenvector
+        c[0] += math.copysign(math.sqrt(missing), c[0])
+    return np.asarray(vectors @ c)
+
+
+@checked_fields
+@dataclass(frozen=True)
+class BackwardEuler:
+    """Halve τ until the equations are solved, Armijo's rule holds and the motion is proved.
+
+    With S_P the projected-gradient operator of (41) at P, one step of size τ is the tangent vector w with
+
+        w + τ S_P DE(Q(w)) = 0,   Q(w) the feasible point that P + w leads to by (42),
+
+    constraint forces being those of P (as in the SHAKE scheme of mechanics).  Newton's method solves it, projected
+    conjugate gradients its linear systems, preconditioned by A/τ + J_C.
+    """
+
+    # the metric that is added to the flow's own, divided by τ, for Newton's method and the way to the constraints
+    preconditioner: Metric = field(default_factory=MoebiusMetric)
+    # first_step, growth: τ of the first step, and how much longer than the last one a step may be
+    first_step: float = number(0.1)
+    growth: float = number(2.0, above=1)
+    # newton_iterations, newton_tolerance: of Newton's method, relative to the first residual: a step need not be more
+    # exact than the time discretisation
+    newton_iterations: int = number(8)
+    newton_tolerance: float = number(1e-3, most=1)
+    # krylov_iterations, krylov_tolerance: of its linear systems
+    krylov_iterations: int = number(60)
+    krylov_tolerance: float = number(0.05, most=1)
+    armijo: Armijo = field(default_factory=Armijo)  # Armijo's rule, and how fast lengths go to their targets
+    second_order: ClassVar[bool] = True
+
+    @property
+    def other_metrics(self) -> tuple[Metric, ...]:
+        return (self.preconditioner,)
+
+    def step(self, point: Point, state: SearchState) -> tuple[Step | NoStep, SearchState]:
+        tau = self.first_step if state.memory is None else self.growth * state.memory
+        own, constraints = point.inner_product, point.tangent_space.constraints
+        preconditioner = self.preconditioner.at(point.curve)
+        share = 1.0
+        limited_by = None
+        for _ in range(self.armijo.max_trials):
+            space = preconditioner.plus(own, 1.0 / tau).tangent_space(constraints)
+            solved = self._solved(point, tau, share, space)
+            if solved is not None:
+                slope = float(np.sum(point.derivative * (solved.vertices - point.vertices)))
+                if slope > 0.0 and share > self.armijo.lengths.least_share:
+                    share *= 0.25  # the way to the target lengths costs more than the flow gains
+                    continue
+                trial = judged(point, solved, partial(self.armijo.sufficient, point, slope, 0.0))
+                if isinstance(trial, Leg):
+                    return Step((trial,), tau, limited_by), SearchState(tau, tau)
+                limited_by = trial.in_the_way or limited_by
+            tau *= 0.5
+            share *= 0.5
+        return NoStep.because(limited_by), state
+
+    def _solved(self, point: Point, tau: float, share: float, space: TangentSpace) -> Point | None:
+        """Solve for the next point, None if Newton's method does not get there.
+
+        ``share`` of the way to the target lengths is taken along, if they are not reached yet.  Feasibility is restored
+        in the preconditioner's metric: in a weak one like L² the shortest way back is too rough (footnote 7 of [RS21]).
+        """
+        normal = self.armijo.lengths.at(point, space)
+        base = point.vertices + share * normal.longest * normal.full
+        level = (1.0 - share * normal.longest) * point.residual
+        w = np.zeros_like(point.vertices)
+        first, last = 0.0, math.inf
+        for _ in range(self.newton_iterations):
+            trial = point.retract(base + w, level, space)
+            if trial is None or not math.isfinite(trial.energy):
+                return None
+            right = -(trial.derivative + point.tangent_space.apply(w) / tau)
+            size = math.sqrt(max(0.0, float(np.sum(right * space.gradient(right)[0]))))
+            first = first or size
+            if size <= self.newton_tolerance * first:
+                return trial
+            if not size < 2.0 * last:
+                return None
+            last = size
+            of_energy = energy_hessian(trial)
+            w += projected_conjugate_gradient(
+                lambda v, h=of_energy: h(v) + point.tangent_space.apply(v) / tau,  # type: ignore[misc]
+                right,
+                space,
+                self.krylov_tolerance,
+                self.krylov_iterations,
+            )
+        return None
+
+
+@checked_fields
+@dataclass(frozen=True)
+class Escape:
+    """Halve a step along ± a direction of negative curvature until it lowers the energy and is proved."""
+
+    decrease: float = number(0.1, most=1)  # required fraction of the predicted decrease
+    longest: float = number(0.5)  # first step, in the metric's norm
+    first: FirstTrial = field(default_factory=FirstTrial)
+    max_trials: int = number(20)
+
+    def step(self, point: Point, direction: FloatArray, curvature: float) -> Step | NoStep:
+        """Find a step with E(Q) < E(P) + ½ c τ² curvature, c the required decrease.
+
+        The direction, shape (n, m), is tangent and of length 1 in the metric, the curvature ⟨direction, D²L direction⟩
+        < 0.
+        """
+        limited_by = None
+        for sign in (1.0, -1.0):
+            tau, limited_by = self.first(point, sign * direction, self.longest)
+            for _ in range(self.max_trials):
+                vertices, most = point.vertices + sign * tau * direction, point.energy
+                most += 0.5 * self.decrease * curvature * tau**2
+                trial = attempt(point, vertices, 0.0 * point.residual, lambda q, most=most: q.energy < most)  # type: ignore[misc]
+                if isinstance(trial, Leg):
+                    return Step((trial,), tau, limited_by)
+                limited_by = trial.in_the_way or limited_by
+                tau *= 0.5
+        return NoStep.because(limited_by)
+
+
+class Curvature:
+    """The Lagrangian's second derivative at a point, on the tangent space, against the metric there.
+
+    Under a symmetry it is the metric on all directions that break it, so that they neither count nor are gone.
+    """
+
+    def __init__(self, point: Point) -> None:
+        check_time()
+        self.point, self._chains = point, Chains(point.tangent_space.constraints)
+        gram = point.inner_product.dense()
+        hessian = self.point.problem.constraints.symmetry.within(lagrangian_matrix(point), gram)
+        self._hessian, self._metric = self._chains.of_hessian(hessian), self._chains.of_metric(gram)
+
+    @staticmethod
+    def is_known(point: Point) -> bool:
+        """Whether there is one, exact and small enough to be factorised."""
+        objective = point.problem.objective
+        exact = objective.is_assembled and not isinstance(objective.energy, Approximate)
+        return exact and point.problem.geometry.prescribes and point.vertices.size <= ASSEMBLED_SIZE
+
+    def shifted(self, shift: float) -> FactorisedHessian:
+        """D²L + σ J for a shift σ; as many of its eigenvalues are negative as D²L has below −σ against J."""
+        check_time()
+        return FactorisedHessian(self._hessian + shift * self._metric, self._chains)
+
+    def gain(self, inverse: FactorisedHessian) -> float:
+        """The decrease of the energy that a quadratic model promises, half the square of Newton's decrement."""
+        return 0.5 * float(np.sum(self.point.derivative * inverse.solve(self.point.derivative)))
+
+
+@checked_fields
+@dataclass(frozen=True)
+class Newton:
+    """Steps that share one second derivative."""
+
+    factor: float = number(8.0, above=1)  # by which σ grows until the Hessian is positive definite
+    steps: int = number(8)
+    short: float = number(0.3, most=1)  # part of a step that shows that the model is not to be trusted so far
+    # full steps gain half of what their slope promises, and so must not be asked for that
+    search: Armijo = field(default_factory=lambda: Armijo(decrease=0.1))
+
+    def definite(self, curvature: Curvature, shift: float) -> tuple[FactorisedHessian, int, float]:
+        """The factors for the first σ, from a given one on, that makes it so, the index at the given one, and σ.
+
+        Raises LinAlgError if none does, which rounding alone can bring about.
+        """
+        inverse = curvature.shifted(shift)
+        index = inverse.negative
+        while inverse.negative:
+            shift *= self.factor
+            if not shift < 1e6:
+                raise np.linalg.LinAlgError("no multiple of the metric makes the second derivative definite")
+            inverse = curvature.shifted(shift)
+        return inverse, index, shift
+
+    def along(
+        self, curvature: Curvature, inverse: FactorisedHessian, shift: float, most: int, least: float
+    ) -> Iterator[Step]:
+        """At most so many steps, until one gains less than ``least`` or none is found; where one is short σ grows."""
+        point, state = curvature.point, SearchState()
+        for _ in range(min(most, self.steps)):
+            rule = LineSearch(LimitedMemoryBFGS(inverse=inverse.solve), self.search, self.steps)
+            step, state = rule.step(point, state)
+            if not isinstance(step, Step):
+                return
+            yield step
+            if point.energy - step.point.energy < least:
+                return
+            point = step.point
+            if step.size < self.short:
+                inverse, _, shift = self.definite(curvature, self.factor * shift)
+                state = SearchState()

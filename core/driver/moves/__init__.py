@@ -1,0 +1,36 @@
+"""Moves: what may act on a run between its steps; each is a class, made for each run, with settings as fields."""
+
+from collections.abc import Callable, Sequence
+
+from ..run import Move, Run
+from .balance import Balance
+from .fallback import CheckAccuracy, Fallback
+from .grow import Grow
+from .hold import AwaitHand, Hold
+from .hops import ON_A_FIXED_MESH, Hops
+from .links import Composite, SplitLinks
+from .remesh import CoarseStart, FinerMesh, Remesh
+from .rest import EscapeSaddle, Settle
+from .starts import OpenKnots, SymmetricStart
+from .untangling import Untangling
+
+MOVES: Sequence[Callable[[Run], Move]] = (
+    SymmetricStart,
+    Hold,
+    OpenKnots,
+    Untangling,
+    Grow,
+    SplitLinks,
+    CoarseStart,
+    EscapeSaddle,
+    Composite,
+    Balance,
+    FinerMesh,
+    Settle,
+    Fallback,
+    Remesh,
+    CheckAccuracy,
+    AwaitHand,
+    Hops,
+)
+"""In the order in which they are asked."""

@@ -1,0 +1,111 @@
+"""What a hand that drags the curve asks for."""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ...base.errors import MobiusFlowError
+from ...base.types import FloatArray
+from ...curve.pins import Pins
+from ...descent import NoStep, Point, Step
+from ...descent.line_searches import on_target
+from ...descent.step import leg
+from ...energies.components import energy_scale
+from ...energies.pull import Pull
+from ...io.trajectory import Iterate
+from ...solve.constraints import Barycenters
+from ..outcome import Outcome
+from ..run import Change, Event, Move, Run
+
+
+@dataclass(eq=False)
+class Hold(Move):
+    """Carries out the instructions of a hand, if there is one."""
+
+    _before: list[tuple[Point, Iterate]] = field(default_factory=list, init=False)  # each grab that may be undone
+
+    def __call__(self, event: Event) -> Event | Change:
+        hand, mesh = self.run.hand, self.run.problem.mesh
+        if hand is None:
+            return event
+        said, hand.said = hand.said, []
+        for each in said:
+            each(self)
+        if self._pull is not None:
+            self.run.renew()
+        if self.run.problem.mesh is not mesh:
+            return Change()  # the event was about another mesh
+        if isinstance(event, NoStep | Outcome):
+            if said:
+                return Change()  # the event came before the instructions
+            return awaiting(self.run, event) if self._pull is not None else event
+        return event
+
+    def anew(self) -> "Hold":
+        """The same: what was grabbed before can still be undone."""
+        return self
+
+    @property
+    def _pull(self) -> Pull | None:
+        return self.run.problem.objective.pull
+
+    def grab(self, component: int, share: float) -> None:
+        run, curve = self.run, self.run.point.curve
+        if not 0 <= component < len(curve.mesh.component_sizes):
+            count = len(curve.mesh.component_sizes)
+            raise MobiusFlowError(f"component is {component}; the curve has {count}, counted from 0")
+        self.release(pin=False)
+        self._before.append((Point(run.problem, run.point.vertices, run.point.placed), run.iterate))
+        # of the spring, in units of the energy scale over the program's unit of length squared
+        run.pull(Pull.at(curve, component, share, 5.0 * energy_scale(curve.mesh, run.point.energy)))
+
+    def move(self, target: FloatArray) -> None:
+        pull, units = self._pull, self.run.problem.units
+        if pull is None:
+            return
+        if len(target) != len(pull.target):
+            raise MobiusFlowError(f"target has {len(target)} coordinates; give {len(pull.target)}, as the curve has")
+        held = pull.weights @ self.run.point.vertices
+        way = units.from_user(target) - held
+        size = float(np.abs(way).max())
+        # beyond a hundred of the program's units only the target's direction counts
+        self.run.pull(replace(pull, target=held + way * min(1.0, 100.0 / max(size, 100.0))))
+
+    def release(self, pin: bool) -> None:
+        pull, run = self._pull, self.run
+        if pull is None:
+            return
+        run.pull(None)
+        run.renew()
+        if pin:
+            constraints = run.problem.constraints
+            pins = Pins.of(run.iterate.curve, np.union1d(constraints.pins.vertices, [pull.vertex]))
+            held = constraints.replacing(Barycenters.of(run.point.curve, pins, constraints.block(Barycenters).parts))
+            # targets that are not reached yet might be too short: they give way to present lengths
+            lengths = constraints.lengths if on_target(run.point) else run.point.curve.edge_lengths
+            run.start_from(run.point.changing(constraints=replace(held, pins=pins, lengths=lengths)))
+
+    def undo(self) -> None:
+        if self._before:
+            self.run.go_back(*self._before.pop())
+            self.run.renew()
+
+
+@dataclass(eq=False)
+class AwaitHand(Move):
+    """Wait where the run would end for what the hand does next."""
+
+    def __call__(self, event: Event) -> Event | Change:
+        return awaiting(self.run, event)
+
+
+def awaiting(run: Run, event: Event) -> Event | Change:
+    """Let the run rest once where it would end, if a hand holds the curve or stays."""
+    hand, held = run.hand, run.problem.objective.pull is not None
+    if hand is None or not (isinstance(event, NoStep | Outcome) and (held or hand.stays)):
+        return event
+    if hand.rests:
+        return event.adding("a hand holds it") if held and isinstance(event, Outcome) else event
+    hand.rests = True
+    run.charged -= 1
+    return Change((Step((leg(run.point, run.point),), 0.0, None),))

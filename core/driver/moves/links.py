@@ -1,0 +1,153 @@
+"""Links of several parts: unlinked parts would drift apart, and composite links have no shape of least energy."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
+
+from ...base.arguments import checked_fields, number
+from ...base.types import FloatArray
+from ...curve import Curve
+from ...curve.distances import STRAND_RATIO, arc_distance_of_pairs, near_by_octave
+from ...curve.obstacle import Obstacle
+from ...descent import Step
+from ...energies.barrier import near_pairs
+from ...energies.hierarchy import moebius_energy
+from ...knots.composite import Ball, is_searchable, knotted_ball
+from ...solve.constraints import Barycenters, Parts
+from ..outcome import Outcome
+from ..run import Change, Move, Run
+
+COMPOSITE = (
+    "strands pull tight without limit: the curve is composite, knotted both inside and outside the ball of radius "
+    "{radius:.3g} around ({center}), and has no shape of least energy"
+)
+UNTESTED = "whether the link is composite was not tested, as there are too many ways to divide it"
+HELD = (
+    "unlinked parts, which would drift apart without limit, are held in place; their own energies add up to "
+    "{energy:.6g}"
+)
+
+
+@checked_fields
+@dataclass(eq=False)
+class SplitLinks(Move):
+    """Give every part that is far from the others a barycenter of its own among the constraints."""
+
+    interval: int = number(5)  # accepted steps between two checks
+    gap: float = number(1.0)  # least gap between the balls around two parts, in radii of the larger ball
+    most: int = number(50)  # parts: each has rows of its own in the linear systems
+
+    def stepped(self, step: Step) -> Change | None:
+        run, constraints = self.run, self.run.problem.constraints
+        if not run.problem.geometry.prescribes or run.iterate.index % self.interval:
+            return None
+        parts = separate_parts(run.iterate.curve, run.problem.obstacles, self.gap, self.most)
+        if max(parts) <= max(parts_of(run)):
+            return None
+        held = Barycenters.of(run.point.curve, constraints.pins, parts)
+        return Change(point=run.point.changing(constraints=constraints.replacing(held)))
+
+    def converged(self, outcome: Outcome) -> Outcome | None:
+        """Report the sum of the parts' own energies, unless pins hold them all."""
+        held = self.run.problem.constraints.block(Barycenters)
+        if not max(held.parts) or not held.loose:
+            return None
+        alone = sum(moebius_energy(part)[0] for part in split(self.run.iterate.curve, held.parts))
+        return outcome.adding(HELD, energy=alone)
+
+
+def parts_of(run: Run) -> Parts:
+    """For each component the number of the part whose barycenter is fixed."""
+    return run.problem.constraints.block(Barycenters).parts
+
+
+def separate_parts(
+    curve: Curve, obstacles: Sequence[Obstacle] = (), gap: float = SplitLinks.gap, most: int = SplitLinks.most
+) -> Parts:
+    """For each component the number of its part, from 0; parts lie in balls that are far from each other.
+
+    Disjoint balls prove that parts are not linked.  Everything is one part if there would be too many.  All
+    obstacles count as one body, merged with any part near it: between walls nothing drifts away.
+    """
+    components = len(curve.mesh.component_sizes)
+    if components == 1:
+        return (0,)
+    points = [curve.vertices, *(obstacle.corners.reshape(-1, curve.dimension) for obstacle in obstacles)]
+    member = np.concatenate([curve.mesh.component, np.full(sum(map(len, points[1:])), components)])
+    count = components + bool(obstacles)
+    part = np.arange(count)
+    while count > 1:
+        own = part[member]
+        order = np.argsort(own, kind="stable")
+        placed, own = np.concatenate(points)[order], own[order]
+        starts = np.searchsorted(own, np.arange(count))
+        centers = 0.5 * (np.minimum.reduceat(placed, starts) + np.maximum.reduceat(placed, starts))
+        radii = np.maximum.reduceat(np.linalg.norm(placed - centers[own], axis=1), starts)
+        fewer, merged = connected_components(_near(centers, radii, gap), directed=False)
+        if fewer == count:
+            break
+        part, count = merged[part], fewer
+    _, part = np.unique(part[:components], return_inverse=True)  # without one of obstacles alone
+    return tuple(part.tolist()) if count <= most else (0,) * components
+
+
+def split(curve: Curve, parts: Parts) -> list[Curve]:
+    """The parts as curves of their own."""
+    own = [np.flatnonzero(np.asarray(parts) == k) for k in range(max(parts) + 1)]
+    return [
+        Curve.from_components([curve.components[c] for c in each], [curve.mesh.closed[c] for c in each]) for each in own
+    ]
+
+
+def _near(centers: FloatArray, radii: FloatArray, gap: float) -> sp.coo_array:
+    """Which pairs of balls are too near each other to be separate parts; sparse, shape (p, p)."""
+    i, j, distance = near_by_octave(centers, radii, 2.0 + gap)
+    near = distance < radii[i] + radii[j] + gap * np.maximum(radii[i], radii[j])
+    i, j = i[near], j[near]
+    return sp.coo_array((np.ones(len(i), dtype=bool), (i, j)), shape=(len(radii), len(radii)))
+
+
+@dataclass(eq=False)
+class Composite(Move):
+    """Report composite curves: unless energy depends on size, only the mesh keeps a part from shrinking to a point."""
+
+    def converged(self, outcome: Outcome) -> Outcome | None:
+        ball = shrinking_ball(self.run)
+        if ball is not None:
+            center = ", ".join(f"{x:.3g}" for x in ball.center)
+            return replace(outcome.stalling(COMPOSITE, radius=ball.radius, center=center), unbounded=True)
+        return None if all(map(is_searchable, _may_shrink(self.run))) else outcome.adding(UNTESTED)
+
+
+def shrinking_ball(run: Run) -> Ball | None:
+    """A ball around a part of a composite curve that shrinks to a point; None if there is none, or none was found."""
+    ball = next(filter(None, map(knotted_ball, _may_shrink(run))), None)
+    # around a fixed obstacle nothing shrinks to a point
+    return ball if ball is not None and all(map(ball.is_clear_of, run.problem.obstacles)) else None
+
+
+def is_unresolved(curve: Curve) -> bool:
+    """Whether strands, not merely edges of very different lengths, are so near that the barrier still acts."""
+    i, j = near_pairs(curve)
+    distance = np.linalg.norm(curve.midpoints[i] - curve.midpoints[j], axis=1)
+    return bool(np.any(arc_distance_of_pairs(curve, i, j) > STRAND_RATIO * distance))
+
+
+def _may_shrink(run: Run) -> list[Curve]:
+    """The curve's parts that may be composite; none if energy depends on size, or with pins, where no part shrinks.
+
+    They are closed and in space, as arcs can be unknotted, have the energy for it, and are no longer resolved, as when
+    a part has shrunk as far as the mesh allows.
+    """
+    if run.problem.objective.sees_size or len(run.problem.constraints.pins):
+        return []
+    return [
+        part
+        for part in split(run.iterate.curve, parts_of(run))
+        if part.dimension == 3 and part.mesh.all_closed and is_unresolved(part)
+        # less than any composite has: two trefoils (74.4 each) less a circle make 144.8, two Hopf links (47.5 each) 91
+        if moebius_energy(part)[0] >= (140.0 if len(part.mesh.component_sizes) == 1 else 90.0)
+    ]

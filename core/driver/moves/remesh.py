@@ -1,0 +1,316 @@
+"""Changes of mesh that follow the strands, with the proof that nothing touches meanwhile: along the way, or at rest.
+
+A curve of many vertices is untangled with few of them, which is faster, and gets them all back at the end.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ...base.arguments import checked_fields, number
+from ...base.errors import MobiusFlowError
+from ...base.messages import Message, joined
+from ...base.types import FloatArray, IntArray
+from ...collision import Contact, survives_rounding
+from ...curve import Curve
+from ...curve.pins import arcs
+from ...curve.refine import (
+    Remeshed,
+    Resolution,
+    affordable_pieces,
+    apportion,
+    graded_spacing,
+    halved,
+    needs_remesh,
+    remesh,
+    smoothed,
+    subdivide,
+    superfluous,
+)
+from ...descent import Leg, NoStep, Point, Problem, Step
+from ...descent.hessian import BULK
+from ...descent.task import check_refined
+from ...energies import is_moebius_invariant
+from ...energies.components import energy_scale
+from ..outcome import Outcome
+from ..prepare import equal_lengths
+from ..run import Change, Move
+from .links import is_unresolved, shrinking_ball
+
+ADVICE = Message("a finer or an adaptive mesh may help")
+UNRESOLVED = "strands are closer than this mesh resolves: a finer one would reach a lower energy"
+
+
+@checked_fields
+@dataclass(eq=False)
+class Remesh(Move):
+    """The adaptive mesh: shorter edges where strands are near, and around edges that are stuck."""
+
+    interval: int = number(5)  # accepted steps between two looks at the mesh
+    _just_refined: bool = field(default=False, init=False)  # around edges that were stuck: once is enough
+
+    def stepped(self, step: Step) -> Change | None:
+        self._just_refined = False
+        due = self._adapts and self.run.iterate.index % self.interval == 0
+        return self._change(None) if due else None
+
+    def stuck(self, found: NoStep) -> NoStep | Change | None:
+        if not self._adapts:
+            return replace(found, reason=joined((found.reason, ADVICE), "; "))
+        if found.limited_by is None or self._just_refined:
+            return None
+        change = self._change(found.limited_by)
+        self._just_refined = change is not None
+        return change
+
+    @property
+    def _adapts(self) -> bool:
+        return self.run.options.mesh == "adaptive"
+
+    def _change(self, stuck: Contact | None) -> Change | None:
+        """Another mesh; None if this one is good or must stay. Around edges that are stuck it is finer in any case."""
+        problem, curve, resolution = self.run.problem, self.run.iterate.curve, self.run.resolution
+        pins = problem.constraints.pins.vertices
+        spacing = graded_spacing(curve, resolution)
+        if stuck is not None:
+            edges = np.arange(curve.mesh.edges)
+            for edge in stuck.edges:
+                near = curve.mesh.index_distance(np.full_like(edges, edge), edges) <= 2
+                spacing[near] = np.minimum(spacing[near], 0.5 * curve.edge_lengths[near])
+        elif not needs_remesh(curve, spacing, pins):
+            return None
+        found = proved_remesh(problem, curve, resolution, superfluous(curve, spacing, pins), spacing)
+        if found is None:
+            return None
+        step, remeshed = found
+        lengths = remeshed.lengths / problem.units.scale
+        constraints = replace(problem.constraints, lengths=lengths, pins=remeshed.pins)
+        problem = replace(problem, mesh=remeshed.curve.mesh, constraints=constraints)
+        return Change((step,), problem.at_curve(remeshed.curve))
+
+
+def proved_remesh(
+    problem: Problem, curve: Curve, resolution: Resolution, removable: IntArray, spacing: FloatArray
+) -> tuple[Step, Remeshed] | None:
+    """The last motion on the old mesh and the new one, with all collapses that are free; None if vertices coincide."""
+    while True:
+        change = remesh(curve, resolution, removable, spacing, problem.constraints.pins)
+        free = problem.free_motion(curve.vertices, change.moved.vertices)
+        if free.time == 1.0 or not len(removable):
+            break
+        assert free.contact is not None
+        ends = [end[list(free.contact.edges)] for end in (curve.mesh.tails, curve.mesh.heads)]
+        guilty = np.isin(removable, ends)
+        removable = removable[~guilty] if guilty.any() else removable[:0]
+    if not all(survives_rounding(each, problem.obstacles) for each in (change.moved, change.curve)):
+        return None
+    return Step((Leg(problem.at_curve(change.moved), free),), 0.0, None), change
+
+
+@checked_fields
+@dataclass(eq=False)
+class FinerMesh(Move):
+    """Split edges where strands are nearer than the mesh resolves, or report that this would help.
+
+    Edges are split as soon as the energy still to be gained on a mesh is small against the mesh's error, and at rest in
+    any case; at rest they are also split where the curve bends most, if its energy is too far from that of the spline
+    through it.  The error is taken to be the change of the same curve's energy on the finer mesh, corners included.
+    The gain to come is taken to be that of the last fifth of the steps on this mesh, so that saddles are not mistaken
+    for minima unless they are crossed more slowly than all before, and at least as much as the gradient and the bulk of
+    the Hessian's eigenvalues against J_C promise.
+    """
+
+    # the barrier acts below 3: strands may draw nearer by half; energies are within some 0.1 % then
+    edges_per_gap: float = number(6.0)
+    most: int = number(10_000)  # vertices, unless there are more: what the hierarchical solver has time for
+    # that must be left: it takes two or three to regain what corners cost when their edges are split
+    min_iterations: int = number(5)
+    share: float = number(0.1, most=1)  # of the error, up to which a gain counts as small
+    # relative error of an energy at rest above which vertices are added: estimates of it are a few per cent off
+    accuracy: float = number(9.5e-4)
+    aim: float = number(0.9, most=1)  # part of that error that added vertices are to leave
+    affordable: int = number(1000)  # vertices for that: as many as second derivatives are factorised for
+    pieces: int = number(16)  # of an edge: where pins nearly touch, no number of vertices resolves the gap between them
+    recent: float = number(0.8, most=1)  # part of the steps on this mesh after which gains count
+    pause: float = number(1.1, above=1)  # factor of the number of steps on this mesh from one check to the next
+
+    def __post_init__(self) -> None:
+        self._resolution = replace(self.run.resolution, edges_per_gap=self.edges_per_gap)
+        self._given = len(self.run.point.vertices)
+        self.started()
+
+    def started(self) -> None:
+        self._energies, self._looked, self._measured = [self.run.point.energy], 0, False
+
+    def stepped(self, step: Step) -> Change | None:
+        self._energies.append(self.run.point.energy)
+        steps, energy = len(self._energies) - 1, self._energies[-1]
+        if steps < self.pause * self._looked or len(self.run.point.vertices) < self._given or not self.run.feasible:
+            return None
+        # iterations must be left to relax as long on another mesh
+        grown, left = math.isclose(self.run.iterate.grown, self.run.options.grow), self.run.iterations_left
+        if not grown or left < max(len(self._energies), self.min_iterations):
+            return None
+        gain = max(self._energies[int(self.recent * steps)] - energy, 0.5 * self.run.point.gradient_norm**2 / BULK)
+        if gain > self.share**2 * energy:  # errors are hardly a tenth of it
+            return None
+        self._looked, finer = steps, self._finer()
+        if finer is None or gain > self.share * abs(finer.energy - energy) or shrinking_ball(self.run) is not None:
+            return None  # a ball would go on shrinking, until that mesh does not resolve it either
+        return Change(point=finer, resolution=self._resolution)
+
+    def converged(self, outcome: Outcome) -> Outcome | Change | None:
+        if self.run.frozen:
+            return None
+        finer = (self._finer() or self._more_exact()) if self.run.iterations_left >= self.min_iterations else None
+        if finer is None:
+            return outcome.adding(UNRESOLVED) if is_unresolved(self.run.iterate.curve) else None
+        return Change(point=finer, resolution=self._resolution)
+
+    def _finer(self) -> Point | None:
+        """The same curve on a finer mesh; None if that is not wanted, or there is none."""
+        curve = self.run.iterate.curve
+        if not (self.run.options.ends_finer and is_unresolved(curve)):
+            return None
+        spacing = graded_spacing(curve, self._resolution)
+        if len(self.run.problem.constraints.pins) and (curve.edge_lengths / spacing).max() > self.pieces:
+            return None
+        pieces = affordable_pieces(curve, spacing, self.most)
+        return split_edges(self.run.problem, curve, pieces) if pieces.max() > 1 else None
+
+    def _more_exact(self) -> Point | None:
+        """The same curve with edges halved where it bends most, as many as its energy's error asks for; None if none.
+
+        Halving all of them would remove three quarters of the error.
+        """
+        problem, point, curve = self.run.problem, self.run.point, self.run.iterate.curve
+        usual = self.run.options.ends_finer and problem.unconfined and is_moebius_invariant(problem.objective.energy)
+        if not usual or self._measured or problem.objective.pull is not None:
+            return None
+        self._measured = True
+        error = (point.energy - problem.objective.value(halved(point.curve))) / 0.75
+        bound = self.accuracy * energy_scale(problem.mesh, point.energy)
+        if not bound < error < np.inf:
+            return None
+        tau = curve.edge_vectors / curve.edge_lengths[:, None]
+        bends = np.linalg.norm(tau[curve.mesh.next] - tau[curve.mesh.previous], axis=1)
+        bends = np.round(bends / bends.max(), 2)  # what is alike by symmetry is treated alike
+        share = min(1.0, (1.0 - self.aim * bound / error) / 0.75)
+        pieces = np.where(bends >= np.quantile(bends, 1.0 - share), 2, 1)
+        return split_edges(problem, curve, pieces) if pieces.sum() <= min(self.most, self.affordable) else None
+
+
+def split_edges(problem: Problem, curve: Curve, pieces: IntArray) -> Point | None:
+    """The same curve and problem with edges split into pieces; None if doubles are too coarse or vertices too many."""
+    pieces = problem.constraints.symmetry.most(pieces, curve.mesh)
+    finer = subdivide(curve, pieces) if pieces.max() > 1 else curve
+    try:
+        check_refined(curve, finer, problem.obstacles)
+        return problem.on(finer, np.repeat(problem.constraints.lengths / pieces, pieces) * problem.units.scale)
+    except MobiusFlowError:
+        return None
+
+
+@checked_fields
+@dataclass(eq=False)
+class CoarseStart(Move):
+    """Leave vertices out, as far as the gaps between strands allow; in the end bring all back, on a smooth curve."""
+
+    min_vertices: int = number(1500)  # from which it is worthwhile
+    min_gain: float = number(2.0, above=1)  # factor by which there must be fewer vertices at first
+    min_iterations: int = number(30)  # the way there and back takes a dozen, and leaves some for untangling
+    min_share: float = number(0.05, most=1)  # of the way to the smooth curve; with less the curve stays as it is
+    _coarse: Curve | None = field(default=None, init=False)
+
+    def __post_init__(self) -> None:
+        self._problem, constraints = self.run.problem, self.run.problem.constraints
+        # whatever kept lengths from being equal at the start is gone in the end
+        lengths = equal_lengths(self._problem.mesh, constraints.lengths, constraints.pins.vertices)
+        self._lengths = self._problem.units.scale * lengths
+        options, curve = self.run.options, self.run.iterate.curve
+        self._wanted = (
+            self.run.iterate.index == 0  # after a hop the curve is untangled already
+            and (options.mesh, options.grow) == ("auto", 1.0)
+            and options.edge_lengths in ("auto", "equal")
+            and self._problem.geometry.prescribes  # lengths that are penalised would take the energy's jump at once
+            and len(curve) >= self.min_vertices
+            and options.max_iterations >= self.min_iterations
+            and self.min_gain * np.sum(curve.edge_lengths / graded_spacing(curve, Resolution())) <= len(curve)
+        )
+
+    def started(self) -> Change | None:
+        if not self._wanted:
+            return self._smoother()
+        if self.run.iterations_left < 4:  # a motion and a change of mesh, both there and back
+            return None
+        curve, problem = self.run.iterate.curve, self.run.problem
+        spacing = graded_spacing(curve, Resolution())
+        unsplit = np.maximum(spacing, curve.edge_lengths)  # so that no arc has more vertices than in the end
+        # a pass leaves out up to a third of the vertices
+        found = proved_remesh(problem, curve, Resolution(), superfluous(curve, spacing, _kept(problem)), unsplit)
+        if found is None or len(found[1].curve) >= len(curve):
+            return None
+        step, remeshed = found
+        self._coarse = remeshed.curve
+        return Change((step,), problem.on(remeshed.curve))
+
+    def stepped(self, step: Step) -> Change | None:
+        return self._back(self.run.iterations_left <= 2 or not self.run.makes_headway)
+
+    def stuck(self, found: NoStep) -> Change | None:
+        return self._back()
+
+    def ended(self, outcome: Outcome) -> Change | None:
+        return self._back()
+
+    def _back(self, due: bool = True) -> Change | None:
+        """The same curve with all vertices, in the problem of the start; None if rounding would make some coincide."""
+        self._wanted = False
+        if not due or self._coarse is None:
+            return None
+        self._coarse = curve = self.run.iterate.curve
+        pieces = np.empty(curve.mesh.edges, dtype=np.intp)
+        coarse, fine = (arcs(each.mesh, _kept(each)) for each in (self.run.problem, self._problem))
+        for arc, again in zip(coarse, fine, strict=True):
+            pieces[arc] = apportion(curve.edge_lengths[arc], len(again))
+        finest = subdivide(curve, pieces)
+        if not survives_rounding(finest, self._problem.obstacles):
+            self._coarse = None
+            return None
+        return Change(point=self.run.problem.on(finest, self._lengths))
+
+    def _smoother(self) -> Change | None:
+        """The motion to a smooth curve through the coarse vertices, as far as free; on the constraints if possible."""
+        if self._coarse is None:
+            return None
+        start = self.run.iterate.curve
+        pins = self.run.problem.constraints.pins
+        old = pins.on(self._coarse).vertices
+        way = smoothed(self._coarse, start.mesh, old, pins.vertices).vertices - start.vertices
+        way[pins.vertices] = 0.0
+        self._coarse = None
+        # back on the constraints, unless that is too far
+        restored = self._motion(way, lambda end: end.retract(end.vertices, np.zeros_like(end.residual)))
+        return restored or self._motion(way, lambda end: end)
+
+    def _motion(self, way: FloatArray, ending: Callable[[Point], Point | None]) -> Change | None:
+        """The longest part of a way, with its end as ``ending`` makes it, that is free; None if that is hardly any."""
+        problem, start = self.run.problem, self.run.iterate.curve
+        share = 1.0
+        while share > self.min_share:
+            end = ending(problem.at_curve(start.with_vertices(start.vertices + share * way)))
+            if end is None:
+                return None
+            proof = problem.free_motion(start.vertices, end.placed)
+            if proof.time == 1.0:
+                return Change((Step((Leg(end, proof),), 0.0, None),))
+            share *= min(0.9, proof.time)
+        return None
+
+
+def _kept(problem: Problem) -> IntArray:
+    """Pins, and the first vertices of their components: so arcs come in the same order on all meshes."""
+    mesh, pins = problem.mesh, problem.constraints.pins.vertices
+    return np.union1d(pins, mesh.offsets[mesh.component[pins]])

@@ -1,0 +1,247 @@
+"""Strand moves where the flow makes no more headway: what a diagram shows as tangled comes apart without any flow."""
+
+import time
+from collections.abc import Generator, Hashable, Iterable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ...base.arguments import checked_fields, number
+from ...base.deadline import TimeIsUp
+from ...base.errors import MobiusFlowError
+from ...base.messages import Message
+from ...base.types import FloatArray, IntArray
+from ...collision import check_gap
+from ...collision.walk import walk
+from ...curve import Curve, refine
+from ...curve.pins import arcs, holds
+from ...descent import Leg, Point, Step
+from ...descent.line_searches import on_target
+from ...descent.step import attempt
+from ...descent.task import check_refined
+from ...io.trajectory import Iterate, StrandMoves
+from ...knots.diagrams import QuickInvariants, quick_invariants
+from ...untangle import Stage, untangled, worth
+from ..outcome import Outcome
+from ..prepare import target_lengths
+from ..run import HEADWAY, Change, Move, Run
+from .links import shrinking_ball
+
+# directions to the points, ten lengths of the curve from its middle, where ends are joined
+WAYS = 10.0 * np.array([[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]])
+NO_ITERATIONS = Message("none, as there are to be no iterations")
+PACKED = Message("none, as what grows between pins or among obstacles is left to the flow")
+KNOTTED = Message("others would undo a knot between pinned ends")
+STRETCHED = Message("others would stretch the curve between pins")
+IN_VAIN = "strands were being moved, but with {left} of {before} crossings left nothing is kept of that"
+
+
+@checked_fields
+@dataclass(eq=False)
+class Untangling(Move):
+    """Strand moves where the flow comes to rest or makes no headway, though a diagram shows that crossings go.
+
+    If they are requested, they are also made before the flow.
+    """
+
+    # crossings that must go from a curve with pins: lengths between them, which moves change, come back step by step
+    many: int = number(20)
+    room: int = number(50)  # iterations to be left: with fewer the flow might end higher
+
+    remarks: list[Message] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self._given, self._stuck_at = len(self.run.iterate.curve), np.inf  # vertices; energy where strands moved last
+        self._in_vain: Message | None = None
+
+    def started(self) -> Change | None:
+        """Before the flow, if requested."""
+        run = self.run
+        if run.iterate.index > 0 or run.options.untangle != "always":
+            return None
+        packed = run.options.grow != 1.0 and not run.problem.unconfined
+        if packed or run.max_iterations == 0:
+            self._tell(PACKED if packed else NO_ITERATIONS)
+            return None
+        return Change(iterates=self._untangled())
+
+    def stepped(self, step: Step) -> Change | None:
+        return None if self.run.makes_headway else self._where_stuck()
+
+    def ended(self, outcome: Outcome) -> Change | None:
+        return self._where_stuck() if outcome.may_be_left else None
+
+    def summarised(self, outcome: Outcome) -> Outcome:
+        """The outcome with clauses on what became of strand moves."""
+        return replace(outcome, clauses=(*outcome.clauses, *self.remarks))
+
+    def _where_stuck(self) -> Change | None:
+        """Strand moves, if they are wanted and possible, and at least as many crossings go as stay.
+
+        They change the mesh, and need a knot type to keep: loose ends have none.
+        """
+        run, curve = self.run, self.run.iterate.curve
+        if len(curve) < self._given:
+            return None  # the coarse start is over first
+        run.look_for_headway()
+        wanted = run.options.untangle != "never" and run.options.may_untangle and run.options.grow == 1.0
+        held = run.frozen or run.problem.objective.pull is not None or not run.problem.geometry.prescribes
+        if not wanted or held or not self._ends_are_pinned or run.iterations_left < self.room:
+            return None
+        if not run.iterate.energy < (1.0 - HEADWAY) * self._stuck_at:
+            return None  # the last ones have not helped
+        least = self.many if run.iterate.pins else 1
+        gone, left = worth(curve, least)
+        if gone < max(least, left) or shrinking_ball(run) is not None:
+            return None
+        return Change(iterates=self._untangled())
+
+    @property
+    def _ends_are_pinned(self) -> bool:
+        mesh = self.run.iterate.curve.mesh
+        return bool(holds(mesh, np.array(self.run.iterate.pins, dtype=np.intp))[mesh.ends].all())
+
+    def _tell(self, reason: Message) -> None:
+        self.remarks.append(Message("strand moves: {reason}", reason=reason))
+
+    def _untangled(self) -> Iterator[Iterate]:
+        """Yield the motions, then the curve on a mesh for the flow, and motions that restore its lengths."""
+        run, first, lengths = self.run, self.run.iterate, _Lengths(self.run)
+        self._stuck_at, self._in_vain = first.energy, None
+        try:
+            reason = yield from self._moved(lengths)
+        except (MobiusFlowError, np.linalg.LinAlgError) as error:
+            reason = Message("stopped where the curve is too degenerate: {error}", error=str(error))
+        except (TimeIsUp, KeyboardInterrupt, MemoryError) as stop:
+            if run.iterate is first and self._in_vain:
+                stop.add_note(self._in_vain)
+            raise
+        if run.iterate is first:
+            self._tell(Message("none are made: {reason}", reason=reason))
+            return
+        self._tell(reason)
+        coarse, wanted, least, point = run.iterate.curve, run.options.vertices, len(first.curve), run.point
+        with suppress(MobiusFlowError, np.linalg.LinAlgError):  # it stays where the other cannot be computed with
+            fine = refine(coarse, None if wanted is None else max(wanted, len(coarse)))
+            fine = fine if wanted or len(fine) >= least else refine(coarse, least)
+            check_refined(coarse, fine, run.problem.obstacles)
+            pins = run.problem.constraints.pins.on(fine).vertices
+            point = lengths.point(fine, target_lengths(fine, pins, run.problem.obstacles, run.options))
+        yield run.restarted(point)
+        run.rises.change(first, run.iterate)
+        yield from self._restored()
+
+    def _moved(self, lengths: "_Lengths") -> Generator[Iterate, None, Message]:
+        """Yield the motions of all moves, down to the fewest crossings; return how they end.
+
+        Nothing is yielded before it is known to be worthwhile: with "auto", until no more crossings are left than gone.
+        """
+        run, start = self.run, self.run.iterate
+        pins = np.array(start.pins, dtype=np.intp)
+        held = self._ends_are_pinned and not start.curve.mesh.all_closed
+        ways = start.curve.vertices.mean(axis=0) + start.curve.length * WAYS if held else ()
+        knots = _closures(start.curve, ways)
+        work = untangled(start.curve, pins, run.problem.obstacles, run.options.seed)
+        stages: list[Stage] = []
+        refused: Message | None = None
+        earlier, least, began = run.strand_moves, None, time.perf_counter()
+        while True:
+            try:
+                stages.append(next(work))
+            except StopIteration as stop:
+                reason: Message = stop.value.reason
+                return refused or reason
+            if (seen := stages[-1].seen) is None:
+                continue
+            if least is None or earlier is None:
+                earlier = earlier or StrandMoves(seen.crossings, seen.crossings)
+                least = seen.crossings - 1 if run.options.untangle == "always" else seen.crossings // 2
+            self._in_vain = Message(IN_VAIN, left=seen.crossings, before=earlier.before)
+            if seen.crossings > least:
+                continue
+            end = stages[-1].end
+            refused = STRETCHED if lengths.stretched(end) else KNOTTED if _closures(end, ways) != knots else None
+            if refused:
+                continue
+            point, least, so_far = lengths.point(end), seen.crossings, run.strand_moves or earlier
+            spent = so_far.seconds + time.perf_counter() - began
+            now = so_far._replace(left=least, moves=earlier.moves + seen.moves, seconds=spent, done=False)
+            yield from run.moved(stages, point, now)
+            stages, began = [], time.perf_counter()
+
+    def _restored(self) -> Iterator[Iterate]:
+        """Yield motions that bring lengths to their targets, as far as these are free, with steps of the flow between.
+
+        The flow alone would lengthen a nearly straight arc only slowly, since that costs energy; motions alone would
+        crumple it.
+        """
+        run = self.run
+
+        def restored(_: float, stride: float) -> Leg | None:
+            point = run.point
+            share = min(1.0, stride / point.infeasibility)
+            aim = point.vertices - share * point.tangent_space.pseudo_inverse(point.residual)
+            found = attempt(point, aim, (1.0 - share) * point.residual, lambda end: bool(end.gradient_norm >= 0.0))
+            return found if isinstance(found, Leg) else None
+
+        # logarithmic changes of lengths in one motion; less is left to the flow
+        legs = walk(restored, np.inf, 0.2, 1e-3)
+        while not on_target(run.point) and run.iterations_left > 0:
+            try:
+                _, found = next(legs)
+            except (StopIteration, np.linalg.LinAlgError):
+                return
+            # iterations from one motion to the next
+            for k in range(6):
+                step = run.step() if k else Step((found,), 0.0, None)
+                if not isinstance(step, Step) or run.iterations_left <= 0:
+                    break
+                yield run.accept(step)
+
+
+def _closures(curve: Curve, ways: Iterable[FloatArray]) -> list[QuickInvariants]:
+    """Invariants of a curve with the ends of its arcs joined at a point far away, for several such points.
+
+    Ends are only points, over which a knot slips off: a knot that is there whichever way they go on is the arc's own.
+    """
+    pairs = list(zip(curve.components, curve.mesh.closed, strict=True))
+    joined = ([part if closed else np.vstack([part, way]) for part, closed in pairs] for way in ways)
+    return [quick_invariants(Curve.from_components(parts)) for parts in joined]
+
+
+class _Lengths:
+    """Lengths of all arcs between pins and of components without pins, to be restored after strand moves."""
+
+    def __init__(self, run: Run) -> None:
+        self._problem = run.problem
+        targets = self._problem.units.scale * self._problem.constraints.lengths
+        self._of = {place: float(targets[arc].sum()) for place, arc in self._arcs(run.iterate.curve)}
+
+    def point(self, curve: Curve, wanted: FloatArray | None = None) -> Point:
+        """The point of a curve, with targets in proportion to ``wanted``, shape (edges,), by default its own lengths.
+
+        Raises CurveError or LinAlgError where neither energy nor gradient can be computed.
+        """
+        check_gap(curve)
+        lengths = np.array(curve.edge_lengths if wanted is None else wanted)
+        for place, arc in self._arcs(curve):
+            if len(arc) > 1 and place in self._of:
+                lengths[arc] *= self._of[place] / lengths[arc].sum()
+        point = self._problem.on(curve, lengths)
+        point.gradient_norm  # noqa: B018 (computed here, where its failure can be met)
+        return point
+
+    def stretched(self, curve: Curve) -> bool:
+        """Whether an arc between pins is much longer than it was."""
+        now = ((place, curve.edge_lengths[arc].sum()) for place, arc in self._arcs(curve) if isinstance(place, tuple))
+        # an arc may become twice as long: one wound round others more often may not come back
+        return any(length > 2.0 * self._of.get(place, np.inf) for place, length in now)
+
+    def _arcs(self, curve: Curve) -> Iterator[tuple[Hashable, IntArray]]:
+        """Each arc, after a key that it has on all meshes: the pin where it begins, or the number of its component."""
+        mesh, pins = curve.mesh, self._problem.constraints.pins.on(curve).vertices
+        held = holds(mesh, pins)
+        for arc in arcs(mesh, pins):
+            begins = mesh.tails[arc][held[mesh.tails[arc]]]
+            yield tuple(curve.vertices[begins[0]].tolist()) if len(begins) else mesh.component[mesh.tails[arc[0]]], arc

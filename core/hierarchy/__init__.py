@@ -1,6 +1,0 @@
-"""Sums over all pairs of edges in O(N log N): clusters of edges, and pairs of clusters that see each other as one."""
-
-from .blocks import BlockList
-from .energy import HierarchicalMoebiusEnergy
-from .inner_product import CompressedMetric, compressed
-from .sampling import SampledErrors, moebius_energy

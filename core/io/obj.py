@@ -1,0 +1,174 @@
+"""Wavefront OBJ (.obj): vertices ``v`` joined by polylines ``l``.
+
+A polyline may run over many indices, also negative ones (counted back from the last vertex read), and
+pieces in any order are joined where they share a vertex. Polylines that do not come back to their first vertex are open
+polygons. Vertices on no line are dropped. A file with vertices alone is one closed polygon. Everything else in OBJ
+is ignored, including faces ``f`` unless an obstacle is read.
+"""
+
+import logging
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import NamedTuple, TextIO
+
+from ..base.errors import CurveError
+from ..curve.curve import Curve
+from .source import Polygon, Source, shown
+
+_log = logging.getLogger(__name__)
+
+_NAMES = "vt vn vp p o g s mg usemtl mtllib usemap maplib cstype deg bmat step parm trim hole scrv sp end con bevel"
+_RARE_NAMES = "c_interp d_interp lod shadow_obj trace_obj ctech stech surf curv2 call csh"
+_IGNORED = frozenset(f"{_NAMES} {_RARE_NAMES}".split())
+
+
+class ObjEdge(NamedTuple):
+    """An edge between two vertices, and the line that says so."""
+
+    tail: int
+    head: int
+    line: int
+
+
+class Face(NamedTuple):
+    """A face's words, the number of its line, and how many vertices came before it."""
+
+    words: list[str]
+    line: int
+    known: int
+
+
+@dataclass
+class Content:
+    """The contents of an OBJ file: vertices, the line of each, edges of polylines, and faces; indices count from 0."""
+
+    points: list[tuple[float, ...]] = field(default_factory=list)
+    lines: list[int] = field(default_factory=list)
+    links: list[ObjEdge] = field(default_factory=list)
+    faces: list[Face] = field(default_factory=list)
+
+
+def read(source: Source) -> list[Polygon]:
+    """Read the polygons; raises CurveFileError naming the line."""
+    content = parsed(source)
+    if content.faces:
+        _log.warning("%s: %d faces (f) ignored; only polylines (l) are curves", source.path, len(content.faces))
+    points, lines = content.points, content.lines
+    if content.links:
+        chains = _chains(source, content.links)
+    elif content.faces:
+        raise source.error("there are faces (f) but no polylines (l); export the curve as edges")
+    elif not points:
+        raise source.error("no vertex (v) and no polyline (l) found")
+    else:
+        _log.warning("%s: no polyline (l); all %d vertices are taken as one closed polygon", source.path, len(points))
+        chains = [(list(range(len(points))), True)]
+    return [
+        Polygon([points[i] for i in chain], [lines[i] for i in chain].__getitem__, closed, chain)
+        for chain, closed in chains
+    ]
+
+
+def parsed(source: Source) -> Content:
+    """Read all statements; raises CurveFileError naming the line."""
+    content = Content()
+    for line, words in _statements(source):
+        keyword, arguments = words[0], words[1:]
+        if keyword == "v":
+            if len(arguments) < 3:
+                raise source.error(f"a vertex needs x y z, found {len(arguments)} numbers", line)
+            content.points.append(tuple(source.number(word, line) for word in arguments[:3]))
+            content.lines.append(line)
+        elif keyword == "l":
+            if len(arguments) < 2:
+                raise source.error("a polyline (l) needs at least two vertices", line)
+            indices = [index_of(source, argument, line, len(content.points)) for argument in arguments]
+            content.links += (ObjEdge(tail, head, line) for tail, head in pairwise(indices))
+        elif keyword == "f":
+            content.faces.append(Face(arguments, line, len(content.points)))
+        elif keyword == "curv":
+            raise source.error(
+                "free-form curves (curv) are not read; convert the curve to a polyline before export", line
+            )
+        elif keyword not in _IGNORED:
+            raise source.error(f"{shown(keyword)} is not an OBJ statement", line)
+    for link in content.links:
+        check_known(source, max(link.tail, link.head), len(content.points), link.line)
+    return content
+
+
+def check_known(source: Source, index: int, known: int, line: int) -> None:
+    """Raise a CurveFileError unless a vertex, counted from 0, is in the file."""
+    if index >= known:
+        raise source.error(f"vertex {index + 1} does not exist; there are {known}", line)
+
+
+def index_of(source: Source, argument: str, line: int, known: int) -> int:
+    """The vertex, from 0, of ``vertex`` or ``vertex/texture/normal``; negative numbers count back from ``known``."""
+    index = source.integer(argument.partition("/")[0], line)
+    if index == 0 or index < -known:
+        raise source.error(f"vertex {index} does not exist; OBJ counts from 1, or back from -1", line)
+    return index - 1 if index > 0 else known + index
+
+
+def _statements(source: Source) -> Iterator[tuple[int, list[str]]]:
+    """The words of each statement and the number of its first line; a backslash continues a line."""
+    words: list[str] = []
+    first = 1
+    for number, line in enumerate(source.lines, start=1):
+        body = line.partition("#")[0].rstrip()
+        first = first if words else number
+        words += body.removesuffix("\\").split()
+        if not body.endswith("\\"):
+            if words:
+                yield first, words
+            words = []
+    if words:
+        yield first, words
+
+
+def _chains(source: Source, links: Sequence[ObjEdge]) -> list[tuple[list[int], bool]]:
+    """Chains of vertices joined by edges, and whether each is closed.
+
+    Each closed chain starts at its smallest index and follows the direction of the edges there, so a file that lists
+    its polygon in order keeps that order. An open chain starts at the end with the smaller index.
+    """
+    at: dict[int, list[ObjEdge]] = {}
+    for link in links:
+        if link.tail == link.head:
+            raise source.error(f"an edge joins vertex {link.tail + 1} to itself", link.line)
+        for vertex in link[:2]:
+            at.setdefault(vertex, []).append(link)
+            if len(at[vertex]) > 2:
+                reason = f"a third edge meets vertex {vertex + 1}; curves don't branch, and edges are given once"
+                raise source.error(reason, link.line)
+    found = []
+    done: set[int] = set()
+    for start in sorted(at, key=lambda vertex: (len(at[vertex]), vertex)):
+        if start in done:
+            continue
+        # follow the chain to its end or round to the start
+        link = min(at[start], key=lambda link: (link.tail != start, link.head + link.tail))
+        chain, vertex = [start], link.head + link.tail - start
+        while vertex != start:
+            chain.append(vertex)
+            onward = [other for other in at[vertex] if other is not link]
+            if not onward:
+                break
+            link = onward[0]
+            vertex = link.head + link.tail - vertex
+        done.update(chain)
+        found.append((chain, len(at[start]) == 2))
+    return sorted(found, key=lambda each: min(each[0]))
+
+
+def write(curve: Curve, stream: TextIO) -> None:
+    """Write one ``l`` per component; a plane curve gets z = 0. Raises CurveError beyond three dimensions."""
+    if curve.dimension > 3:
+        raise CurveError(f"OBJ holds curves of dimension 3, not {curve.dimension}; use .json")
+    padding = [0.0] * (3 - curve.dimension)
+    stream.writelines(f"v {' '.join(map(repr, point + padding))}\n" for point in curve.vertices.tolist())
+    for part, closed in zip(curve.mesh.slices, curve.mesh.closed, strict=True):
+        indices = [*range(part.start + 1, part.stop + 1), *([part.start + 1] if closed else [])]
+        stream.write(f"l {' '.join(map(str, indices))}\n")

@@ -1,0 +1,150 @@
+"""What a relaxation yields, and its certified path as a file that others can check."""
+
+import json
+import os
+import zipfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.arguments import checked, checked_fields
+from ..base.errors import MobiusFlowError, OutputError, counted
+from ..base.files import atomic_write
+from ..base.types import BoolArray, FloatArray, IntArray
+from ..curve import Curve, Mesh
+from ..curve.obstacle import Obstacle
+
+
+class StrandMoves(NamedTuple):
+    """Crossings seen before and after strand moves, what these have taken so far, and whether they are complete."""
+
+    before: int
+    left: int
+    moves: int = 0
+    seconds: float = 0.0
+    iterates: int = 0
+    done: bool = False
+
+    def report(self) -> dict[str, object]:
+        """The plain values that ``--report`` writes."""
+        return {"crossings": self.before, "left": self.left, "moves": self.moves, "seconds": self.seconds}
+
+
+@checked_fields
+@dataclass(frozen=True, eq=False)
+class Iterate:
+    """One accepted curve of a relaxation, immutable, in the user's units.
+
+    - ``index``: 0 for the (refined) start, then 1, 2, ...
+    - ``curve``: the polygon; the iterates of a run have the same vertices where the mesh is ``fixed``.
+    - ``energy``: the objective, which is the energy that is minimised, plus the barrier.  All iterates of a strand move
+      have the ``energy``, ``gradient_norm`` and ``edge_length_error`` of its end.
+    - ``gradient_norm``: norm of the projected gradient (dimensionless), in the metric in which the method takes it:
+      that of this curve, or of one up to two steps before.
+    - ``step_size``: the step size τ that led here, 0 for the start and where the mesh changes.
+    - ``path``: the motion from the previous iterate: vertices, each (n, m), at the ends of its straight legs, of which
+      the last is this curve.  Empty for the start, and where the mesh changes: there this is the previous curve with
+      other vertices on its edges.
+    - ``certified``: whether every leg from the start of the run to here was proved free of contact.
+    - ``edge_length_error``: max |log ℓ/ℓ⁰| over the edges.
+    - ``method``: name of the method that took the step: the fallback method where the requested one was stuck.
+    - ``grown``: factor by which target lengths have grown since the start.
+    - ``pins``: pinned vertices of this curve, counted from 0, and those between them that cannot move.
+    - ``strand_moves``: the strand moves so far; None before the first one.
+    - ``symmetry``: name of the symmetry group that is kept, if any.
+    """
+
+    index: int
+    curve: Curve
+    energy: float
+    gradient_norm: float
+    step_size: float
+    path: tuple[FloatArray, ...]
+    certified: bool
+    edge_length_error: float
+    method: str
+    grown: float = 1.0
+    pins: tuple[int, ...] = ()
+    strand_moves: StrandMoves | None = None
+    symmetry: str = ""
+
+    def __repr__(self) -> str:
+        proved = "certified" if self.certified else "not certified"
+        return f"<Iterate {self.index}: objective {self.energy:.9g}, gradient {self.gradient_norm:.2g}, {proved}>"
+
+
+class Trajectory:
+    """Frames between which all vertices move on straight lines, collected from iterates.
+
+    Arrays ``stage_000``, ``stage_001``, … of shape (k, n, m), each with ``component_sizes_000``, … and, unless all
+    components are closed, ``component_closed_000``, … of booleans; a new stage begins where the mesh changes.
+    Obstacles are in ``obstacle_000_vertices``, shape (k, 3), and ``obstacle_000_faces``, shape (f, 3) or (f, 2), ….
+    ``pins``, shape (k, m), are the places of the vertices that were held, if there were any.  Coordinates are the
+    user's, in double precision: the proofs are about exactly these numbers.  ``provenance`` records in plain values
+    where the run came from, as JSON in an array of one string; `verify` ignores it, and None leaves it out.
+    """
+
+    @checked
+    def __init__(self, provenance: Mapping[str, object] | None = None, obstacles: Sequence[Obstacle] = ()) -> None:
+        self._provenance, self._obstacles = provenance, obstacles
+        self._stages: list[tuple[Mesh, list[FloatArray]]] = []
+        self._pins: FloatArray = np.empty((0, 0))
+        self._last: Curve | None = None
+        self._last_index = -1
+
+    def __repr__(self) -> str:
+        frames = sum(len(frames) for _, frames in self._stages)
+        return f"<Trajectory: {counted(len(self._stages), 'stage')}, {counted(frames, 'frame')}>"
+
+    @checked
+    def add(self, iterate: Iterate) -> None:
+        """Append the motion that led to an iterate (for the first one: the start).
+
+        Raises MobiusFlowError if its number or mesh does not follow the last iterate: nobody has proved the motion
+        between them.  It is up to the caller that all iterates are from one run; `verify` finds out.
+        """
+        fits = not iterate.path or (self._last is not None and iterate.curve.mesh == self._last.mesh)
+        if iterate.index != self._last_index + 1 or not fits:
+            raise MobiusFlowError(
+                f"iterate {iterate.index} does not follow the {self._last_index + 1} iterates of this trajectory; "
+                "it takes all iterates of one run, in order: make a new Trajectory for another run"
+            )
+        if iterate.path:
+            self._stages[-1][1].extend(iterate.path)
+        else:  # the start, or the same curve on another mesh
+            self._stages.append((iterate.curve.mesh, [iterate.curve.vertices]))
+        if self._last is None:
+            self._pins = iterate.curve.vertices[list(iterate.pins)]
+        self._last, self._last_index = iterate.curve, iterate.index
+
+    def arrays(self) -> dict[str, FloatArray | IntArray | BoolArray | NDArray[np.str_]]:
+        """The arrays of the file, by name."""
+        named: dict[str, FloatArray | IntArray | BoolArray | NDArray[np.str_]] = {}
+        if self._provenance is not None:
+            named["provenance"] = np.array(json.dumps(self._provenance))
+        for k, obstacle in enumerate(self._obstacles):
+            named[f"obstacle_{k:03d}_vertices"] = obstacle.vertices
+            named[f"obstacle_{k:03d}_faces"] = obstacle.faces
+        if len(self._pins):
+            named["pins"] = self._pins
+        for k, (mesh, frames) in enumerate(self._stages):
+            named[f"stage_{k:03d}"] = np.stack(frames)
+            named[f"component_sizes_{k:03d}"] = np.array(mesh.component_sizes, dtype=np.intp)
+            if not mesh.all_closed:  # so that files of closed curves stay as they have always been
+                named[f"component_closed_{k:03d}"] = np.array(mesh.closed)
+        return named
+
+    @checked
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the trajectory as .npz, whole or not at all; an OutputError says why that fails."""
+        try:
+            with atomic_write(path) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
+                # as numpy.savez_compressed does, which leaves the archive open, and loud, when the disk is full
+                for name, array in self.arrays().items():
+                    with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
+                        np.lib.format.write_array(member, array, allow_pickle=False)
+        except (OSError, ValueError) as error:  # a ValueError for a path with a null character
+            raise OutputError(os.fspath(path), error) from error

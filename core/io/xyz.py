@@ -1,0 +1,69 @@
+"""Columns of coordinates (.txt, .xyz, .csv, .tsv): one vertex per line, a blank line between components.
+
+``#`` starts a comment, alone or after the numbers; columns are separated by spaces, tabs, commas or
+semicolons. Three columns make a curve in space, two a plane curve; under a first line with names among which are x, y
+and z other columns are ignored. Components are closed; the line ``# open`` begins an open one.
+"""
+
+import re
+from collections.abc import Callable
+from typing import TextIO
+
+from ..base.errors import CurveError
+from ..curve.curve import Curve
+from .source import Polygon, Source
+
+_SEPARATOR = re.compile(r"\s*[,;]\s*|\s+")
+_OPEN = "open"  # the comment that begins an open component
+
+
+def read(source: Source) -> list[Polygon]:
+    """Read the polygons; raises CurveFileError naming the line."""
+    components: list[tuple[list[tuple[float, ...]], list[int], bool]] = []  # points, their lines, whether closed
+    columns: int | None = None
+    chosen: list[int] | None = None
+    apart, closed = True, True
+    for number, line in enumerate(source.lines, start=1):
+        content, sign, comment = line.partition("#")
+        if not content.strip():
+            begins_open = comment.strip() == _OPEN
+            apart, closed = apart or not sign or begins_open, closed and not begins_open
+            continue
+        words = _SEPARATOR.split(content.strip())
+        if columns is None and (chosen := _named(words)) is not None:
+            columns = len(words)
+            continue
+        if columns is not None and len(words) != columns:
+            raise source.error(f"{len(words)} columns where the lines before have {columns}", number)
+        point = tuple(source.number(word, number) for word in (words if chosen is None else [words[k] for k in chosen]))
+        if not 2 <= len(point) <= 3:
+            noun = "column" if len(point) == 1 else "columns"
+            advice = "; curves of higher dimension are read from .json" if len(point) > 3 else ""
+            raise source.error(f"{len(point)} {noun} where x y z (or x y) is expected{advice}", number)
+        columns = len(words)
+        if apart:
+            components.append(([], [], closed))
+        components[-1][0].append(point)
+        components[-1][1].append(number)
+        apart, closed = False, True
+    return [Polygon(points, lines.__getitem__, closed) for points, lines, closed in components]
+
+
+def _named(words: list[str]) -> list[int] | None:
+    """The columns that a line of names assigns to coordinates; None if it is not such a line."""
+    names = [word.strip("\"'").lower() for word in words]
+    return [names.index(axis) for axis in "xyz" if axis in names] if {"x", "y"} <= set(names) else None
+
+
+def separated(separator: str, head: bool = False) -> Callable[[Curve, TextIO], None]:
+    """A writer of components separated by blank lines, with or without axes' names; CurveError beyond 3 dimensions."""
+
+    def write(curve: Curve, stream: TextIO) -> None:
+        if curve.dimension > 3:
+            raise CurveError(f"columns hold curves of dimension 2 or 3, not {curve.dimension}; use .json")
+        stream.write(separator.join("xyz"[: curve.dimension]) + "\n" if head else "")
+        lines = ("\n".join(separator.join(map(repr, point)) for point in part.tolist()) for part in curve.components)
+        marks = ("" if closed else f"# {_OPEN}\n" for closed in curve.mesh.closed)
+        stream.write("\n\n".join(mark + block for mark, block in zip(marks, lines, strict=True)) + "\n")
+
+    return write

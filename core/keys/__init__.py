@@ -1,0 +1,1 @@
+"""From iterates to what is keyed, drawn or exported; nothing here knows Blender."""

@@ -1,0 +1,126 @@
+"""Diagrams of polygons in space: what is seen of them from some direction."""
+
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from ...base.errors import CurveError
+from ...base.types import FloatArray, IntArray
+from ...curve import Curve, Mesh
+from .diagram import PIN, Diagram
+
+
+def views(curve: Curve, count: int, seed: int = 20217, clear: float = 1e-9) -> Iterator[Diagram]:
+    """Diagrams of a closed polygon in space: first from where it looks flattest, then from random directions.
+
+    Directions in which rounding might decide what crosses what are left out: where a crossing is nearer to another
+    strand, or to the end of an edge, than ``clear``, a fraction of the curve's size or the edge's length.  Raises
+    CurveError if there is no other direction.
+    """
+    rng = np.random.default_rng(seed)
+    _, power = np.frexp(np.abs(curve.vertices).max())
+    points = np.ldexp(curve.vertices, -power)  # where products of coordinates neither overflow nor vanish
+    middle = points - points.mean(axis=0)
+    # turned by about 0.02 radians, so that nothing special is seen
+    flattest = np.linalg.svd(middle, full_matrices=False)[2] + 0.02 * rng.normal(size=(3, 3))
+    none, mesh = True, curve.mesh
+    for each in (flattest, *rng.normal(size=(count - 1, 3, 3))):
+        turned = middle @ rotation(each)
+        found = project(mesh, turned, plane_crossings(mesh, turned, clear), np.empty(0, dtype=np.intp), clear)
+        if found is not None:
+            none = False
+            yield found.diagram
+    if none:
+        raise CurveError("strands touch, or nearly do: no view of the curve shows which one is in front")
+
+
+def rotation(frame: FloatArray) -> FloatArray:
+    """The rotation to axes near the rows of a matrix."""
+    q, r = np.linalg.qr(frame.T)
+    q = q * np.sign(np.diag(r))
+    return np.asarray(q * [1.0, 1.0, np.sign(np.linalg.det(q))])
+
+
+class PlaneCrossings(NamedTuple):
+    """Pairs of edges without a common vertex whose inner points cross in the plane."""
+
+    edges: IntArray  # ascending in each pair; shape (2, k)
+    at: FloatArray  # where on them, as fractions of their lengths; shape (2, k)
+    turn: FloatArray  # cross product of their vectors, positive if the second crosses from right to left; shape (k,)
+
+
+class Projection(NamedTuple):
+    """What is seen of polygons along the third axis."""
+
+    crossings: PlaneCrossings
+    heights: FloatArray  # of both edges at each crossing; shape (2, k)
+    diagram: Diagram
+    at: list[float]  # where each pass is: the tail of its edge plus a fraction
+
+
+def project(mesh: Mesh, points: FloatArray, found: PlaneCrossings, held: IntArray, clear: float) -> Projection | None:
+    """The diagram of points, shape (n, 3), with these crossings and held vertices; None if it is unclear."""
+    edges, at = found.edges, found.at
+    heights = points[mesh.tails[edges], 2] * (1.0 - at) + points[mesh.heads[edges], 2] * at
+    apart = np.abs(heights[0] - heights[1]) / np.ptp(points, axis=0).max()
+    if min(at.min(initial=1.0), 1.0 - at.max(initial=0.0), apart.min(initial=1.0)) < clear:
+        return None
+    above = heights[0] > heights[1]
+    signs = np.sign(np.where(above, found.turn, -found.turn)).astype(int).tolist()
+    held = np.setdiff1d(held, mesh.ends[:, 1])
+    along = np.concatenate([(mesh.tails[edges] + at).ravel(), held])
+    crossing = np.concatenate([np.tile(np.arange(len(signs)), 2), np.full(len(held), PIN[0])])
+    upper = np.concatenate([above, ~above, ~np.isin(held, mesh.ends[:, 0])])  # as in PIN and ENDS
+    order = np.argsort(along, kind="stable")
+    parts = (order[a:b] for a, b in pairwise(np.searchsorted(along[order], mesh.offsets).tolist()))
+    passes = (tuple(zip(crossing[part].tolist(), upper[part].tolist(), strict=True)) for part in parts)
+    diagram = Diagram(tuple(passes), tuple(signs))
+    return Projection(found, heights, diagram, along[order].tolist()) if diagram.is_planar else None
+
+
+def plane_crossings(mesh: Mesh, points: FloatArray, beyond: float = 0.0) -> PlaneCrossings:
+    """Find all crossings of polygons; of ``points``, shape (n, 2 or more), only x and y are looked at.
+
+    Edges are taken to be longer by a part ``beyond`` of their lengths at both ends.
+    """
+    start, end = points[mesh.tails, :2], points[mesh.heads, :2]
+    edge = end - start
+    longer = np.abs(beyond * edge)
+    low, high = np.minimum(start, end) - longer, np.maximum(start, end) + longer
+    i, j = meeting_boxes(low, high, low, high)
+    later = (j > i) & (mesh.heads[i] != mesh.tails[j]) & (mesh.heads[j] != mesh.tails[i])
+    i, j = i[later], j[later]
+    apart, turn = start[j] - start[i], _cross(edge[i], edge[j])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        s, t = _cross(apart, edge[j]) / turn, _cross(apart, edge[i]) / turn
+    found = np.flatnonzero((np.minimum(s, t) > -beyond) & (np.maximum(s, t) < 1.0 + beyond))
+    return PlaneCrossings(np.stack([i[found], j[found]]), np.stack([s[found], t[found]]), turn[found])
+
+
+def _cross(u: FloatArray, v: FloatArray) -> FloatArray:
+    return np.asarray(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
+
+
+def meeting_boxes(
+    low: FloatArray, high: FloatArray, others_low: FloatArray, others_high: FloatArray
+) -> tuple[IntArray, IntArray]:
+    """All pairs of boxes of two lists, given by their lowest and highest corners, that meet, in order.
+
+    Boxes that follow each other should be near each other: only what meets the box around some of them is looked at.
+    """
+    found = [(np.empty(0, dtype=np.intp),) * 2]
+    bottoms, tops = np.ascontiguousarray(others_low.T), np.ascontiguousarray(others_high.T)
+    for first in range(0, len(low), 64):
+        a, b = low[first : first + 64].T, high[first : first + 64].T
+        near = np.arange(len(others_low))
+        for bottom, top, p, q in zip(bottoms, tops, a, b, strict=True):
+            near = near[(bottom[near] <= q.max()) & (top[near] >= p.min())]
+        meets = np.ones((a.shape[1], len(near)), dtype=bool)
+        for bottom, top, p, q in zip(bottoms, tops, a, b, strict=True):
+            meets &= (bottom[near] <= q[:, None]) & (top[near] >= p[:, None])
+        i, j = np.nonzero(meets)
+        found.append((first + i, near[j]))
+    i, j = map(np.concatenate, zip(*found, strict=True))
+    return i, j

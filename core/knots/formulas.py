@@ -1,0 +1,213 @@
+"""Knots from formulas: Lissajous knots, arcs, a hard unknot; and cables and doubles, in a solid torus around a knot."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from ..base.arguments import checked
+from ..base.errors import CurveError
+from ..base.types import FloatArray
+from ..curve import Curve, Mesh
+from ..curve.refine import cubic_spline, evenly
+from ..curve.tube import normals, turned
+from .diagrams import linking_numbers
+from .inscribed import arc_steps, inscribed, strand_gap
+
+
+@checked
+def lissajous_knot(
+    frequencies: tuple[int, int, int],
+    phases: tuple[float, float] = (0.7, 0.2),
+    vertices: int | None = None,
+    *,
+    least_gap: float = 0.01,
+) -> Curve:
+    """Make the Lissajous knot (cos(a t + φ), cos(b t + ψ), cos(c t)), 0 ≤ t < 2π.
+
+    Frequencies are positive, no two with a common divisor; phases are in radians.  Raises CurveError for others, and
+    for strands nearer than ``least_gap``, below which default polygons would have thousands of vertices.
+    """
+    a, b, c = frequencies
+    # beyond 40, strands are too near to each other to be of any use
+    if not all(1 <= f <= 40 for f in frequencies) or max(math.gcd(a, b), math.gcd(b, c), math.gcd(a, c)) > 1:
+        raise CurveError(f"frequencies are {a}, {b} and {c}; they must be from 1 to 40, no two with a common divisor")
+    if not all(map(math.isfinite, phases)):
+        raise CurveError(f"phases are {phases[0]} and {phases[1]}; they must be finite")
+    t = 2 * np.pi * np.arange(count := 160 * max(frequencies)) / count  # in each period of the fastest cosine 160
+    curve = Curve(
+        np.stack([np.cos(f * t + phase) for f, phase in zip(frequencies, (*phases, 0.0), strict=True)], axis=1)
+    )
+    if (gap := strand_gap(curve)) < least_gap:
+        raise CurveError(f"strands of this Lissajous curve meet, or are only {gap:.1g} apart; change a phase a little")
+    return inscribed(curve, vertices)
+
+
+@checked
+def overhand(vertices: int | None = None) -> Curve:
+    """Make the overhand knot, a trefoil cut open, with straight ends and the given number of vertices, by default 120.
+
+    It follows Shastri's polynomials (t³ − 3t, t⁴ − 4t², t⁵ − 10t), the last one scaled down.  Raises CurveError for
+    fewer than 40 vertices, with which it might not be this knot.
+    """
+    count = 120 if vertices is None else vertices
+    if count < 40:
+        raise CurveError(f"{count} vertices are too few for this arc; give 40 or more")
+    t = np.linspace(-2.1, 2.1, 2000)  # beyond, the curve is all but straight
+    curve = np.stack([t**3 - 3.0 * t, t**4 - 4.0 * t**2, 0.1 * (t**5 - 10.0 * t)], axis=1)
+    # segments of length 3 continue the tangents
+    ends = [a + 3.0 * (a - b) / np.linalg.norm(a - b) for a, b in (curve[:2], curve[:-3:-1])]
+    return Curve(evenly(np.concatenate([ends[:1], curve, ends[1:]]), False, count), Mesh((count,), (False,)))
+
+
+@checked
+def freedman(vertices: int | None = None) -> Curve:
+    """Make an unknot like Freedman's, from which Figures 1 to 3 of [RS21] start; by default it has 579 vertices.
+
+    It is the rim of a ribbon with an overhand knot near each end, one of which is the mirror image of the other:
+    shortened from its ends, the ribbon comes out of both.  (M. Freedman, Z.-X. He and Z. Wang, *Möbius energy of knots
+    and unknots*, Annals of Mathematics 139, 1994.)  Raises CurveError if the vertices are too few.
+    """
+    t = np.linspace(0.5 - math.pi, math.pi - 0.5, 40)  # of a trefoil that is cut open where it is outermost
+    trefoil = np.stack([np.sin(t) + 2.0 * np.sin(2.0 * t), np.cos(t) - 2.0 * np.cos(2.0 * t), -np.sin(3.0 * t)], axis=1)
+    half = np.concatenate([[[1.2, -6.0, 0.0], [1.2, -4.5, 0.0]], trefoil, [[-2.0, -4.3, 0.0]]])
+    half[:, 0] += 5.5
+    spline = cubic_spline(np.concatenate([half, half[::-1] * [-1.0, 1.0, 1.0]]), closed=False)
+    at = np.linspace(0.0, spline.x[-1], 3000)
+    middle, along = spline(at), spline(at, 1)
+    along /= np.linalg.norm(along, axis=1)[:, None]
+    across = np.cross([0.0, 0.0, 1.0], along)
+    across *= 0.25 / np.linalg.norm(across, axis=1)[:, None]
+    turn = np.linspace(0.0, math.pi, 60)[1:-1, None]
+    last, first = (
+        middle[k] + side * (np.cos(turn) * across[k] + 0.25 * np.sin(turn) * along[k])
+        for k, side in ((-1, 1.0), (0, -1.0))
+    )
+    return inscribed(Curve(np.concatenate([middle + across, last, (middle - across)[::-1], first])), vertices)
+
+
+FORMULAS: Mapping[str, Callable[[int | None], Curve]] = {"overhand": overhand, "freedman": freedman}
+"""Curves from formulas that have names."""
+
+
+MAX_STRANDS, MAX_TURNS = 12, 100
+
+
+@checked
+def cable(companion: Curve, p: int, q: int, vertices: int | None = None, *, room: float = 0.5) -> Curve:
+    """Make the cable C(p, q) of a knot: p strands along it that turn q/p times around, in gcd(p, q) components.
+
+    Turns are counted from the longitude that does not link the knot, so that C(p, q) of the circle is T(p, q), and
+    C(p, 0) are p parallel copies that do not link each other; negative q turn left.  The companion is a polygon that
+    follows a smooth curve closely; ``room`` is the radius that the strands take, as a fraction of the thickest tube's.
+    Raises CurveError if a number is not allowed, the companion is no knot, or the vertices are too few.
+    """
+    if not (2 <= p <= MAX_STRANDS and abs(q) <= MAX_TURNS):
+        raise CurveError(
+            f"a cable of {p} strands with {q} turns is of no use; strands are 2 to {MAX_STRANDS}, "
+            f"turns -{MAX_TURNS} to {MAX_TURNS}"
+        )
+    tube, parts = SolidTorus.around(companion), math.gcd(p, q)
+    radius = tube.radius(room)
+    turns = p // parts
+    count = tube.samples(turns * tube.length + 2 * math.pi * radius * abs(q) / parts)
+    t = turns * np.arange(count) / count
+    angles = [2 * math.pi * (q * t + k) / p for k in range(parts)]
+    return inscribed(
+        Curve.from_components([tube.points(t, radius * np.cos(a), radius * np.sin(a)) for a in angles]), vertices
+    )
+
+
+@checked
+def double(
+    companion: Curve, twists: int = 0, *, clasp: int = 1, vertices: int | None = None, room: float = 0.5
+) -> Curve:
+    """Make a twisted Whitehead double of a knot: two strands along it that hook into each other at a clasp.
+
+    Its Alexander polynomial is −cw t + (2 cw + 1) − cw t⁻¹ for w twists and a clasp c = ±1, whatever the companion.
+    Twists are full, right-handed, and counted from the longitude that does not link the knot.  Otherwise as `cable`.
+    """
+    if abs(twists) > MAX_TURNS or clasp not in (1, -1):
+        raise CurveError(
+            f"twists is {twists} and clasp {clasp}; twists are -{MAX_TURNS} to {MAX_TURNS}, and a clasp 1 or -1"
+        )
+    tube = SolidTorus.around(companion)
+    radius = tube.radius(room)
+    # half the length of the clasp, and how far its hooks reach past each other
+    end, tip = 2.2 * radius / tube.length, 0.8 * radius / tube.length
+    count = tube.samples(tube.length + 2 * math.pi * radius * abs(twists))
+    share = np.linspace(0.0, 1.0, count, endpoint=False)
+    # From the upright hook to the flat one the strands turn by a quarter more or less, which is the clasp's hand.
+    turn = 2 * math.pi * twists + clasp * math.pi / 2
+    there, back = math.pi / 2 + turn * share, 3 * math.pi / 2 + turn * (1 - share)
+    tau = np.linspace(0.0, math.pi, 200, endpoint=False)
+    level = np.zeros(200)
+    parts = (
+        (end + (1 - 2 * end) * share, radius * np.cos(there), radius * np.sin(there)),
+        (1 - end + (end + tip) * np.sin(tau), -clasp * radius * np.cos(tau), level),
+        (1 - end - (1 - 2 * end) * share, radius * np.cos(back), radius * np.sin(back)),
+        (end - (end + tip) * np.sin(tau), level, -radius * np.cos(tau)),
+    )
+    return inscribed(Curve(np.concatenate([tube.points(*part) for part in parts])), vertices)
+
+
+@dataclass(frozen=True, eq=False)
+class SolidTorus:
+    """A solid torus around a knot.
+
+    Its points have coordinates t ∈ [0, 1) along the knot and (u, v) in the plane across it. Curves of constant (u, v)
+    do not link the knot: they are its longitudes in the sense of Seifert.  ``length`` is the knot's, ``reach`` the
+    radius of the thickest tube: discs across the knot do not meet within it.
+    """
+
+    length: float
+    reach: float
+    _frame: FloatArray  # center, and unit vectors across and up, at equal steps of t; shape (samples, 3, 3)
+
+    @classmethod
+    def around(cls, curve: Curve) -> "SolidTorus":
+        """The tube around the spline through the vertices of a knot; a CurveError for all but one closed component."""
+        if curve.dimension != 3 or curve.mesh.closed != (True,):
+            raise CurveError("satellites are drawn around a knot, one closed curve in space")
+        closed = np.concatenate([curve.vertices, curve.vertices[:1]])
+        spline = CubicSpline(np.append(arc_steps(curve.vertices), 1.0), closed, bc_type="periodic")
+
+        def sample(count: int) -> tuple[FloatArray, FloatArray]:
+            """Points and unit tangents at equal steps of the parameter, each (count, 3)."""
+            t = np.arange(count) / count
+            velocity = spline(t, 1)
+            return spline(t), velocity / np.linalg.norm(velocity, axis=1)[:, None]
+
+        # radius of the smallest circle that is tangent to the curve at a point and passes through another (Federer)
+        center, tangent = sample(400)
+        chord = center[:, None] - center[None]
+        height = np.linalg.norm(np.cross(chord, tangent[None]), axis=2)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            reach = float(np.nanmin((chord**2).sum(axis=2) / (2.0 * height)))
+        center, tangent = sample(min(max(400, math.ceil(curve.length / (0.1 * reach))), 20_000))
+        count = len(center)
+        across = normals(center[None])[0]
+        beside = Curve.from_components([center, center + 0.3 * reach * across])
+        across = turned(across, tangent, -2.0 * np.pi * linking_numbers(beside)[0] * np.arange(count) / count)
+        length = float(np.linalg.norm(np.diff(center, axis=0, append=center[:1]), axis=1).sum())
+        return cls(length, reach, np.stack([center, across, np.cross(tangent, across)], axis=1))
+
+    def radius(self, room: float) -> float:
+        """The fraction ``room`` of the reach; a CurveError unless it is between 0 and 1."""
+        if not 0.0 < room < 1.0:
+            raise CurveError(f"room is {room}; it must be above 0 and below 1")
+        return room * self.reach
+
+    def samples(self, length: float) -> int:
+        """Number of points that resolve a smooth curve of this length in the tube."""
+        return max(400, math.ceil(length / (0.05 * self.reach)))
+
+    def points(self, t: FloatArray, u: FloatArray, v: FloatArray) -> FloatArray:
+        """Points in space, shape (k, 3), with these coordinates, each (k,); t is taken modulo 1."""
+        place = t % 1.0 * len(self._frame)
+        k = np.floor(place).astype(np.intp)
+        here, there = (self._frame[each % len(self._frame)] for each in (k, k + 1))
+        center, across, up = (here + (place % 1.0)[:, None, None] * (there - here)).swapaxes(0, 1)
+        return np.asarray(center + u[:, None] * across + v[:, None] * up)

@@ -1,0 +1,168 @@
+"""From one curve to another: both are relaxed, they meet at a common shape, and one way is run backwards."""
+
+import time
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from itertools import pairwise, product
+
+from ..base.arguments import checked
+from ..base.deadline import TimeLimit
+from ..base.errors import CurveError, OptionError, counted
+from ..base.messages import OF_GOAL, Message
+from ..base.threads import BLAS
+from ..curve import Curve
+from ..curve.alignment import Alignment
+from ..descent.task import Task
+from ..driver import Outcome, Relaxation, RelaxOptions, Result, Status, WithOutcome, finish, relax
+from ..driver.run import within
+from ..io.trajectory import Iterate
+from .evidence import NoMotionError, compare
+from .meeting import change_mesh, images, meeting, rename, run_back
+
+NAMES = ("the first curve", "the second curve")
+
+
+@checked
+def morph(
+    a: Curve | Task,
+    b: Curve | Task,
+    options: RelaxOptions | None = None,
+    callback: Callable[[Iterate], None] | None = None,
+) -> Result:
+    """Find a motion from one curve to another that is proved free of contact, all along.
+
+    Both are relaxed with the options, to a common shape up to Möbius maps and similarities, which are motions too;
+    there the way of ``a`` is joined to that of ``b``, run backwards.  The first iterate is ``a`` and the last one
+    ``b``, bit for bit, with its vertices in their order, unless the shapes match only with components in another order
+    or run through in opposite directions, which the outcome then says.  Open components are held at their ends, which
+    are in the same places in both.  Both avoid the obstacles of ``a``.
+
+    ``callback`` gets every iterate; a `Trajectory` of them all is what `verify` checks.  Raises NoMotionError if
+    invariants say that there is no way, or none was found; CurveError or OptionError if the curves cannot be relaxed,
+    or do not go together.
+    """
+    task, wanted = Task.of(a), options or RelaxOptions()
+    return finish(morphing((task, Task.of(b)), wanted, NAMES), task, wanted, callback)
+
+
+def morphing(tasks: Sequence[Task], options: RelaxOptions, names: Sequence[str]) -> Relaxation:
+    """Yield the iterates from the first curve over all others to the last one; return how it ended.
+
+    Obstacles are those of the first task; messages use the names of the curves.  Raises as `morph` does.
+    """
+    work = moving(tasks, options, names)
+    compare([each.curve for each in tasks], names)
+    return work
+
+
+def moving(tasks: Sequence[Task], options: RelaxOptions, names: Sequence[str]) -> Relaxation:
+    """The same, without looking at invariants."""
+    began = time.perf_counter()
+    for pair, called in zip(pairwise(tasks), pairwise(names), strict=True):
+        # both in one space, with as many closed and as many open components, whose ends are in the same places
+        (a, b), (one, other) = (each.curve for each in pair), called
+        if a.dimension != b.dimension or a.dimension > 3:
+            where = "motions are proved in the plane and in space, from one curve to another there"
+            raise CurveError(f"{one} is in dimension {a.dimension}, {other} in dimension {b.dimension}; {where}")
+        if sorted(a.mesh.closed) != sorted(b.mesh.closed):
+            kinds = []
+            for name, closed in ((one, a.mesh.closed), (other, b.mesh.closed)):
+                parts = [(sum(closed), "closed component"), (len(closed) - sum(closed), "open component")]
+                kinds.append(f"{name} is {' and '.join(counted(count, noun) for count, noun in parts if count)}")
+            raise CurveError(f"{', '.join(kinds)}; motions neither open, close, join nor divide components")
+        if a.mesh.closed != b.mesh.closed:
+            order = f"open and closed components have another order in {one} than in {other}"
+            raise CurveError(f"{order}; put open ones first in both")
+        if (a.vertices[a.mesh.ends] != b.vertices[b.mesh.ends]).any():
+            places = f"open components begin or end in other places in {one} than in {other}"
+            raise CurveError(f"{places}; move their ends together")
+    alone = replace(options, time_limit=None, balance=False, hops=0)
+    ways = [_Way(*each, tasks[0], alone) for each in zip(names, tasks, strict=True)]
+    work = BLAS.bounding(_number(_chain(ways, alone, options.hops)))
+    if options.time_limit is None:
+        return work
+    return within(TimeLimit(options.time_limit, used=time.perf_counter() - began), work)
+
+
+def _chain(ways: "Sequence[_Way]", options: RelaxOptions, hops: int) -> Relaxation:
+    """The first way, what joins it to the second one, and that one backwards; so on from there."""
+    found: list[Alignment] = []
+    yield from ways[0].iterates
+    yield from ways[0].relaxed()
+    for first, second in pairwise(ways):
+        yield from first.iterates[1:] if found else ()
+        deque(second.relaxed(), maxlen=0)
+        pair, obstacles = (first, second), first.task.obstacles
+        shapes = [images(each.end, obstacles) for each in pair]
+        alignment, joint = meeting(shapes[0], shapes[1], obstacles)
+        # coarse meshes may keep them apart: both go on on equally fine ones, the one of higher energy first, and hop
+        higher = int(second.end.energy > first.end.energy)
+        fine = replace(options, mesh="fixed", untangle="never", vertices=max(len(each.end.curve) for each in pair))
+        for count, k in product(dict.fromkeys((0, hops)), (higher, 1 - higher)):
+            if joint is None:
+                further = pair[k].relaxed(replace(fine, hops=count))
+                yield from further if k == 0 else ()
+                deque(further, maxlen=0)
+                shapes[k] = images(pair[k].end, obstacles)
+                alignment, joint = meeting(shapes[0], shapes[1], obstacles)
+        if joint is None:
+            apart = (
+                "no motion was found, though no invariant tells {one} and {other} apart: they come to rest at energies "
+                "{a:.6g} and {b:.6g}, in shapes that differ by {distance:.2g} times their size; more hops, or the term "
+                "bending=0.1, may lead both to the same shape"
+            )
+            facts = {"one": first.name, "other": second.name, "a": first.end.energy, "b": second.end.energy}
+            raise NoMotionError(Message(apart, **facts, distance=alignment.distance))
+        second.iterates = [rename(each, alignment) for each in second.iterates]
+        yield from joint
+        yield from run_back(second.iterates)
+        found.append(alignment)
+    met = "became the other curve: relaxed shapes met, {distance:.2g} times their size apart"
+    outcome = Outcome(Status.CONVERGED, (Message(met, distance=max(each.distance for each in found)),))
+    if all(each.as_given for each in found):
+        return outcome
+    return outcome.adding("in the end components have another order or direction than they were given in")
+
+
+def _number(work: Relaxation) -> Relaxation:
+    """The iterates of several runs as those of one."""
+    run, certified = WithOutcome(work), True
+    for index, iterate in enumerate(run):
+        certified &= iterate.certified
+        yield replace(iterate, index=index, certified=certified, strand_moves=None)
+    assert run.outcome is not None, "the loop is through"
+    return run.outcome
+
+
+class _Way:
+    """The way of a curve to where it comes to rest: its iterates, the given curve first."""
+
+    def __init__(self, name: str, task: Task, first: Task, options: RelaxOptions) -> None:
+        if task.pins:
+            raise OptionError("a morph holds the ends of open components, and no other vertices; leave pins out")
+        if task.obstacles and {each.key for each in task.obstacles} != {each.key for each in first.obstacles}:
+            raise OptionError(f"{name} has obstacles of its own; a motion avoids the same ones all along")
+        ends = tuple(task.curve.mesh.ends.ravel().tolist())
+        self.name, self.task = name, Task(curve=task.curve, obstacles=first.obstacles, pins=ends)
+        try:
+            self._run = relax(self.task, options)
+        except CurveError as error:
+            if task is first:
+                raise
+            raise CurveError(Message(OF_GOAL, goal=name, reason=str(error))) from error  # its place is not the first's
+        start = next(self._run)
+        self.iterates = [change_mesh(start, task.curve, ends), start][: 1 + (len(start.curve) > len(task.curve))]
+
+    @property
+    def end(self) -> Iterate:
+        """Where it comes to rest, so far."""
+        return self.iterates[-1]
+
+    def relaxed(self, options: RelaxOptions | None = None) -> Iterator[Iterate]:
+        """Go on to where it comes to rest, once more if there are options, and yield the iterates."""
+        if options is not None:
+            self._run = relax(replace(self.task, curve=self.end.curve, pins=self.end.pins), options)
+        for iterate in self._run:
+            self.iterates.append(iterate)
+            yield iterate

@@ -1,5 +1,0 @@
-"""Strand moves of diagrams made in space: curves are untangled by straight motions that are all proved."""
-
-from .moving import Seen, Stage
-from .untangle import Untangled, untangled
-from .views import worth

@@ -1,0 +1,185 @@
+"""Inner products on functions along a curve, as operators: what is done with a Gram matrix A, and how.
+
+On R^m-valued functions they act coordinate by coordinate, J = A ⊗ Id_m.
+"""
+
+from functools import cached_property
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.linalg import blas, lapack
+from scipy.sparse.linalg import SuperLU
+
+from ...base.arguments import checked
+from ...base.types import FloatArray, IntArray
+from ...curve import Curve
+from ...curve.pins import NOWHERE
+from ...energies.quadrature import Rule
+from ..constraints import ConstraintDerivative
+from ..saddle import TangentSpace
+from ..saddle.dense import (
+    DenseTangentSpace,
+    DenseWholeSpace,
+    SparseTangentSpace,
+    SparseWholeSpace,
+    cholesky,
+    factorised,
+)
+
+MAX_DENSE_ROWS = 12_000  # some six matrices of so many rows make 7 GB
+MAX_SPARSE_ROWS = 50_000  # energies, sums over all pairs of edges, take half a minute there
+
+
+@runtime_checkable
+class InnerProduct(Protocol):
+    """⟨u, v⟩ = Σ u A v, A symmetric and positive definite, for functions on n vertices."""
+
+    def apply(self, u: FloatArray) -> FloatArray:
+        """A u; shape (n, k)."""
+
+    def solve(self, f: FloatArray) -> FloatArray:
+        """A⁻¹ f; shape (n, k).  A LinAlgError says if A is not positive definite."""
+
+    def plus(self, other: "InnerProduct", weight: float = 1.0) -> "InnerProduct":
+        """⟨u, v⟩ + weight ⟨u, v⟩_other."""
+
+    def dense(self) -> FloatArray:
+        """A, shape (n, n), for tests and for other dense matrices."""
+
+    def tangent_space(self, constraints: ConstraintDerivative) -> TangentSpace:
+        """The tangent space of constraints with this inner product."""
+
+    def whole_space(self, constraints: ConstraintDerivative, weights: FloatArray) -> TangentSpace:
+        """The whole space with J + Cᵀ w C, weights w ≥ 0 of shape (rows of C,)."""
+
+
+class DenseInnerProduct:
+    """A as an array (n, n), of which only the lower triangle counts; functions solved for vanish at the pins."""
+
+    @checked
+    def __init__(self, matrix: FloatArray, pins: IntArray = NOWHERE) -> None:
+        self._matrix, self._pins = np.asfortranarray(matrix), pins
+        self._pinned: DenseInnerProduct | None = None
+
+    def apply(self, u: FloatArray) -> FloatArray:
+        return _symmetric_product(self._matrix, u)
+
+    def solve(self, f: FloatArray) -> FloatArray:
+        return _symmetric_product(self.inverse, f)
+
+    def plus(self, other: InnerProduct, weight: float = 1.0) -> InnerProduct:
+        if not isinstance(other, SparseInnerProduct):
+            return DenseInnerProduct(self._matrix + weight * other.dense())
+        matrix, more = self._matrix.copy(order="F"), other.matrix.tocoo()
+        np.add.at(matrix, more.coords, weight * more.data)
+        return DenseInnerProduct(matrix)
+
+    def dense(self) -> FloatArray:
+        return _filled(self._matrix.copy(order="F"))
+
+    def tangent_space(self, constraints: ConstraintDerivative) -> TangentSpace:
+        return DenseTangentSpace(self._vanishing_at(constraints.pins), constraints)
+
+    def whole_space(self, constraints: ConstraintDerivative, weights: FloatArray) -> TangentSpace:
+        return DenseWholeSpace(self._vanishing_at(constraints.pins), constraints, weights)
+
+    def _vanishing_at(self, pins: IntArray) -> "DenseInnerProduct":
+        """The same on functions that vanish at pins; kept, with its inverse, as a metric outlives tangent spaces."""
+        if np.array_equal(pins, self._pins):
+            return self
+        if self._pinned is None or not np.array_equal(pins, self._pinned._pins):
+            self._pinned = DenseInnerProduct(self._matrix, pins)
+        return self._pinned
+
+    @cached_property
+    def inverse(self) -> FloatArray:
+        """A⁻¹, in full; with pins that of their complement's block, continued by 0."""
+        matrix, pins = self._matrix.copy(order="F"), self._pins
+        matrix[pins], matrix[:, pins] = 0.0, 0.0
+        matrix[pins, pins] = 1.0
+        inverse, info = lapack.dpotri(cholesky(matrix), lower=1, overwrite_c=1)
+        if info != 0:
+            raise np.linalg.LinAlgError(f"matrix is singular: pivot {info} of {len(self._matrix)}")
+        filled = _filled(np.asarray(inverse))
+        filled[pins, pins] = 0.0
+        return filled
+
+
+class SparseInnerProduct:
+    """A as a sparse matrix of few entries a row; ``matrix`` has it in compressed rows."""
+
+    @checked
+    def __init__(self, matrix: sp.sparray) -> None:
+        self.matrix = sp.csr_array(matrix)
+
+    def apply(self, u: FloatArray) -> FloatArray:
+        return np.asarray(self.matrix @ u)
+
+    def solve(self, f: FloatArray) -> FloatArray:
+        return np.asarray(self._factor.solve(f))
+
+    def plus(self, other: InnerProduct, weight: float = 1.0) -> InnerProduct:
+        if isinstance(other, SparseInnerProduct):
+            return SparseInnerProduct(self.matrix + weight * other.matrix)
+        return DenseInnerProduct(self.dense() + weight * other.dense())
+
+    def dense(self) -> FloatArray:
+        return np.asarray(self.matrix.toarray())
+
+    def tangent_space(self, constraints: ConstraintDerivative) -> TangentSpace:
+        return SparseTangentSpace(self.matrix, constraints)
+
+    def whole_space(self, constraints: ConstraintDerivative, weights: FloatArray) -> TangentSpace:
+        return SparseWholeSpace(self.matrix, constraints, weights)
+
+    @cached_property
+    def _factor(self) -> SuperLU:
+        return factorised(self.matrix)
+
+
+def _symmetric_product(lower: FloatArray, u: FloatArray) -> FloatArray:
+    """A u column by column: for the few that u has, BLAS's dsymm takes three times as long."""
+    return np.stack([blas.dsymv(1.0, lower, column, lower=1) for column in u.T], axis=1)
+
+
+def _filled(lower: FloatArray) -> FloatArray:
+    """A symmetric matrix in Fortran order, of which only the lower half was given, in full."""
+    block = 128
+    for first in range(0, len(lower), block):
+        last = first + block
+        diagonal = lower[first:last, first:last]
+        diagonal[...] = np.tril(diagonal) + np.tril(diagonal, -1).T
+        lower[first:last, last:] = lower[last:, first:last].T
+    return lower
+
+
+@runtime_checkable
+class Metric(Protocol):
+    """An inner product on functions along the curve; on R^m-valued ones it acts coordinate by coordinate."""
+
+    @property
+    def name(self) -> str:
+        """Name in the registry."""
+
+    @property
+    def description(self) -> str:
+        """The space, in mathematicians' notation."""
+
+    @property
+    def extends_penalty(self) -> bool:
+        """Whether penalised methods add the lengths' part to it (footnote 8 of [RS21])."""
+
+    @property
+    def most_vertices(self) -> int:
+        """Number of vertices up to which its inner products fit into memory."""
+
+    @property
+    def rule(self) -> Rule | None:
+        """The quadrature rule for pairs of edges; None if there is nothing to choose."""
+
+    def with_rule(self, rule: Rule) -> "Metric":
+        """The same metric by another rule; itself if there is nothing to choose."""
+
+    def at(self, curve: Curve) -> InnerProduct:
+        """The inner product on functions along a curve of at most so many vertices."""

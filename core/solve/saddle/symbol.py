@@ -1,0 +1,166 @@
+"""The symbol of an inner product, what it costs a wave along the curve by frequency, and models that FFTs invert."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.fft import irfft, rfft
+
+from ...base.types import FloatArray
+from ...curve import Mesh
+from .krylov import LinearMap
+
+FREQUENCIES = 12  # at which waves are tried, spread evenly on a logarithmic scale; more do not save an iteration
+LEAST = 1e-6  # modulated value, relative to the largest one: where edges double back it may be 0
+
+Symbol = Callable[[FloatArray], FloatArray]
+"""A positive function of frequencies."""
+
+
+@dataclass(frozen=True, eq=False)
+class Parameter:
+    """A way to run along the components of a mesh, each at its own constant speed: by index, or by arc length."""
+
+    mesh: Mesh
+    positions: FloatArray  # of each vertex, 0 at the first one of its component; shape (n,)
+    periods: FloatArray  # of each component; shape (components,)
+
+    @classmethod
+    def of_steps(cls, mesh: Mesh, steps: FloatArray) -> "Parameter":
+        """The parameter that grows by so much from each vertex to the next one; shape (n,)."""
+        ends = np.cumsum(steps) - steps
+        starts = mesh.offsets[:-1]
+        return cls(mesh, ends - ends[starts][mesh.component], np.add.reduceat(steps, starts))
+
+    def waves(self, frequencies: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Cosines and sines of about these frequencies, 0 on components that are too short; shapes (n, k)."""
+        turns = np.rint(np.multiply.outer(self.periods, frequencies) / (2.0 * np.pi))
+        phase = (2.0 * np.pi * turns / self.periods[:, None])[self.mesh.component] * self.positions[:, None]
+        # of either sign at random, lest components move together
+        signs = np.random.default_rng(1).choice(np.array([-1.0, 1.0]), len(self.periods))
+        amplitude = ((turns > 0.0) * signs[:, None])[self.mesh.component]
+        return amplitude * np.cos(phase), amplitude * np.sin(phase)
+
+    def symbol(self, apply: LinearMap, weights: FloatArray, highest: float) -> Symbol:
+        """Rayleigh quotients Σ u A u / Σ w u² of waves u, interpolated between logarithms.
+
+        Below the lowest frequency, one turn, the symbol is constant; above the ``highest`` one tried, in radians per
+        unit of the parameter, it grows like its third power, as that of an inner product of order 3/2 does.  ``apply``
+        is u to A u, (n, k) to (n, k), ``weights`` w has shape (n,).  A LinAlgError says if a quotient is not positive.
+        """
+        turn = 2.0 * np.pi / float(self.periods.max())
+        frequencies = turn * np.unique(np.rint(np.geomspace(1.0, max(1.0, highest / turn), FREQUENCIES)))
+        waves = np.stack(self.waves(frequencies))
+        images = np.stack([apply(wave) for wave in waves])
+        quotients = np.sum(waves * images, axis=(0, 1)) / np.sum(weights[:, None] * waves**2, axis=(0, 1))
+        constant = np.ones((len(weights), 1))
+        rounding = 100.0 * np.finfo(np.float64).eps * float(np.abs(apply(constant)).sum() / weights.sum())
+        if not quotients.min() > rounding:
+            raise np.linalg.LinAlgError("matrix is not positive definite: a Rayleigh quotient is not positive")
+        logarithms, last = (np.log(frequencies), np.log(quotients)), frequencies[-1]
+        return lambda f: np.exp(np.interp(np.log(np.maximum(f, turn)), *logarithms)) * np.maximum(f / last, 1.0) ** 3
+
+
+def autocorrelation(t: FloatArray) -> FloatArray:
+    """Means of ⟨t_I, t_{I+d}⟩ over I, for t of period k; shapes (..., k, m) -> (..., k)."""
+    count = t.shape[-2]
+    return np.asarray(irfft(np.sum(np.abs(rfft(t, axis=-2)) ** 2, axis=-1), count) / count)
+
+
+def modulated(symbol: Symbol, tau: FloatArray, lengths: FloatArray) -> Symbol:
+    """What Σ_k diag(τ_k) K diag(τ_k) costs waves on edges, on an average along the curve, for K of a symbol.
+
+    The kernel of K is multiplied by the autocorrelation of τ, on a uniform grid on which components follow each other.
+    Waves that are too short for this grid do not see the curve turn.  Unit tangents have shape (edges, m), edge
+    ``lengths`` (edges,).
+    """
+    ends, count = np.cumsum(lengths), 2 * len(lengths)
+    spacing = ends[-1] / count
+    nearest = np.searchsorted(ends[:-1], spacing * (np.arange(count) + 0.5))
+    frequencies = 2.0 * np.pi / ends[-1] * np.arange(count // 2 + 1)
+    values = rfft(autocorrelation(tau[nearest]) * irfft(symbol(frequencies), count)).real
+    values = np.maximum(values, LEAST * values.max())
+    return lambda f: np.where(f < frequencies[-1], np.interp(f, frequencies, values), symbol(f))
+
+
+class Circulants:
+    """M = W⁻¹ F W⁻¹, F circulant on each component, of one symbol, and W the mean edge length of the component.
+
+    For edges of similar lengths: on a polygon of equal edges the seminorm of W^{3/2,2} is a circulant matrix, and J_C
+    is spectrally equivalent to one.  It grows like ℓ⁻² with the edge length ℓ.  Where this varies from component to
+    component, u/ℓ is the right unknown; along one component it is not, because multiplying by a function with jumps is
+    not bounded in W^{3/2,2}: iterations would grow with n, whereas with one scale they only grow with the ratio of
+    lengths.
+
+    A model of the product ``apply``, u to A u, (n, k) to (n, k), on a mesh of closed components; ``lengths`` are those
+    of the edges, shape (n,).  A LinAlgError says if A is not positive definite.
+    """
+
+    def __init__(self, mesh: Mesh, lengths: FloatArray, apply: LinearMap) -> None:
+        self._transform = ComponentTransform(mesh)
+        sizes = np.asarray(mesh.component_sizes)
+        means = np.add.reduceat(lengths, mesh.offsets[:-1]) / sizes
+        self._scale = means[mesh.component, None]
+        one = np.ones(mesh.size)
+        symbol = Parameter.of_steps(mesh, one).symbol(lambda v: self._scale * apply(self._scale * v), one, np.pi)
+        values = self._transform.sampled(symbol)
+        scales = (means[sizes == size, None] for size in np.unique(sizes))
+        self._inverse = [scale**2 / value for scale, value in zip(scales, values, strict=True)]
+        stretches = self._transform.sampled(lambda theta: 4.0 * np.sin(0.5 * theta) ** 2)
+        self._compliance = [stretch / value for value, stretch in zip(values, stretches, strict=True)]
+
+    def solve(self, f: FloatArray) -> FloatArray:
+        return self._transform.filtered(f, self._inverse)
+
+    def tension(self, tangents: FloatArray) -> LinearMap:
+        """With D F⁻¹ Dᵀ, which is circulant, modulated by the directions of edges."""
+        weighted = self._scale * tangents
+        size = np.linalg.norm(weighted, axis=1, keepdims=True)
+        modulated = self._transform.modulated(self._compliance, weighted / size)
+        factors = [1.0 / np.maximum(each, LEAST * each.max(axis=1, keepdims=True)) for each in modulated]
+        return lambda g: self._transform.filtered(g[:, None] / size, factors)[:, 0] / size[:, 0]
+
+
+class ComponentTransform:
+    """Products with circulant matrices, one of the same symbol on each component.
+
+    Components of one size are transformed together.  There are at most √(2n) different sizes, so thousands of small
+    components are no slower than a large one.
+    """
+
+    def __init__(self, mesh: Mesh) -> None:
+        sizes = np.asarray(mesh.component_sizes)
+        self._sizes = [int(size) for size in np.unique(sizes)]
+        self._rows = [mesh.offsets[:-1][sizes == size, None] + np.arange(size) for size in self._sizes]
+
+    def sampled(self, symbol: Symbol) -> list[FloatArray]:
+        """A symbol at the angles θ ∈ [0, π] from vertex to vertex that every size of components has."""
+        return [symbol(2.0 * np.pi / size * np.arange(size // 2 + 1, dtype=np.float64)) for size in self._sizes]
+
+    def modulated(self, factors: list[FloatArray], t: FloatArray) -> list[FloatArray]:
+        """Factors of the circulant matrices nearest to Σ_k diag(t_k) F diag(t_k), F that of sampled factors.
+
+        Their entries are the means along the diagonals: those of F times the autocorrelation of t on the component
+        (Chan, An optimal circulant preconditioner for Toeplitz systems, SIAM J. Sci. Stat. Comput. 9, 1988).  For every
+        size of components ``factors`` have shape (frequencies,), the result (components, frequencies); t has (n, m).
+        """
+        return [
+            rfft(autocorrelation(t[rows]) * irfft(factor, size)).real
+            for size, rows, factor in zip(self._sizes, self._rows, factors, strict=True)
+        ]
+
+    def filtered(self, u: FloatArray, factors: list[FloatArray]) -> FloatArray:
+        """The circulant matrix of sampled factors, or those of modulated ones, times u; shape (n, k)."""
+        if len(self._sizes) == 1:  # all components, one after the other
+            return _filtered(u.reshape(-1, self._sizes[0], u.shape[1]), factors[0]).reshape(u.shape)
+        result = np.empty_like(u)
+        for rows, factor in zip(self._rows, factors, strict=True):
+            result[rows] = _filtered(u[rows], factor)
+        return result
+
+
+def _filtered(u: FloatArray, factor: FloatArray) -> FloatArray:
+    """Of components of one size; shape (components, size, k)."""
+    waves = rfft(u, axis=1)
+    waves *= factor[..., None]
+    return np.asarray(irfft(waves, u.shape[1], axis=1))

@@ -1,0 +1,225 @@
+"""A finished film follows the settings of its timing at once: its keys stay, and are passed at other frames."""
+
+from types import SimpleNamespace
+
+import bpy
+import numpy as np
+import pytest
+from blender_scenes import add_curve, add_trefoil, evaluated, relax
+from mobius_flow.addon.buttons import relaxing
+from mobius_flow.addon.curves import bake
+from mobius_flow.addon.curves.keyframes import all_fcurves, frames_of
+from mobius_flow.addon.curves.recorded import Recorded
+from mobius_flow.core.knots import braid_closure, knot
+
+EVEN = {"timing": "EVEN", "length": 40, "max_iterations": 8}
+
+
+@pytest.fixture
+def settings():
+    return bpy.context.scene.mobius_flow
+
+
+@pytest.fixture(params=["SHAPE_KEYS", "FCURVES"])
+def film(request):
+    add_trefoil()
+    return relax(keyframes=request.param, **EVEN)
+
+
+def ends(obj):
+    return evaluated(obj, frames_of(obj.data)[0]), evaluated(obj, frames_of(obj.data)[-1])
+
+
+def test_length_and_rests_and_pace_act_at_once(film, settings):
+    before, count = ends(film), len(frames_of(film.data))
+    settings.timing, settings.length = "EVEN", 90
+    assert bake.scene_range([film]) == (1, 90)
+    settings.hold_start, settings.hold_end = 10, 20
+    frames = frames_of(film.data)
+    assert bake.scene_range([film]) == (1, 90)
+    assert (frames[0], frames[-1], len(frames)) == (11, 70, count)
+    settings.start_frame = 5
+    assert bake.scene_range([film]) == (5, 94)
+    steps = []
+    for settings.timing in ("DISTANCE", "FLOW_TIME", "ITERATE"):
+        steps.append(np.diff(frames_of(film.data)))
+    assert all(not np.allclose(*pair) for pair in (steps[:2], steps[1:]))
+    settings.frames_per_iterate = 2.5
+    assert frames_of(film.data)[-1] - frames_of(film.data)[0] == pytest.approx(2.5 * 8)
+    for one, other in zip(before, ends(film), strict=True):
+        np.testing.assert_array_equal(one, other)
+    assert bake.is_baked(film.data)
+    assert not bake.is_edited(film.data)
+
+
+def test_there_and_back_at_once():
+    obj, settings = add_trefoil(), bpy.context.scene.mobius_flow
+    relax(**EVEN)
+    shown, count = evaluated(obj, 15.0), len(frames_of(obj.data))
+    settings.length, settings.loop = 79, True
+    assert bake.scene_range([obj]) == (1, 79)
+    assert len(frames_of(obj.data)) == 2 * count - 1
+    np.testing.assert_allclose(evaluated(obj, 1), evaluated(obj, 80), atol=1e-6)
+    with pytest.raises(RuntimeError, match="switch Loop off first"):
+        bpy.ops.curve.mobius_flow_continue(max_iterations=1)
+    settings.loop, settings.length = False, 40
+    assert len(frames_of(obj.data)) == count
+    np.testing.assert_allclose(evaluated(obj, 15.0), shown, atol=1e-6)
+
+
+def test_a_loop_is_reported_up_to_its_last_frame(capfd):
+    add_trefoil()
+    relax(**EVEN, loop=True)
+    assert "up to frame 40, " in capfd.readouterr().out
+
+
+def test_a_film_that_went_on_is_timed_as_one(settings):
+    obj = add_trefoil()
+    relax(timing="EVEN", length=30, max_iterations=3)
+    bpy.ops.curve.mobius_flow_continue(max_iterations=3, timing="EVEN", length=30)
+    last = evaluated(obj, bake.scene_range([obj])[1])
+    settings.length = 100
+    assert bake.scene_range([obj]) == (1, 100)
+    np.testing.assert_array_equal(evaluated(obj, 100), last)
+    assert (np.diff(Recorded.of(obj).frames) > 0).all()
+
+
+def test_what_does_not_go_together_leaves_the_film_as_it_is(film, settings):
+    before = frames_of(film.data)
+    settings.hold_end = 500
+    np.testing.assert_array_equal(frames_of(film.data), before)
+    settings.hold_end = 0
+    settings.length = 2 if len(before) > 65 else 40
+    assert len(frames_of(film.data)) == len(before)
+
+
+def test_keys_that_somebody_has_moved_stay(settings):
+    obj = add_trefoil()
+    relax(**EVEN)
+    (curve,) = (curve for curve in all_fcurves() if curve.data_path == "eval_time")
+    curve.keyframe_points[3].co.x += 0.4
+    curve.update()
+    settings.length = 90
+    assert bake.scene_range([obj]) == (1, 40)
+
+
+def test_others_are_not_retimed(settings):
+    obj = add_trefoil()
+    relax(**EVEN)
+    obj.select_set(False)
+    settings.length = 90
+    assert bake.scene_range([obj]) == (1, 40)
+
+
+def test_the_frames_that_the_scene_plays_follow_and_so_does_the_stage(settings):
+    add_trefoil()
+    relax(**EVEN)
+    scene = bpy.context.scene
+    scene.frame_start, scene.frame_end = 1, 40
+    assert bpy.ops.curve.mobius_flow_set_up_stage() == {"FINISHED"}
+    settings.length = 90
+    assert (scene.frame_start, scene.frame_end) == (1, 90)
+    for start, played in ((-9, (0, 80)), (-20, (0, 69)), (1, (1, 90))):  # no scene plays negative frames
+        scene.mobius_flow.start_frame = start
+        assert (scene.frame_start, scene.frame_end) == played
+    moved = [curve for curve in all_fcurves() if curve.data_path == "location"]
+    assert moved
+    assert all(curve.keyframe_points[-1].co.x == 90 for curve in moved)
+    scene.frame_end = 70
+    settings.length = 50
+    assert scene.frame_end == 70
+
+
+def test_materials_follow(settings):
+    goal, moving = add_trefoil(40), add_curve([braid_closure([-1, -1, -1, -2, 2], 60).vertices])
+    moving.data.materials.append(bpy.data.materials.new("A"))
+    goal.data.materials.append(bpy.data.materials.new("B"))
+    goal.select_set(True)
+    bpy.context.view_layer.objects.active = goal
+    assert bpy.ops.curve.mobius_flow_morph(length=60) == {"FINISHED"}
+    goal.select_set(False)
+    settings.length = 120
+    (material,) = [curve for curve in all_fcurves() if curve.data_path.endswith("material_index")]
+    assert material.keyframe_points[-1].co.x == frames_of(moving.data)[-1] == 120.0
+
+
+def test_flow_time_begins_with_the_given_curve_and_every_key_has_its_frame():
+    """Strand moves take their share of the film's time."""
+    from blender_scenes import add_curve
+
+    obj = add_curve([knot("goeritz").vertices])
+    start = np.concatenate([[p.co[:3] for p in s.points] for s in obj.data.splines]).astype(np.float32)
+    relax(timing="FLOW_TIME", method="flow-moebius", untangle="always", max_iterations=5)
+    frames, blocks = frames_of(obj.data), obj.data.shape_keys.key_blocks
+    assert len(frames) == len(blocks)
+    assert (frames[0], frames[-1]) == (1, 250)
+    assert {tuple(point) for point in start} <= {tuple(point) for point in evaluated(obj, 1)}
+    moves = [k for k, block in enumerate(blocks) if block.name.startswith("Strand Move")]
+    assert frames[moves[-1]] - frames[moves[0]] > 50
+
+
+def asked(name, monkeypatch, **values):
+    """The menus that an operator shows when it is pressed in a window; if there are none, it begins."""
+    menus = []
+    manager = SimpleNamespace(popup_menu=lambda draw, **_: menus.append(draw))
+    context = bpy.context
+    here = SimpleNamespace(
+        window=object(),
+        window_manager=manager,
+        view_layer=context.view_layer,
+        active_object=context.active_object,
+        selected_objects=context.selected_objects,
+    )
+    cls = getattr(relaxing, f"CURVE_OT_mobius_flow_{name}")
+    pressed = type("Pressed", (SimpleNamespace,), {"bl_idname": cls.bl_idname, "moving": cls.moving})
+    with monkeypatch.context() as patch:
+        patch.setattr(relaxing, "bpy", SimpleNamespace(app=SimpleNamespace(background=False)))
+        begins = {"begin": lambda _context: {"RUNNING_MODAL"}, "sample_splines": False, "again": False}
+        said = cls.invoke(pressed(**begins | {"continues": cls.continues} | values), here, None)
+    assert said == ({"CANCELLED"} if menus else {"RUNNING_MODAL"})
+    return menus
+
+
+def test_relax_on_a_film_asks_and_a_script_says_what_it_replaces(capfd, monkeypatch):
+    obj = add_trefoil()
+    relax(max_iterations=3)
+    relax(max_iterations=2)
+    assert "; 3 keys in place of 4 up to frame 3, " in capfd.readouterr().out
+    offered = []
+
+    class Layout:
+        def operator(self, name, text, icon="NONE"):
+            offered.append((name, self.operator_context, text))
+            return self
+
+    class Menu:
+        layout = Layout()
+
+    asked("relax", monkeypatch)[0](Menu, bpy.context)
+    assert [name for name, *_ in offered] == ["curve.mobius_flow_continue", "curve.mobius_flow_relax"]
+    assert {context for _, context, _ in offered} == {"INVOKE_DEFAULT"}
+    assert Menu.layout.again is True
+    for name in ("bake_again", "pack"):
+        offered.clear()
+        asked(name, monkeypatch)[0](Menu, bpy.context)
+        assert [name for name, *_ in offered] == [f"curve.mobius_flow_{name}"]
+    assert not asked("relax", monkeypatch, again=True)
+    assert not asked("continue", monkeypatch)
+    other = add_trefoil()
+    obj.select_set(True)
+    assert asked("morph", monkeypatch)  # only the one that moves gets keys
+    bpy.context.view_layer.objects.active = obj
+    assert not asked("morph", monkeypatch)
+    obj.select_set(False)
+    bpy.context.view_layer.objects.active = other
+    assert not asked("relax", monkeypatch)
+    assert obj.data.shape_keys
+
+
+def test_a_bevel_that_was_changed_since_still_counts_as_the_artists_own(settings):
+    obj = add_trefoil()
+    relax(**EVEN)
+    obj.data.bevel_depth = 0.07
+    settings.length = 90
+    assert bpy.ops.curve.mobius_flow_clear() == {"FINISHED"}
+    assert obj.data.bevel_depth == pytest.approx(0.07)

@@ -1,0 +1,301 @@
+"""Keys are the iterates themselves: a constraint of the object keeps the size in which they are shown."""
+
+import bpy
+import numpy as np
+import pytest
+from blender_scenes import add_curve, add_hopf_link, add_trefoil, contents, drawn, evaluated, in_world, place, relax
+from mathutils import Matrix
+from mobius_flow.addon.curves import bake, sizes
+from mobius_flow.addon.curves.moving import what_moves
+from mobius_flow.addon.curves.recorded import BakedKeys
+from mobius_flow.core import Curve, RelaxOptions
+from mobius_flow.core import relax as iterates_of
+from mobius_flow.core.keys.placement import Measure
+from mobius_flow.core.knots import braid_closure
+from shapes import hopf_link, lattice_knot
+
+FILM = {"timing": "EVEN", "length": 60, "keep_size": "AUTO", "max_iterations": 12, "vertices": 90, "mesh": "fixed"}
+
+
+def shown(obj, frame):
+    """The curve that is seen at a frame, in the world."""
+    points = evaluated(obj, frame)
+    return Curve(in_world(obj.evaluated_get(bpy.context.evaluated_depsgraph_get()), points))
+
+
+def transforms(obj):
+    """Where the artist has put an object."""
+    return [*obj.delta_location, *obj.delta_scale, *obj.location, *obj.rotation_euler, *obj.scale]
+
+
+@pytest.fixture
+def lattice():
+    """A knot whose size would double while it moves, somewhere off the origin."""
+    return add_curve([lattice_knot("4_1").vertices * np.array([1.0, 1.0, -1.0]) + np.array([3.0, 1.0, -0.0])])
+
+
+def test_keys_are_iterates_bit_for_bit_and_the_film_begins_with_the_given_curve(lattice):
+    options = RelaxOptions(max_iterations=12, vertices=90, mesh="fixed", tolerance=1e-3)
+    points = np.concatenate([[p.co[:3] for p in s.points] for s in lattice.data.splines])
+    expected = [each.curve.vertices.astype(np.float32) for each in iterates_of(Curve(points), options)]
+    relax(**FILM, tolerance=1e-3)
+    names = [block.name for block in lattice.data.shape_keys.key_blocks]
+    keys = dict(zip(names, BakedKeys([lattice]).frames, strict=True))
+    assert len(expected) == 13
+    assert (np.signbit(expected[0]) & (expected[0] == 0.0)).any()
+    for k, vertices in enumerate(expected):
+        assert keys[f"Step {k}"].tobytes() == vertices.tobytes()
+    assert sum(name.startswith("Between") for name in names) > 20
+    start = shown(lattice, 1).vertices
+    np.testing.assert_allclose(start, expected[0], atol=1e-6)
+    assert BakedKeys([lattice]).unproved == 0
+
+
+@pytest.mark.parametrize("parented", [False, True])
+def test_the_size_stays_at_every_frame_and_the_place_too(lattice, parented):
+    place(lattice)
+    if parented:
+        lattice.parent = parent = bpy.data.objects.new("Parent", None)
+        bpy.context.scene.collection.objects.link(parent)
+        place(parent)
+    relax(**FILM)
+    natural = [Measure.RADIUS.of(Curve(points.astype(float))) for points in BakedKeys([lattice]).frames]
+    assert max(natural) > 1.5 * min(natural)
+    curves = [shown(lattice, frame) for frame in np.linspace(1, 60, 8)]
+    sizes = [Measure.RADIUS.of(curve) for curve in curves]
+    np.testing.assert_allclose(sizes, sizes[0], rtol=0.02)
+    centers = [curve.edge_lengths @ curve.midpoints / curve.length for curve in curves]
+    assert np.ptp(centers, axis=0).max() < 0.1 * sizes[0]
+
+
+def test_objects_are_scaled_as_one():
+    vertices = add_hopf_link(24).data.splines
+    points = [np.array([p.co[:3] for p in spline.points]) for spline in vertices]
+    bpy.data.objects.remove(bpy.context.object)
+    objects = [add_curve([points[0]], "A"), add_curve([(points[1] - 1.0) * 2.0], "B")]
+    objects[1].scale, objects[1].location = (0.5, 0.5, 0.5), (1.0, 1.0, 1.0)
+    objects[0].select_set(True)
+    relax(**FILM | {"max_iterations": 6, "vertices": 0})
+    for frame in (1, 17.5, 60):
+        seen = Curve.from_components([shown(obj, frame).vertices for obj in objects])
+        places = np.interp(frame, [p.co[0] for p in _eval_time(objects[0])], [p.co[1] for p in _eval_time(objects[0])])
+        before, after = (BakedKeys(objects).curves[int(k)] for k in (np.floor(places), np.ceil(places)))
+        expected = (1.0 - places % 1.0) * before.vertices + places % 1.0 * after.vertices
+        np.testing.assert_allclose(seen.vertices, expected, atol=2e-3)
+
+
+def _eval_time(obj):
+    action = obj.data.shape_keys.animation_data.action
+    curves = action.fcurves if hasattr(action, "fcurves") else action.layers[0].strips[0].channelbags[0].fcurves
+    return curves[0].keyframe_points
+
+
+def test_a_bevel_of_the_artists_own_looks_as_it_did(lattice):
+    lattice.data.bevel_depth = 0.05
+    relax(**FILM)
+    for frame in (1, 30, 60):
+        bpy.context.scene.frame_set(frame)
+        rings = drawn(lattice).reshape(90, -1, 3)
+        radii = np.linalg.norm(rings - rings.mean(axis=1, keepdims=True), axis=2)
+        assert np.median(radii) == pytest.approx(0.05, rel=0.02)
+
+
+def test_a_taper_that_overrides_radii_keeps_its_look_and_lengths_stay(lattice):
+    lattice.data.taper_object = add_curve([np.array([[0.0, 1.0, 0.0], [1.0, 1.0, 0.0]])], "Taper", cyclic=False)
+    lattice.data.bevel_depth = 0.05
+    bpy.context.object.select_set(False)
+    lattice.select_set(True)
+    bpy.context.view_layer.objects.active = lattice
+    relax(**FILM)
+    assert not lattice.animation_data
+    assert Measure.RADIUS.of(shown(lattice, 60)) != pytest.approx(Measure.RADIUS.of(shown(lattice, 1)), rel=0.1)
+
+
+def test_an_object_can_still_be_moved_and_gives_all_back(lattice):
+    lattice.delta_scale = (2.0, 2.0, 2.0)
+    bpy.context.view_layer.update()
+    before, given = contents(), transforms(lattice)
+    relax(**FILM)
+    assert transforms(lattice) == given
+    first = shown(lattice, 20).vertices
+    lattice.location.x += 5.0
+    np.testing.assert_allclose(shown(lattice, 20).vertices, first + np.array([5.0, 0.0, 0.0]), atol=1e-5)
+    lattice.location.x -= 5.0
+    assert bpy.ops.curve.mobius_flow_clear() == {"FINISHED"}
+    assert transforms(lattice) == given
+    assert not lattice.animation_data
+    assert not lattice.constraints
+    bpy.context.view_layer.update()
+    assert contents() == before
+
+
+def move(obj):
+    """Turn an object, scale it unevenly, and give it a parent that does so too."""
+    obj.rotation_mode = "ZYX"
+    obj.parent = parent = bpy.data.objects.new("Parent", None)
+    bpy.context.scene.collection.objects.link(parent)
+    for each, angle in ((obj, 0.7), (parent, -0.4)):
+        each.location, each.rotation_euler = (1.0, -2.0, 3.0), (angle, 0.3, 2.0 * angle)
+        each.scale = each.delta_scale = (1.5, 0.7, 1.1)
+    bpy.context.view_layer.update()
+    return np.array(parent.matrix_world) @ np.array(obj.matrix_basis)
+
+
+def test_an_object_is_turned_scaled_and_parented_afterwards_as_any_other(lattice):
+    relax(**FILM)
+    frames = 1, 17.3, 40, 60
+    before = [shown(lattice, frame).vertices for frame in frames]
+    keyed = BakedKeys([lattice]).curves
+    matrix = move(lattice)
+    for frame, seen in zip(frames, before, strict=True):
+        expected = seen @ matrix[:3, :3].T + matrix[:3, 3]
+        np.testing.assert_allclose(shown(lattice, frame).vertices, expected, atol=2e-5)
+        for curve, old in zip(BakedKeys([lattice]).curves, keyed, strict=True):
+            expected = old.vertices @ matrix[:3, :3].T + matrix[:3, 3]
+            np.testing.assert_allclose(curve.vertices, expected, atol=2e-5)
+    assert what_moves(lattice) is None
+
+
+def test_objects_that_are_turned_together_keep_their_places_relative_to_each_other():
+    points = hopf_link(24).vertices * 0.3 + np.array([1.0, 0.5, 0.0])
+    objects = [add_curve([points[:24]], "A"), add_curve([points[24:]], "B")]
+    objects[0].select_set(True)
+    relax(**FILM | {"max_iterations": 6, "vertices": 0})
+    turned = np.array(Matrix.Rotation(2.0, 4, (1.0, 2.0, 3.0)) @ Matrix.Scale(0.8, 4))
+    before = [np.concatenate([shown(obj, frame).vertices for obj in objects]) for frame in (1, 30, 60)]
+    assert any(not size.is_identity for size in bake.sizes(objects[1].data))
+    for obj in objects:
+        obj.matrix_basis = Matrix(turned.tolist()) @ obj.matrix_basis
+    for frame, old in zip((1, 30, 60), before, strict=True):
+        seen = np.concatenate([shown(obj, frame).vertices for obj in objects])
+        np.testing.assert_allclose(seen, old @ turned[:3, :3].T, atol=1e-6)
+    assert BakedKeys(objects).unproved == 0
+
+
+def test_copies_and_saved_files_keep_the_size_and_the_last_one_takes_the_action_along(lattice, tmp_path):
+    relax(**FILM)
+    expected = shown(lattice, 40).vertices
+    (action,) = (each for each in bpy.data.actions if each.name == "Keep Size")
+    bpy.context.collection.objects.link(copy := lattice.copy())
+    copy.location.x += 5.0
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "a.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "a.blend"))
+    lattice, copy, action = bpy.data.objects["Knot"], bpy.data.objects["Knot.001"], bpy.data.actions["Keep Size"]
+    np.testing.assert_allclose(shown(lattice, 40).vertices, expected, atol=1e-6)
+    np.testing.assert_allclose(shown(copy, 40).vertices, expected + np.array([5.0, 0.0, 0.0]), atol=1e-5)
+    sizes.release(copy)
+    assert action.users == 1
+    sizes.release(lattice)
+    assert "Keep Size" not in bpy.data.actions
+
+
+@pytest.mark.parametrize("end", ["ESC", "save", "finish"])
+def test_a_run_on_a_film_shows_the_curve_in_its_own_place_and_puts_it_back(operator, lattice, end, tmp_path):
+    relax(**FILM)
+    bpy.context.scene.frame_set(40)
+    before, given = shown(lattice, 40).vertices, transforms(lattice)
+    natural = lattice.matrix_basis.copy()
+    assert lattice.matrix_world != natural
+    operator.continues, operator.given = True, operator.given | {"keep_size": "AUTO", "timing": "EVEN", "length": 30}
+    operator.start()
+    operator.reach(1)
+    assert lattice.matrix_world == natural
+    if end == "save":
+        bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "a.blend"))
+        bpy.context.view_layer.update()
+        assert lattice.matrix_world == natural
+        operator.run.cancel()
+        bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "a.blend"))
+        lattice = bpy.data.objects["Knot"]
+    elif end == "ESC":
+        operator.event("ESC")
+    if end != "finish":
+        np.testing.assert_allclose(shown(lattice, 40).vertices, before, atol=1e-5)
+        assert transforms(lattice) == given
+        return
+    assert operator.until(lambda: False) == {"FINISHED"}
+    sizes = [Measure.RADIUS.of(curve) for curve in BakedKeys([lattice]).curves]
+    np.testing.assert_allclose(sizes, sizes[0], rtol=0.02)
+    played = bake.scene_range([lattice])
+    assert Measure.RADIUS.of(shown(lattice, played[1])) == pytest.approx(sizes[0], rel=1e-3)
+
+
+def test_a_constraint_that_is_muted_stays_so(operator, lattice):
+    relax(**FILM)
+    bpy.context.scene.frame_set(40)
+    lattice.constraints["Keep Size"].mute = True
+    bpy.context.view_layer.update()
+    assert lattice.matrix_world == lattice.matrix_basis
+    keyed = BakedKeys([lattice]).curves
+    operator.start()
+    operator.reach(1)
+    operator.event("ESC")
+    assert lattice.constraints["Keep Size"].mute
+    lattice.constraints["Keep Size"].mute = False
+    bpy.context.view_layer.update()
+    assert lattice.matrix_world != lattice.matrix_basis
+    for now, then in zip(BakedKeys([lattice]).curves, keyed, strict=True):
+        np.testing.assert_allclose(now.vertices, then.vertices, atol=1e-5)
+
+
+def test_copies_and_tubes_are_as_large_as_what_they_show(lattice):
+    lattice.data.bevel_depth = 0.05
+    relax(**FILM)
+    bpy.context.scene.frame_set(45)
+    tube = drawn(lattice)
+    assert bpy.ops.curve.mobius_flow_tube_mesh(sides=8, hide_curve=False) == {"FINISHED"}
+    made = bpy.context.object
+    bpy.context.scene.frame_set(45)
+    low, high = tube.min(axis=0), tube.max(axis=0)
+    np.testing.assert_allclose(drawn(made).min(axis=0), low, atol=0.1)
+    np.testing.assert_allclose(drawn(made).max(axis=0), high, atol=0.1)
+    made.select_set(False)
+    lattice.select_set(True)
+    bpy.context.view_layer.objects.active = lattice
+    assert bpy.ops.curve.mobius_flow_mend(remedy="COPY") == {"FINISHED"}
+    np.testing.assert_allclose(drawn(bpy.context.object).min(axis=0), low, atol=1e-3)
+
+
+def test_a_morph_is_not_larger_on_its_way_and_ends_as_its_goal():
+    goal = add_trefoil(40)
+    goal.name = "Goal"
+    moving = add_curve([0.5 * braid_closure([-1, -1, -1, -2, 2], 60).vertices])
+    moving.select_set(True)
+    goal.select_set(True)
+    bpy.context.view_layer.objects.active = goal
+    sizes = [Measure.RADIUS.of(Curve(evaluated(each).astype(float))) for each in (moving, goal)]
+    assert bpy.ops.curve.mobius_flow_morph(length=80, keep_size="AUTO") == {"FINISHED"}
+    curves = BakedKeys([moving]).curves
+    found = [Measure.RADIUS.of(curve) for curve in curves]
+    assert found[0] == pytest.approx(sizes[0], rel=1e-5)
+    assert found[-1] == pytest.approx(sizes[1], rel=1e-5)
+    assert max(found) < 1.02 * max(sizes)
+    assert min(found) > 0.98 * min(sizes)
+
+
+def test_a_fitted_tube_is_never_a_lump_and_changes_gently(lattice):
+    relax(**FILM | {"max_iterations": 60, "length": 100}, fit_bevel=True)
+    blocks = lattice.data.shape_keys.key_blocks
+    sizes = [size.factor for size in bake.sizes(lattice.data)]
+    seen = lattice.data.bevel_depth * np.array([block.data[0].radius for block in blocks]) * sizes
+    frames, places = np.array([point.co[:] for point in _eval_time(lattice)]).T
+    radii = np.interp(np.interp(np.arange(1, 101), frames, places), np.arange(len(blocks)), seen)
+    assert np.abs(np.diff(np.log(radii))).max() < np.log(1.3)
+    for curve, radius in zip(BakedKeys([lattice]).curves, seen, strict=True):
+        tangents = curve.edge_vectors / curve.edge_lengths[:, None]
+        turns = np.arccos(np.clip((tangents * np.roll(tangents, 1, axis=0)).sum(axis=1), -1.0, 1.0))
+        bends = np.minimum(curve.edge_lengths, np.roll(curve.edge_lengths, 1)) / np.maximum(turns, 1e-9)
+        assert np.quantile(bends, 0.02) > 0.9 * radius
+
+
+def test_a_film_of_an_earlier_version_goes_on_in_the_size_that_it_has(lattice):
+    relax(**FILM | {"keep_size": "LENGTH"})
+    record = lattice.data["mobius_flow_bake"]
+    for name in ("frames", "course", "sizes"):
+        del record[name]
+    bpy.context.scene.mobius_flow.length = 90
+    assert bake.scene_range([lattice]) == (1, 60)
+    last = BakedKeys([lattice]).curves[-1]
+    assert bpy.ops.curve.mobius_flow_continue(max_iterations=9, keep_size="RADIUS", timing="EVEN") == {"FINISHED"}
+    curves = BakedKeys([lattice]).curves
+    np.testing.assert_allclose([Measure.RADIUS.of(each) for each in curves[-5:]], Measure.RADIUS.of(last), rtol=1e-4)

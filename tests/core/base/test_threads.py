@@ -1,0 +1,202 @@
+"""BLAS threads: one while the library works, and the caller's whenever it does not."""
+
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from types import FrameType
+
+import pytest
+import threadpoolctl
+from mobius_flow.core import Iterate, RelaxOptions, minimize, relax
+from mobius_flow.core.base.threads import BLAS
+from mobius_flow.core.base.types import FloatArray
+from mobius_flow.core.driver.info import info, measure
+from mobius_flow.core.energies.density import Partials, PointPairs
+from mobius_flow.core.energies.kpoint import KPointEnergy
+from mobius_flow.core.energies.quadrature import MIDPOINT
+from mobius_flow.lab.compare.comparison import compare
+from processes import finished
+from shapes import torus_trefoil
+
+TREFOIL = torus_trefoil(40)
+SHORT = RelaxOptions(max_iterations=2, vertices=40)
+OWN = 2  # threads of the caller's pools
+POOLS = threadpoolctl.ThreadpoolController().select(user_api="blas")
+
+
+def threads() -> set[int]:
+    """Numbers of threads of this process's BLAS pools."""
+    return {library["num_threads"] for library in POOLS.info()}
+
+
+pytestmark = pytest.mark.skipif(not threads(), reason="this BLAS cannot be bounded")
+
+
+@pytest.fixture(autouse=True)
+def _pools() -> Iterator[None]:
+    """Pools of a caller, of more threads than those of the tests; nothing of them may be left changed."""
+    before = POOLS.limit(limits=OWN)
+    with POOLS.limit(limits=None):  # when this ends the thread that has set a number lets go of the pools
+        assert threads() == {OWN}
+    yield
+    assert threads() == {OWN}
+    before.restore_original_limits()
+
+
+class FaultError(Exception):
+    """Raised by a faulty energy."""
+
+
+@dataclass(frozen=True)
+class Spy:
+    """F = 1/r³, which notes the threads that there are when it is asked for, and can fail."""
+
+    seen: set[int] = field(default_factory=set)
+    faulty: bool = False
+    constant = 0.0
+    scale_exponent = -3.0
+
+    def value(self, pairs: PointPairs) -> FloatArray:
+        self.seen.update(threads())
+        if self.faulty:
+            raise FaultError
+        return pairs.r2**-1.5
+
+    def derivative(self, pairs: PointPairs) -> Partials:
+        self.seen.update(threads())
+        return Partials(r2=-1.5 * pairs.r2**-2.5)
+
+    @property
+    def options(self) -> RelaxOptions:
+        """Of a short relaxation."""
+        return replace(SHORT, energy=KPointEnergy("spy", "1/r³", self, MIDPOINT))
+
+
+def test_one_thread_at_work_and_the_callers_between_iterates() -> None:
+    spy = Spy()
+    assert [threads() for _ in relax(TREFOIL, spy.options)] == [{OWN}] * 3
+    assert spy.seen == {1}
+
+
+def test_a_callback_has_the_callers_threads() -> None:
+    spy, seen = Spy(), list[set[int]]()
+
+    def callback(_: Iterate) -> None:
+        seen.append(threads())
+
+    minimize(TREFOIL, spy.options, callback)
+    assert seen == [{OWN}] * 3
+    assert spy.seen == {1}
+
+
+def test_a_relaxation_that_is_left_leaves_nothing_behind() -> None:
+    for leave in (0, 1, 2):
+        walk = relax(TREFOIL, SHORT)
+        for _ in range(leave):
+            next(walk)
+        walk.close()
+        assert threads() == {OWN}
+
+
+@pytest.mark.parametrize("faulty", [True, False])
+def test_errors_leave_nothing_behind(faulty: bool) -> None:
+    """Raised inside, by an energy, or outside, by a callback."""
+
+    def callback(_: Iterate) -> None:
+        raise FaultError
+
+    with pytest.raises(FaultError):
+        minimize(TREFOIL, Spy(faulty=faulty).options, callback)
+    assert threads() == {OWN}
+
+
+ENTRANCES: dict[str, Callable[[], object]] = {
+    "compare": lambda: list(compare(TREFOIL, ["lbfgs"], SHORT, 60.0)),
+    "measure": lambda: measure(TREFOIL, "edge"),
+    "info": lambda: info(TREFOIL),
+    "final_energy": lambda: minimize(TREFOIL, SHORT).final_energy,
+}
+
+
+@pytest.mark.parametrize("entrance", ENTRANCES)
+def test_every_entrance_bounds_the_pools(entrance: str) -> None:
+    seen: set[int] = set()
+
+    def profile(frame: FrameType, event: str, _: object) -> None:
+        if event == "call" and "core/energies/" in frame.f_code.co_filename.replace("\\", "/"):
+            seen.update(threads())
+
+    before = sys.getprofile()
+    sys.setprofile(profile)
+    try:
+        ENTRANCES[entrance]()
+    finally:
+        sys.setprofile(before)
+    assert seen == {1}
+
+
+def test_threads_of_the_caller_may_overlap() -> None:
+    """The last of them gives the pools back, whichever it is, and the number that they had before the first."""
+    entered, leave = threading.Barrier(2), threading.Event()
+
+    def other() -> None:
+        with BLAS.bounded():
+            entered.wait()
+            leave.wait()
+            assert threads() == {1}
+
+    for first in ("main", "other"):
+        leave.clear()
+        thread = threading.Thread(target=other)
+        with BLAS.bounded():
+            thread.start()
+            entered.wait()
+            if first == "other":
+                leave.set()
+                thread.join()
+                assert threads() == {1}
+        if first == "main":
+            assert threads() == {1}
+            leave.set()
+            thread.join()
+        assert threads() == {OWN}
+
+
+def test_other_threads_can_set_their_numbers_afterwards() -> None:
+    """Threadpoolctl leaves the pools to the thread that sets a number, until it lets go of them."""
+    relaxed, seen, leave = threading.Event(), set[int](), threading.Event()
+
+    def other() -> None:
+        minimize(TREFOIL, SHORT)
+        relaxed.set()
+        leave.wait()
+
+    def more() -> None:
+        with threadpoolctl.threadpool_limits(OWN + 1, "blas"):
+            seen.update(threads())
+
+    with ThreadPoolExecutor() as pool:
+        asleep = pool.submit(other)
+        relaxed.wait()
+        pool.submit(more).result()
+        leave.set()
+        asleep.result()
+    assert seen == {OWN + 1}
+
+
+FRESH = """
+import threadpoolctl
+from mobius_flow.core import RelaxOptions, minimize
+from mobius_flow.core.knots import knot
+count = lambda: [each["num_threads"] for each in threadpoolctl.threadpool_info() if each["user_api"] == "blas"]
+before = count()
+minimize(knot("3_1", 40), RelaxOptions(max_iterations=1))
+assert count() == before, (before, count())
+"""
+
+
+def test_a_script_finds_its_pools_as_they_were() -> None:
+    done = finished([sys.executable, "-c", FRESH])
+    assert done.returncode == 0, done.stderr

@@ -1,0 +1,175 @@
+"""Adaptive meshes: neighbours stay nearer than strands, and the changes of mesh are inside the proof."""
+
+import itertools
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve, Objective, OptionError, RelaxOptions, Status, Trajectory, minimize, relax
+from mobius_flow.core.curve.distances import STRAND_RATIO, arc_distance_of_pairs
+from mobius_flow.core.curve.pins import Pins
+from mobius_flow.core.curve.refine import (
+    COLLAPSE,
+    GRADING,
+    MIN_VERTICES,
+    SPLIT,
+    Resolution,
+    graded_spacing,
+    needs_remesh,
+    onto_chords,
+    remesh,
+    superfluous,
+)
+from mobius_flow.core.driver.prepare import start_problem
+from mobius_flow.core.driver.run import Change, Run
+from mobius_flow.core.energies.barrier import near_pairs
+from mobius_flow.core.knots import knot
+from mobius_flow.core.proof import verify
+from shapes import hopf_link, lattice_knot, regular_polygon, torus_trefoil
+
+RULE = Resolution(200)
+
+
+def near_strands(gap: float) -> Curve:
+    """A long thin loop with a bulge: two strands ``gap`` apart."""
+    x = np.linspace(0, 4, 60)
+    upper = np.stack([x, gap * np.ones_like(x), 0 * x], axis=1)
+    lower = np.stack([x[::-1], -gap * np.ones_like(x), 0 * x], axis=1)
+    t = np.linspace(np.pi / 2, -np.pi / 2, 20)[1:-1]
+    end = np.stack([4.0 + np.cos(t), np.sin(t), 0 * t], axis=1)
+    return Curve(np.concatenate([upper, end, lower, np.stack([-np.cos(t), -np.sin(t), 0 * t], axis=1)]))
+
+
+def test_spacing_follows_gaps_and_is_graded():
+    curve = near_strands(0.01)
+    spacing = graded_spacing(curve, RULE)
+    middle = (curve.vertices[:, 0] > 1) & (curve.vertices[:, 0] < 3)
+    assert spacing[middle].max() < 0.03
+    ratios = spacing / spacing[curve.mesh.previous]
+    assert ratios.max() <= GRADING * (1 + 1e-12)
+    assert ratios.min() >= 1 / GRADING * (1 - 1e-12)
+
+
+def test_spacing_follows_obstacles_and_is_graded():
+    """Two edges are to fit in between the curve and a wall."""
+    curve = regular_polygon(200)
+    rule = replace(RULE, clearance=lambda each: 0.005 + np.abs(each.midpoints[:, 0] - 1.0))
+    spacing, plain = graded_spacing(curve, rule), graded_spacing(curve, RULE)
+    assert (spacing <= 0.5 * rule.clearance(curve) * (1 + 1e-12)).all()
+    assert spacing[100] == pytest.approx(plain[100])
+    assert (spacing / spacing[curve.mesh.previous]).max() <= GRADING * (1 + 1e-12)
+
+
+def test_remesh_reaches_the_rule():
+    curve = near_strands(0.01)
+    spacing = graded_spacing(curve, RULE)
+    assert needs_remesh(curve, spacing)
+    fine = remesh(curve, RULE, superfluous(curve, spacing), spacing, Pins()).curve
+    assert (fine.edge_lengths <= SPLIT * 1.01 * graded_spacing(fine, RULE)).all()
+    assert fine.length == pytest.approx(curve.length)
+
+
+def test_collapse_keeps_far_vertices_and_few_per_component():
+    curve = regular_polygon(900)
+    spacing = graded_spacing(curve, Resolution(100))
+    chosen = superfluous(curve, spacing)
+    assert len(chosen) == 300
+    assert (np.diff(np.concatenate([chosen, [chosen[0] + 900]])) >= 3).all()
+    moved = onto_chords(curve, chosen)
+    kept = np.setdiff1d(np.arange(900), chosen)
+    np.testing.assert_array_equal(moved[kept], curve.vertices[kept])
+    chord = curve.vertices[(chosen + 1) % 900] - curve.vertices[chosen - 1]
+    offset = moved[chosen] - curve.vertices[chosen - 1]
+    np.testing.assert_allclose(np.linalg.norm(np.cross(chord, offset), axis=1), 0, atol=1e-15)
+    assert len(superfluous(regular_polygon(MIN_VERTICES), np.full(MIN_VERTICES, 100.0))) == 0
+    assert COLLAPSE * 2 <= 1
+
+
+@pytest.mark.parametrize(
+    ("curve", "energy"),
+    [(near_strands(0.02), 4.0), (hopf_link(500), 8 + 4 * np.pi**2)],
+    ids=["near strands", "link with too many vertices"],
+)
+def test_adaptive_runs_are_certified_through_changes_of_mesh(curve, energy, tmp_path):
+    trajectory = Trajectory()
+    result = minimize(curve, RelaxOptions(mesh="adaptive"), trajectory.add)
+    assert result.status is Status.CONVERGED
+    assert result.certified
+    assert result.energies[-1] == pytest.approx(energy, rel=5e-3)
+    assert len(trajectory.arrays()) >= 4
+    trajectory.save(tmp_path / "t.npz")
+    verdict = verify(tmp_path / "t.npz")
+    assert verdict.accepted, verdict
+
+
+def test_stages_begin_where_the_mesh_changes_even_to_the_same_size():
+    first, *_ = relax(torus_trefoil(60), RelaxOptions(max_iterations=0))
+    trajectory = Trajectory()
+    trajectory.add(first)
+    trajectory.add(replace(first, index=1))
+    assert set(trajectory.arrays()) == {"stage_000", "stage_001", "component_sizes_000", "component_sizes_001"}
+
+
+def test_another_mesh_is_another_iterate_even_of_the_same_size():
+    """What has no iterate is in no trajectory; other constraints on the same mesh are no motion, and have none."""
+    curve, options = torus_trefoil(60), RelaxOptions(vertices=60, mesh="adaptive")
+    run = Run(start_problem(curve, options), curve, options)
+    other_lengths = replace(run.problem, constraints=replace(run.problem.constraints))
+    assert not list(run.change(Change(point=run.point.within(other_lengths))))
+    shifted = Curve(np.roll(curve.vertices, 1, axis=0))
+    assert shifted.mesh == curve.mesh
+    (iterate,) = run.change(Change(point=start_problem(shifted, options).at_curve(shifted)))
+    assert iterate.index == 1
+    np.testing.assert_array_equal(iterate.curve.vertices, shifted.vertices)
+
+
+def test_changes_of_mesh_are_within_the_limit():
+    """A change is an iteration, and so is the motion before it: at no limit do they make more of them."""
+    curve = near_strands(0.02)
+    steps = itertools.pairwise(relax(curve, RelaxOptions(mesh="adaptive")))
+    before, after = next((a, b) for a, b in steps if b.curve.mesh is not a.curve.mesh)
+    for limit in range(after.index - 2, after.index + 1):
+        result = minimize(curve, RelaxOptions(mesh="adaptive", max_iterations=limit))
+        assert result.last.index == limit
+        assert result.message.startswith(f"stopped at the iteration limit ({limit})")
+        assert len(result.curve) == len((after if limit == after.index else before).curve)
+
+
+def test_famous_unknot_adaptively(tmp_path):
+    trajectory = Trajectory()
+    result = minimize(knot("culprit"), RelaxOptions(mesh="adaptive"), trajectory.add)
+    assert result.energies[-1] < 4.01
+    trajectory.save(tmp_path / "t.npz")
+    assert verify(tmp_path / "t.npz").accepted
+
+
+@pytest.mark.parametrize("mesh", [pytest.param("finer", marks=pytest.mark.slow), "adaptive"])
+def test_granny_has_no_minimiser_and_is_told_so(mesh, tmp_path):
+    """A composite knot's strands pull tight without limit: that is no convergence, and no finer mesh would help."""
+    trajectory = Trajectory()
+    options = RelaxOptions(vertices=100, mesh=mesh, tolerance=3e-3)
+    result = minimize(lattice_knot("3_1#3_1"), options, trajectory.add)
+    assert result.status is Status.STALLED
+    assert "pull tight" in result.message
+    assert result.certified
+    assert mesh == "adaptive" or len(result.phases) == 1
+    trajectory.save(tmp_path / "t.npz")
+    assert verify(tmp_path / "t.npz").accepted
+
+
+def test_resolve_goes_on_until_strands_are_resolved():
+    result = minimize(lattice_knot("3_1"), RelaxOptions(vertices=60, mesh="finer"))
+    assert result.status is Status.CONVERGED
+    assert len(result.curve) > 60
+    i, j = near_pairs(result.curve)
+    distance = np.linalg.norm(result.curve.midpoints[i] - result.curve.midpoints[j], axis=1)
+    along = arc_distance_of_pairs(result.curve, i, j, 0.5)
+    assert (along < STRAND_RATIO * distance).all(), "edges that grow longer along a strand are near, strands are not"
+    assert Objective().barrier.value(result.curve) < 5e-6
+    assert result.energies[-1] == pytest.approx(74.412, rel=6e-3)
+
+
+@pytest.mark.parametrize("mesh", ["finer", "adaptive"])
+def test_one_rule_for_edge_lengths(mesh):
+    with pytest.raises(OptionError, match=f"mesh='{mesh}' makes its own edge_lengths"):
+        RelaxOptions(mesh=mesh, edge_lengths="keep")

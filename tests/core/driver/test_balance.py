@@ -1,0 +1,306 @@
+"""Of the Möbius images of a relaxed curve, the one that bends least, and the proved way there."""
+
+import itertools
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mobius_flow.core import (
+    Curve,
+    Hand,
+    Iterate,
+    MoebiusEnergy,
+    OptionError,
+    RelaxOptions,
+    Status,
+    Trajectory,
+    minimize,
+    relax,
+)
+from mobius_flow.core.curve.measures import bending
+from mobius_flow.core.descent import Point, Step
+from mobius_flow.core.driver.moves import balance
+from mobius_flow.core.driver.moves.balance import CUT_OFF, Balance, MoebiusImages, moebius_image
+from mobius_flow.core.driver.prepare import start_problem
+from mobius_flow.core.driver.run import Run
+from mobius_flow.core.knots import knot, torus_knot
+from mobius_flow.core.proof import verify
+from mobius_flow.core.solve.constraints import Constraints
+from shapes import regular_polygon, torus_trefoil
+from smooth_curves import dual_circles
+from taylor import taylor_slope
+
+
+def unbalanced(curve: Curve, *v: float) -> Curve:
+    """A Möbius image whose edges are about as even as the curve's."""
+    return MoebiusImages(curve, curve.edge_lengths).at(np.array([1.0, *v]))
+
+
+def point(curve: Curve, **options: object) -> Point:
+    return start_problem(curve, RelaxOptions(**options)).at_curve(curve)  # type: ignore[arg-type]
+
+
+def run_at(start: Point) -> Run:
+    return Run(start.problem, Curve(start.placed, start.problem.mesh), RelaxOptions())
+
+
+def way_to_balance(start: Point) -> tuple[Step, ...]:
+    return Balance(run_at(start)).way(start)
+
+
+def largest_chord(curve: Curve) -> float:
+    return float(np.linalg.norm(curve.vertices[:, None] - curve.vertices[None], axis=2).max())
+
+
+def test_the_balanced_image_by_itself() -> None:
+    given = unbalanced(torus_trefoil(120), 0.3, 0.1, -0.2)
+    image = balance.balanced(given)
+    assert bending(image) < 0.9 * bending(given)
+    assert bending(image) <= 1.001 * bending(torus_trefoil(120))
+    assert MoebiusEnergy().value(image) == pytest.approx(MoebiusEnergy().value(given), rel=5e-3)
+
+
+@pytest.mark.parametrize("curve", [torus_trefoil(120), dual_circles(60)], ids=["trefoil", "Hopf link"])
+def test_images_keep_length_place_and_the_ratios_of_edges(curve: Curve) -> None:
+    image = MoebiusImages(curve, curve.edge_lengths).at(np.array([1.0, 0.2, -0.1, 0.3]))
+    assert image.length == pytest.approx(curve.length)
+    for part in curve.mesh.slices:
+        ratio = image.edge_lengths[part] / curve.edge_lengths[part]
+        assert ratio.max() / ratio.min() < 1.03, "but for arcs that are longer than their chords"
+    barycenters = [each.edge_lengths @ each.midpoints / each.length for each in (curve, image)]
+    np.testing.assert_allclose(*barycenters, atol=1e-10)
+
+
+def test_the_identity_gives_the_curve_back() -> None:
+    curve = torus_trefoil(120)
+    image = MoebiusImages(curve, curve.edge_lengths).at(np.array([1.0, 0.0, 0.0, 0.0]))
+    assert np.abs(image.vertices - curve.vertices).max() < 1e-3 * largest_chord(curve)
+
+
+def test_images_are_on_the_images_of_the_smooth_curve() -> None:
+    """Sliding is along the curve: a fine polygon's vertices are near those of the mapped fine polygon."""
+    fine, q = torus_trefoil(2000), np.array([1.0, 0.2, -0.1, 0.3])
+    unit = fine.vertices / np.sqrt(np.square(fine.vertices).sum(axis=1).mean())
+    mapped = fine.with_vertices(moebius_image(unit - fine.edge_lengths @ fine.midpoints / fine.length, q))
+    image = MoebiusImages(fine, fine.edge_lengths).at(q)
+    assert bending(image) == pytest.approx(bending(mapped), rel=1e-3)
+    assert largest_chord(image) / image.length == pytest.approx(largest_chord(mapped) / mapped.length, rel=1e-4)
+
+
+def test_derivative_that_is_minimised_with() -> None:
+    images = MoebiusImages(torus_trefoil(60), torus_trefoil(60).edge_lengths)
+    q, u = np.array([0.8, 0.1, 0.2, -0.3]), np.array([0.3, -0.2, 0.5, 0.1])
+    value, derivative = images.of_vertices(q)
+    slope = taylor_slope(lambda t: images.of_vertices(q + t * u)[0], [value, derivative @ u])
+    assert slope == pytest.approx(2.0, abs=0.1)
+
+
+@pytest.mark.parametrize("v", [(0.3, 0.1, 0.2), (-0.1, 0.3, 0.0), (0.4, 0.3, -0.7)])
+def test_a_symmetric_knot_is_found_again(v: tuple[float, ...]) -> None:
+    """The Clifford torus knot bends least of all its images; a map and the way back leave nothing of the map."""
+    symmetric = torus_knot(2, 3, 300)
+    start = unbalanced(symmetric, *v)
+    assert bending(start) > 1.05 * bending(symmetric)
+    end = way_to_balance(point(start))[-1].point.curve
+    assert bending(end) == pytest.approx(bending(symmetric), rel=1e-3)
+
+
+def test_the_way_is_proved_leg_by_leg_and_goes_nowhere_fast() -> None:
+    start = point(unbalanced(torus_knot(2, 3, 200), 0.3, 0.1, 0.2))
+    steps = way_to_balance(start)
+    assert len(steps) > 5
+    assert all(step.certified and len(step.legs) == 1 for step in steps)
+    frames = [start.placed, *(step.point.placed for step in steps)]
+    for a, b in itertools.pairwise(frames):
+        assert start.problem.free_motion(a, b).proved
+        assert np.linalg.norm(b - a, axis=1).max() < 0.1 * largest_chord(start.curve)
+
+
+@pytest.mark.parametrize("curve", [regular_polygon(60), torus_knot(2, 3, 120)], ids=["circle", "trefoil"])
+def test_what_bends_least_stays(curve: Curve) -> None:
+    assert way_to_balance(point(curve)) == ()
+
+
+def uneven_circle() -> Curve:
+    angles = np.sort(np.random.default_rng(0).uniform(0.0, 2.0 * np.pi, 30))
+    return Curve.from_components([np.stack([np.cos(angles), np.sin(angles), np.zeros(30)], axis=1)])
+
+
+def test_the_identity_is_no_gain(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its image, smooth and even, bends less than an uneven polygon; but there is no way to go, and no axis of it."""
+    bumpy = uneven_circle().with_vertices(uneven_circle().vertices * np.where(np.arange(30) % 3, 1.0, 1.03)[:, None])
+    start, identity = point(bumpy, edge_lengths="equal"), np.array([1.0, 0.0, 0.0, 0.0])
+    image = MoebiusImages(start.curve, start.problem.constraints.lengths).at(identity)
+    assert bending(image) < 0.95 * bending(start.curve)
+    monkeypatch.setattr(balance, "least_bending", lambda *_: [identity])
+    assert way_to_balance(start) == ()
+
+
+def test_what_the_flow_takes_back_is_not_told_as_a_gain() -> None:
+    result = minimize(uneven_circle(), RelaxOptions(balance=True, vertices=30, edge_lengths="keep"))
+    assert result.status is Status.CONVERGED
+    assert "balanced: " not in result.message
+
+
+def test_no_way_leads_through_a_strand() -> None:
+    """The pole inside a circle, in its plane: it would have to come through the circle from wherever it comes."""
+    start, inside = point(regular_polygon(60)), np.array([1.0, -2.0, 0.0, 0.0])
+    images = MoebiusImages(start.curve, start.curve.edge_lengths)
+    way = Balance(run_at(start))._way
+    assert way(start, images, inside, start.problem) == ()
+    assert way(start, images, -inside, start.problem) == ()
+    outside = np.array([1.0, -0.5, 0.0, 0.0])
+    assert way(start, images, outside, start.problem)
+    assert way(start, images, -outside, start.problem) == (), "the long way is through the circle"
+
+
+def test_the_next_best_where_there_is_no_way_to_the_best(monkeypatch: pytest.MonkeyPatch) -> None:
+    start = point(unbalanced(torus_knot(2, 3, 120), 0.3, 0.1, 0.2))
+    asked = []
+
+    def no_way(*arguments: object) -> tuple[()]:
+        asked.append(arguments[3])
+        return ()
+
+    monkeypatch.setattr(Balance, "_way", no_way)
+    assert way_to_balance(start) == ()
+    assert len(asked) >= 4
+    np.testing.assert_array_equal(asked[::2], -np.array(asked[1::2]))
+
+
+def test_images_that_bend_more_than_their_vertices_promised_are_passed_over(monkeypatch: pytest.MonkeyPatch) -> None:
+    start = point(unbalanced(torus_knot(2, 3, 120), 0.3, 0.1, 0.2))
+    found = balance.least_bending(MoebiusImages(start.curve, start.curve.edge_lengths), 3)
+    monkeypatch.setattr(balance, "least_bending", lambda *_: [np.array([0.6, 0.8, 0.0, 0.0]), *found])
+    assert bending(way_to_balance(start)[-1].point.curve) < 0.96 * bending(start.curve)
+
+
+def test_lengths_of_links_follow_their_images() -> None:
+    """Components shrink and grow in a Möbius image: the targets are what they have there, and as even as before."""
+    start = point(unbalanced(dual_circles(80), 0.3, 0.4, 0.0))
+    steps = way_to_balance(start)
+    end = steps[-1].point
+    assert isinstance(end.problem.constraints, Constraints)
+    assert end.problem.constraints.length_error(end.curve) < 0.01
+    assert np.abs(end.residual[len(end.vertices) :]).max() < 1e-10
+    shares = [each.curve.edge_lengths[:80].sum() / each.curve.length for each in (start, end)]
+    assert abs(shares[1] - 0.5) < abs(shares[0] - 0.5)
+
+
+@pytest.fixture(scope="module")
+def runs() -> dict[bool, tuple[list[Iterate], object]]:
+    found = {}
+    for wanted in (False, True):
+        iterates: list[Iterate] = []
+        found[wanted] = iterates, minimize(knot("8_19"), RelaxOptions(balance=wanted, mesh="fixed"), iterates.append)
+    return found
+
+
+def test_a_balanced_run_bends_less_at_no_more_energy(runs) -> None:
+    (_, plain), (iterates, result) = runs[False], runs[True]
+    assert result.status is Status.CONVERGED
+    assert bending(result.curve) < 0.7 * bending(plain.curve)
+    assert result.final_energy < plain.final_energy + 1e-3
+    assert iterates[-1].edge_length_error < 1e-6
+    before, after = bending(plain.curve), bending(result.curve)
+    told = f"; balanced: bending reduced from {before:.4g} to {after:.4g} (4π² for a round circle)"
+    assert told in result.message
+    assert "energy rose" not in result.message, "that is about the flow's own steps"
+
+
+def test_a_balanced_run_is_certified(runs, tmp_path: Path) -> None:
+    iterates, result = runs[True]
+    assert result.certified
+    trajectory = Trajectory()
+    for iterate in iterates:
+        trajectory.add(iterate)
+    trajectory.save(tmp_path / "T.npz")
+    assert verify(tmp_path / "T.npz").accepted
+
+
+def test_until_it_is_balanced_a_run_is_the_same(runs) -> None:
+    (plain, _), (iterates, _) = runs[False], runs[True]
+    for a, b in zip(plain, iterates, strict=False):
+        assert np.array_equal(a.curve.vertices, b.curve.vertices)
+
+
+@pytest.mark.slow
+def test_the_limit_of_iterations_holds_on_the_way(runs) -> None:
+    plain = runs[False][0]
+    limit = len(plain) + 10
+    result = minimize(knot("8_19"), RelaxOptions(balance=True, mesh="fixed", max_iterations=limit))
+    assert result.status is Status.ITERATION_LIMIT
+    assert result.last.index == limit
+    assert result.certified
+    assert np.array_equal(result.curve.vertices, runs[True][0][limit].curve.vertices)
+    assert CUT_OFF in result.message
+
+
+@pytest.mark.slow
+def test_without_iterations_left_nothing_is_said_to_be_balanced(runs) -> None:
+    plain, result = runs[False]
+    assert result.status is Status.CONVERGED
+    limit = plain[-1].index
+    result = minimize(knot("8_19"), RelaxOptions(balance=True, mesh="fixed", max_iterations=limit))
+    assert result.status is Status.ITERATION_LIMIT
+    assert result.last.index == limit
+    assert "balanced" not in result.message
+    assert CUT_OFF in result.message
+
+
+def test_what_is_cut_off_before_is_not_said_to_be_on_the_way(runs) -> None:
+    limit = runs[False][0][-1].index // 2
+    result = minimize(knot("8_19"), RelaxOptions(balance=True, mesh="fixed", max_iterations=limit))
+    assert result.status is Status.ITERATION_LIMIT
+    assert CUT_OFF not in result.message
+
+
+@pytest.mark.slow
+def test_a_mesh_becomes_finer_where_strands_are_near_in_the_balanced_shape() -> None:
+    """Not where they were near before: in its balanced shape this knot's strands are far enough apart."""
+    plain, balanced = (minimize(knot("8_19"), RelaxOptions(balance=wanted)) for wanted in (False, True))
+    assert len(plain.curve) == 346
+    assert len(balanced.curve) == 228, "as at the start"
+    assert balanced.final_energy == pytest.approx(plain.final_energy, rel=2e-3)
+    assert "strands are nearer" not in balanced.message
+
+
+def test_what_is_balanced_already_is_said_to_be() -> None:
+    result = minimize(knot("3_1"), RelaxOptions(balance=True))
+    assert result.message.endswith("; no other shape of the same energy that can be reached bends less")
+
+
+@pytest.mark.parametrize("method", ["flow-moebius", "penalty-lbfgs"])
+def test_every_geometry_goes_there(method: str) -> None:
+    start = unbalanced(torus_knot(2, 3, 120), 0.3, 0.1, 0.2)
+    result = minimize(start, RelaxOptions(balance=True, method=method, tolerance=1e-2))
+    assert result.status is Status.CONVERGED
+    assert result.certified
+    assert bending(result.curve) < 0.95 * bending(start)
+
+
+def test_energies_that_see_size_are_refused() -> None:
+    with pytest.raises(OptionError, match=r"balance takes Möbius images, which have another tangent-point"):
+        minimize(torus_trefoil(60), RelaxOptions(balance=True, energy="tangent-point"))
+
+
+def test_what_a_hand_has_pulled_is_balanced_again_but_for_its_pins() -> None:
+    options = RelaxOptions(vertices=60, mesh="fixed", balance=True)
+    least = bending(minimize(torus_knot(2, 3, 60), options).curve)
+
+    def drag(pin: bool) -> float:
+        """The bending of a trefoil that was balanced and then pulled far out, against the least."""
+        hand, rests = Hand(stays=True), 0
+        for iterate in relax(unbalanced(torus_knot(2, 3, 60), 0.5, 0.2, 0.1), options, hand):
+            if hand.rests:
+                rests += 1
+                if rests == 1:
+                    assert bending(iterate.curve) < 1.05 * least, "it has been balanced once"
+                    hand.grab(0, 0.1)
+                    hand.move(10.0 * iterate.curve.vertices[6])
+                elif rests == 2:
+                    hand.release(pin)
+        return bending(iterate.curve) / least
+
+    assert drag(pin=False) < 1.05
+    assert drag(pin=True) > 1.1

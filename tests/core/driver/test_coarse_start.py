@@ -1,0 +1,225 @@
+"""Curves of many vertices begin with fewer, and end with all."""
+
+import itertools
+from pathlib import Path
+
+import numpy as np
+import pytest
+from changed_moves import change
+from families import family
+from hard_curves import hard_unknot
+from mobius_flow.core import Curve, Iterate, Outcome, RelaxOptions, Status, Trajectory, minimize
+from mobius_flow.core.curve import Mesh
+from mobius_flow.core.curve.refine import smoothed
+from mobius_flow.core.driver.moves import CoarseStart
+from mobius_flow.core.driver.outcome import Rises
+from mobius_flow.core.knots import knot, scramble
+from mobius_flow.core.proof import verify
+from shapes import regular_polygon, torus_trefoil
+
+
+@pytest.fixture
+def everywhere(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also for curves that are small enough for tests."""
+    change(monkeypatch, CoarseStart, min_vertices=100)
+
+
+def bent(curve: Curve) -> Curve:
+    """Something to do."""
+    return curve.with_vertices(curve.vertices + 0.1 * np.sin(3 * curve.vertices[:, ::-1]))
+
+
+def relaxed(curve: Curve, **options: object) -> tuple[list[Iterate], Trajectory]:
+    iterates: list[Iterate] = []
+    trajectory = Trajectory()
+    result = minimize(curve, RelaxOptions(**{"vertices": len(curve), "untangle": "never"} | options), iterates.append)  # type: ignore[arg-type]
+    for iterate in iterates:
+        trajectory.add(iterate)
+    assert result.certified
+    return iterates, trajectory
+
+
+@pytest.mark.usefixtures("everywhere")
+@pytest.mark.parametrize(
+    "curve",
+    [bent(torus_trefoil(240)), hard_unknot(20, seed=3), bent(knot("L2a1", 400))],
+    ids=["trefoil", "hard unknot", "Hopf link"],
+)
+def test_fewer_vertices_at_first_and_all_in_the_end(curve: Curve, tmp_path: Path) -> None:
+    result = minimize(curve, RelaxOptions(vertices=3 * len(curve), mesh="fixed", max_iterations=0))
+    fine = result.curve
+    iterates, trajectory = relaxed(fine)
+    counts = [len(iterate.curve) for iterate in iterates]
+    assert counts[0] == counts[-1] == len(fine)
+    assert min(counts) < 0.7 * len(fine)
+    assert iterates[-1].curve.mesh == fine.mesh
+    assert iterates[-1].edge_length_error < 1e-6
+    steps = [a < b for a, b in itertools.pairwise(counts)]
+    assert sum(steps) == 1, "all come back at once"
+    trajectory.save(tmp_path / "T.npz")
+    assert verify(tmp_path / "T.npz").accepted
+
+
+@pytest.mark.usefixtures("everywhere")
+def test_the_same_minimum_in_fewer_steps_on_the_fine_mesh() -> None:
+    curve = bent(torus_trefoil(600))
+    fixed, _ = relaxed(curve, mesh="fixed", method="cg")  # which second derivatives do not end
+    iterates, _ = relaxed(curve, method="cg")
+    assert iterates[-1].energy == pytest.approx(fixed[-1].energy, rel=1e-6)
+    assert sum(bool(iterate.path) for iterate in iterates if len(iterate.curve) == 600) < len(fixed)
+
+
+@pytest.mark.usefixtures("everywhere")
+@pytest.mark.parametrize(
+    ("least", "limit"),
+    [(1, 0), (1, 5), (1, 33), *((CoarseStart.min_iterations, k) for k in (1, 12, CoarseStart.min_iterations))],
+)
+def test_a_run_that_is_cut_short_has_all_vertices(least: int, limit: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The way back is within the limit, and ends on the smooth curve: no corners of the coarse one are left."""
+    change(monkeypatch, CoarseStart, min_iterations=least)
+    options = RelaxOptions(vertices=600, max_iterations=limit, tolerance=1e-9, method="flow-h1")
+    result = minimize(torus_trefoil(600), options)
+    assert result.status is Status.ITERATION_LIMIT
+    assert len(result.energies) == limit + 1
+    assert len(result.curve) == 600
+    assert result.certified
+    assert result.last.energy < 1.0005 * result.energies[0]
+
+
+@pytest.mark.usefixtures("everywhere")
+@pytest.mark.parametrize("limit", family([CoarseStart.min_iterations, 34]))
+def test_a_run_that_is_cut_short_ends_on_the_constraints(limit: int) -> None:
+    """Between strands the smooth curve with all vertices is a hundredth off."""
+    result = minimize(hard_unknot(20, seed=3), RelaxOptions(vertices=600, max_iterations=limit, untangle="never"))
+    assert result.message.startswith(f"stopped at the iteration limit ({limit}); changes of mesh")
+    assert result.last.edge_length_error < 1e-10
+    assert result.certified
+
+
+def test_lengths_that_are_not_reached_at_the_limit_are_told_of() -> None:
+    result = minimize(bent(torus_trefoil(300)), RelaxOptions(vertices=300, max_iterations=1))
+    off = 100 * result.last.edge_length_error
+    assert off > 1
+    assert result.message.endswith(f"; lengths are still up to {off:.2g} % off target")
+
+
+@pytest.mark.usefixtures("everywhere")
+def test_few_iterations_are_all_for_untangling() -> None:
+    iterates, _ = relaxed(torus_trefoil(600), max_iterations=4)
+    assert iterates[-1].energy < 0.95 * iterates[0].energy
+
+
+@pytest.mark.usefixtures("everywhere")
+@pytest.mark.parametrize("corners", family([3, 4]))
+def test_no_component_has_more_vertices_at_first_than_in_the_end(corners: int) -> None:
+    """A polygon around a ring is coarser than its gap; it may keep that, but what is added could not be left out."""
+    square = regular_polygon(corners).vertices[:, [0, 2, 1]] + np.array([1.0, 0.0, 0.0])
+    iterates, _ = relaxed(Curve.from_components([regular_polygon(900).vertices, 0.9 * square]))
+    assert {iterate.curve.mesh.component_sizes[1] for iterate in iterates} == {corners}
+    assert min(iterate.curve.mesh.component_sizes[0] for iterate in iterates) < 900
+    assert iterates[-1].curve.mesh.component_sizes == (900, corners)
+
+
+@pytest.mark.parametrize("options", [{"mesh": "fixed"}, {"edge_lengths": "keep"}, {"mesh": "finer"}])
+@pytest.mark.usefixtures("everywhere")
+def test_where_vertices_are_to_stay_they_do(options: dict[str, str]) -> None:
+    iterates, _ = relaxed(bent(torus_trefoil(600)), max_iterations=3, **options)
+    assert {len(iterate.curve) for iterate in iterates} == {600}
+
+
+def test_small_curves_keep_their_vertices() -> None:
+    iterates, _ = relaxed(bent(torus_trefoil(600)), max_iterations=3)
+    assert {len(iterate.curve) for iterate in iterates} == {600}
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_smooth_curves_through_polygons(dimension: int) -> None:
+    coarse = regular_polygon(24, dimension)
+    fine = smoothed(coarse, Mesh((500,)))
+    np.testing.assert_allclose(np.linalg.norm(fine.vertices, axis=1), 1.0, atol=1.5e-5)  # (2π∕24)⁴∕384
+    assert np.ptp(fine.edge_lengths) < 1e-3 * fine.edge_lengths.mean()
+    np.testing.assert_array_equal(fine.vertices[0], coarse.vertices[0])
+
+
+@pytest.mark.usefixtures("everywhere")
+def test_an_interrupt_tells_that_vertices_are_missing() -> None:
+    def interrupt(iterate: Iterate) -> None:
+        if iterate.index == 9:
+            raise KeyboardInterrupt
+
+    result = minimize(bent(torus_trefoil(600)), RelaxOptions(vertices=600), interrupt)
+    assert result.status is Status.INTERRUPTED
+    assert result.message.endswith(f"; it has {len(result.curve)} vertices, 600 at the start")
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("everywhere")
+def test_vertices_come_back_in_a_tangle_too() -> None:
+    """Strands leave way for part of the motion to the smooth curve."""
+    tangle = scramble(regular_polygon(60), seed=5)
+    fine = minimize(tangle, RelaxOptions(vertices=2000, mesh="fixed", max_iterations=0)).curve
+    iterates, _ = relaxed(fine, max_iterations=60)
+    assert len(iterates[-1].curve) == 2000
+    assert iterates[-1].edge_length_error < 0.5
+
+
+@pytest.mark.usefixtures("everywhere")
+@pytest.mark.slow
+def test_penalised_lengths_keep_all_vertices() -> None:
+    iterates, _ = relaxed(bent(torus_trefoil(600)), max_iterations=40, method="penalty-lbfgs")
+    assert {len(iterate.curve) for iterate in iterates} == {600}
+
+
+@pytest.mark.usefixtures("everywhere")
+@pytest.mark.parametrize("options", [{"vertices": 600}, {"mesh": "adaptive"}], ids=["coarse start", "adaptive"])
+def test_rises_of_the_energy_with_the_mesh_are_told_of(options: dict[str, object]) -> None:
+    iterates: list[Iterate] = []
+    result = minimize(bent(torus_trefoil(600)), RelaxOptions(**options), iterates.append)  # type: ignore[arg-type]
+    energies, told = result.energies, []
+    changed = [k for k, iterate in enumerate(iterates) if k and iterate.step_size == 0.0]
+    for _, group in itertools.groupby(enumerate(changed), lambda place: place[1] - place[0]):
+        first, *_, last = [k for _, k in group]
+        highest = max(energies[first : last + 1])
+        assert highest > max(energies[first - 1], energies[last])
+        passed = " → ".join(f"{energy:.6g}" for energy in (energies[first - 1], highest, energies[last]))
+        told.append(f"{passed} at iteration {last}")
+    assert told
+    assert result.message.endswith(f"; changes of mesh or shape raised the energy: {', '.join(told)}")
+
+
+@pytest.mark.parametrize(
+    ("further", "told"),
+    [
+        ([1.0, 1.125], "in another change by 0.125"),
+        ([1.0, 1.125, 1.0, 1.0625], "in 2 further changes by 0.188 in total"),
+    ],
+)
+def test_many_rises_are_added_up(further: list[float], told: str) -> None:
+    curve = regular_polygon(5)
+    rises, energies = Rises(), [4.0, 4.5, 3.0, 3.5, 2.0, 2.25, *further]
+    iterates = [Iterate(2 * k, curve, energy, 1.0, 0.0, (), True, 0.0, "lbfgs") for k, energy in enumerate(energies)]
+    for k in range(0, len(iterates), 2):
+        rises.change(iterates[k], iterates[k + 1])
+    message = rises.summarised(Outcome(Status.CONVERGED, ("done",)), 9).message
+    assert message == (
+        "done; changes of mesh or shape raised the energy: 4 → 4.5 at iteration 2, 3 → 3.5 at iteration 6, "
+        f"2 → 2.25 at iteration 10, and {told}"
+    )
+
+
+@pytest.mark.parametrize(
+    ("energies", "told"),
+    [
+        ([4.0, 4.5, 4.25], "4 → 4.5 → 4.25"),
+        ([5.0, 3.0, 4.0], "5 → 3 → 4"),
+        ([9.1549, 9.15490002, 9.1549], "9.1549 → 9.15490002 → 9.1549"),
+        ([9.1549, 9.15490002], "9.1549 → 9.15490002"),
+    ],
+)
+def test_energies_that_are_told_show_where_it_rose(energies: list[float], told: str) -> None:
+    curve, rises = regular_polygon(5), Rises()
+    iterates = [Iterate(3, curve, energy, 1.0, 0.0, (), True, 0.0, "lbfgs") for energy in energies]
+    for before, after in itertools.pairwise(iterates):
+        rises.change(before, after)
+    message = rises.summarised(Outcome(Status.CONVERGED, ("done",)), 9).message
+    assert message == f"done; changes of mesh or shape raised the energy: {told} at iteration 3"

@@ -1,0 +1,172 @@
+"""Energies, terms, metrics and constraints of others are tried before a run, and what is wrong with them is said."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from mobius_flow.core import Curve, OptionError, RelaxOptions, relax
+from mobius_flow.core.base.types import FloatArray
+from mobius_flow.core.energies import ENERGIES, KPointEnergy
+from mobius_flow.core.energies.densities import TangentPointDensity
+from mobius_flow.core.energies.density import Partials, PointPairs
+from mobius_flow.core.energies.quadrature import ENDS
+from mobius_flow.core.solve.constraints import BLOCKS
+from mobius_flow.core.solve.constraints.barycenters import Barycenters
+from mobius_flow.core.solve.metrics import L2Metric, SparseInnerProduct
+from shapes import torus_trefoil
+
+
+class Height:
+    """Σ z², or what is given."""
+
+    name = "height"
+    slope, value_there = 2.0, 1.0
+
+    def value(self, curve: Curve) -> float:
+        return float(np.sum(curve.vertices[:, 2] ** 2))
+
+    def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
+        derivative = np.zeros_like(curve.vertices)
+        derivative[:, 2] = self.slope * curve.vertices[:, 2]
+        return self.value_there * self.value(curve), derivative
+
+
+class Upwards(Height):
+    slope = -2.0
+
+
+class Twice(Height):
+    slope = 4.0
+
+
+class Other(Height):
+    value_there = 2.0
+
+
+class Undefined(Height):
+    def value(self, curve: Curve) -> float:
+        return float("nan")
+
+
+class Flat(Height):
+    def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
+        return self.value(curve), curve.vertices[:, 2]
+
+
+class Jagged(Height):
+    """Not smooth at any scale: differences say nothing."""
+
+    def value(self, curve: Curve) -> float:
+        return float(np.sum(np.random.default_rng(abs(hash(curve.vertices.tobytes()))).random(3)))
+
+    def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
+        return self.value(curve), np.ones_like(curve.vertices)
+
+
+@dataclass(frozen=True)
+class Lopsided(L2Metric):
+    """L² with something that is not symmetric, or of the wrong sign."""
+
+    factor: float = 1.0
+    more: float = 0.0
+
+    def at(self, curve: Curve) -> SparseInnerProduct:
+        n = len(curve)
+        shifted = sp.diags_array(np.ones(n - 1), offsets=1, shape=(n, n))
+        return SparseInnerProduct(sp.csr_array(self.factor * sp.eye_array(n) + self.more * shifted))
+
+
+def start(**options: object) -> None:
+    next(relax(torus_trefoil(40), RelaxOptions(vertices=40, **options)))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("term", "said"),
+    [
+        (
+            Upwards(),
+            r"term 'height' has the slope \S+ by its derivative and -\S+ by its values; its derivative has the w",
+        ),
+        (Twice(), r"term 'height' has the slope (\S+) by its derivative and \S+ by its values; correct its derivative"),
+        (Other(), "term 'height' is .* by value, and .* by value_and_derivative at one curve"),
+        (Undefined(), "term 'height' is nan at the start; its value must be one finite number"),
+        (Flat(), r"has a derivative that is of shape \(40,\); give finite numbers, of shape \(40, 3\)"),
+    ],
+)
+def test_a_term_whose_derivative_is_wrong(term: Height, said: str) -> None:
+    with pytest.raises(OptionError, match=said):
+        start(terms=((term, 0.1),))
+
+
+@pytest.mark.parametrize("term", [Height(), Jagged()])
+def test_a_term_that_may_be_right(term: Height) -> None:
+    start(terms=((term, 0.1),))
+
+
+def test_an_energy_whose_derivative_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
+    own = ENERGIES["tangent-point"]
+    start(energy=own)
+    right = KPointEnergy.value_and_derivative
+
+    def wrong(self: KPointEnergy, curve: Curve) -> tuple[float, FloatArray]:
+        value, derivative = right(self, curve)
+        return value, -derivative
+
+    monkeypatch.setattr(KPointEnergy, "value_and_derivative", wrong)
+    with pytest.raises(OptionError, match=r"energy 'tangent-point' has the slope .* wrong sign"):
+        start(energy=own)
+
+
+@dataclass(frozen=True)
+class RealOnly(TangentPointDensity):
+    """Not analytic: complex steps are lost, or refused."""
+
+    function: np.ufunc = np.abs
+
+    def derivative(self, pairs: PointPairs) -> Partials:
+        own = super().derivative(pairs)
+        return own._replace(r2=own.r2.real * self.function(pairs.r2) / self.function(pairs.r2.real))
+
+
+@pytest.mark.parametrize("more", [{"method": "trust-region"}, {"method": "implicit-h1"}, {"stability": True}])
+@pytest.mark.parametrize(
+    ("function", "said"),
+    [
+        (np.abs, "the derivative of energy 'own' has the slope .* by its derivative and .*; correct its derivative"),
+        (np.cbrt, "energy 'own' has no second derivative by complex steps: ufunc 'cbrt' not supported"),
+    ],
+)
+def test_a_density_for_real_numbers_alone(more: dict[str, object], function: np.ufunc, said: str) -> None:
+    densities = RealOnly(function=function), TangentPointDensity()
+    own, right = (KPointEnergy("own", "own", density, ENDS) for density in densities)
+    start(energy=own)
+    start(energy=right, **more)
+    with pytest.raises(OptionError, match=said):
+        start(energy=own, **more)
+
+
+@pytest.mark.parametrize(
+    ("metric", "said"),
+    [
+        (Lopsided(more=0.5), "metric 'l2' has ⟨u, v⟩ = .* and ⟨v, u⟩ = .* for some u and v"),
+        (Lopsided(factor=-1.0), "metric 'l2' has ⟨u, u⟩ = -.* for some u; it must be above 0"),
+    ],
+)
+def test_a_metric_that_is_none(metric: Lopsided, said: str) -> None:
+    start(metric=Lopsided())
+    with pytest.raises(OptionError, match=said):
+        start(metric=metric)
+
+
+class Backwards(Barycenters):
+    """Barycenters whose rows have the wrong sign."""
+
+    def residual(self, curve: Curve) -> FloatArray:
+        return -super().residual(curve)
+
+
+def test_a_constraint_whose_derivative_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("mobius_flow.core.solve.constraints.BLOCKS", (*BLOCKS, Backwards.of))
+    with pytest.raises(OptionError, match=r"constraint 'Backwards' has the slope .* its derivative has the wrong sign"):
+        start()

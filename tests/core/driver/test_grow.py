@@ -1,0 +1,195 @@
+"""Growth: lengths become a multiple of those of the start, by proved motions, as far as there is room for that."""
+
+import json
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from families import family
+from mobius_flow.core import METHODS, Curve, Mesh, OptionError, RelaxOptions, Status, Trajectory, minimize, relax
+from mobius_flow.core.curve.pins import Pins
+from mobius_flow.core.curve.refine import EDGES_PER_CLEARANCE, SPLIT
+from mobius_flow.core.driver.prepare import start_problem
+from mobius_flow.core.knots import knot
+from mobius_flow.core.proof import verify
+from mobius_flow.core.solve.constraints import Constraints, weighted_barycenter
+from shapes import regular_polygon, torus_trefoil
+from solids import box, rod
+from tasks import wanted
+
+WALLS = box(-1.5, 1.5)
+SADDLED = regular_polygon(32).with_vertices(
+    np.column_stack([regular_polygon(32).vertices[:, :2], 0.1 * np.cos(4 * np.pi * np.arange(32) / 32)])
+)
+
+
+def in_the_box(factor, **more):
+    return wanted(SADDLED, **{"grow": factor, "avoid": [WALLS], "vertices": 32, "max_iterations": 45} | more)
+
+
+def lengths(curve: Curve) -> np.ndarray:
+    return np.array([curve.edge_lengths[s].sum() for s in curve.mesh.edge_slices])
+
+
+def test_a_curve_in_a_box_grows_to_three_times_its_length(tmp_path):
+    """A circle three times as long would reach through the walls: the curve has folded."""
+    trajectory = Trajectory(obstacles=[WALLS])
+    result = minimize(*in_the_box(3.0), trajectory.add)
+    trajectory.save(tmp_path / "t.npz")
+    assert verify(tmp_path / "t.npz").accepted
+    assert result.certified
+    assert np.abs(result.curve.vertices).max() < 1.5
+    assert result.curve.length == pytest.approx(3.0 * SADDLED.length, rel=1e-6)
+    assert result.last.edge_length_error < 1e-9
+    assert result.report()["grown"] == pytest.approx(3.0, rel=1e-12)
+    assert "grew to 3 of 3 times its length" in result.message
+    json.dumps(result.report())
+
+
+def test_equal_runs_have_equal_results():
+    first, second = (minimize(*in_the_box(2.0, max_iterations=15)) for _ in range(2))
+    assert np.array_equal(first.curve.vertices, second.curve.vertices)
+    assert first.energies == second.energies
+
+
+def test_edges_are_split_as_strands_come_near():
+    """Each mesh has the vertices of the one before it."""
+    task, options = in_the_box(6.0)
+    vertices = [iterate.curve.vertices for iterate in relax(task, options)]
+    assert len(vertices[-1]) > 32
+    for before, after in pairwise(vertices):
+        if len(before) != len(after):
+            assert {tuple(v) for v in before} <= {tuple(v) for v in after}
+
+
+def test_edges_are_split_as_walls_come_near():
+    """In the end, too: a curve that has grown bends as narrowly as walls are near."""
+    result = minimize(*in_the_box(3.0, mesh="finer", max_iterations=60))
+    assert result.last.grown == pytest.approx(3.0, rel=1e-12)
+    problem = start_problem(*wanted(result.curve, vertices=len(result.curve), avoid=[WALLS]))
+    coarse = result.curve.edge_lengths * EDGES_PER_CLEARANCE / problem.clearance(result.curve)
+    assert 0.5 < coarse.max() < 1.1 * SPLIT
+
+
+def test_a_fixed_mesh_stays():
+    result = minimize(*in_the_box(3.0, mesh="fixed", max_iterations=40))
+    assert len(result.curve) == 32
+    assert result.last.grown == pytest.approx(3.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("factor", [20.0, 0.05])
+def test_with_nothing_in_the_way_a_curve_is_scaled_at_once(factor):
+    """Energy, which does not see size, and shape are those of the curve that does not grow."""
+    curve = torus_trefoil(40)
+    loose = RelaxOptions(vertices=40, mesh="fixed", tolerance=1e-3)  # so coarse a mesh has several minima
+    plain = minimize(curve, loose)
+    result = minimize(curve, replace(loose, grow=factor))
+    assert result.status is Status.CONVERGED
+    assert result.certified
+    assert result.curve.length == pytest.approx(factor * curve.length, rel=1e-9)
+    assert result.final_energy == pytest.approx(plain.final_energy, rel=1e-4)
+    assert len(result.energies) <= len(plain.energies) + 3
+    centers = [weighted_barycenter(each) / each.length for each in (curve, result.curve)]
+    assert centers[0] == pytest.approx(centers[1], abs=1e-9 * factor)
+
+
+def test_every_component_grows():
+    link = knot("L2a1", vertices=60)
+    result = minimize(link, RelaxOptions(grow=3.0, vertices=60, mesh="fixed", max_iterations=5))
+    assert lengths(result.curve) == pytest.approx(3.0 * lengths(link), rel=1e-9)
+
+
+def test_what_has_no_room_stops_and_says_how_far_it_has_come():
+    """A loop cannot be pulled through the rods that it goes round."""
+    loop = regular_polygon(24)
+    loop = Curve(np.column_stack([loop.vertices[:, :2], np.zeros(24)]))
+    rods = [rod(0.5, 0.0), rod(-0.5, 0.0)]
+    result = minimize(*wanted(loop, grow=0.1, avoid=rods, vertices=24, max_iterations=150))
+    assert result.certified
+    assert result.status is Status.STALLED
+    assert 1.0 / np.pi < result.last.grown < 0.4  # the loop is π times as long as it is around the rods
+    assert f"grew to {result.last.grown:.6g} of 0.1 times its length" in result.message
+    assert result.last.edge_length_error < 1e-9
+
+
+def test_a_run_without_iterations_enough_says_how_far_it_has_come():
+    result = minimize(*in_the_box(3.0, max_iterations=8))
+    assert result.status is Status.ITERATION_LIMIT
+    assert 1.0 < result.last.grown < 3.0
+    assert "of 3 times its length" in result.message
+
+
+def test_arcs_between_pins_grow_and_shrink_to_the_distance_of_their_ends():
+    curve = regular_polygon(24)
+    result = minimize(*wanted(curve, grow=1.5, pins=(0, 12), vertices=24, mesh="fixed", max_iterations=60))
+    assert result.certified
+    assert np.array_equal(result.curve.vertices[[0, 12]], curve.vertices[[0, 12]])
+    assert result.curve.length == pytest.approx(1.5 * curve.length, rel=1e-6)
+    with pytest.raises(OptionError, match=r"grow makes the arc between vertices 1 and 13, which are pinned, 0\.9"):
+        relax(*wanted(curve, grow=0.6, pins=(0, 12), vertices=24))
+    with pytest.raises(OptionError, match="all edges lie between pinned vertices"):
+        relax(*wanted(curve, grow=2.0, pins=tuple(range(24)), vertices=24))
+
+
+def bow(rise: float) -> Curve:
+    """An arc of unit length between its ends, all but straight."""
+    x = np.linspace(0.0, 1.0, 25)
+    return Curve(np.column_stack([x, rise * np.sin(np.pi * x), np.zeros(25)]), Mesh((25,), (False,)))
+
+
+@pytest.mark.parametrize("rise", [0.1, 1e-2, 1e-3])
+def test_an_arc_that_is_nearly_taut_bows_out(rise):
+    """Its energy is nearly 0, and to first order no motion makes it longer."""
+    result = minimize(*wanted(bow(rise), grow=2.0, pins=(0, 24), vertices=25, mesh="fixed", max_iterations=80))
+    assert result.certified
+    assert result.last.grown == pytest.approx(2.0, rel=1e-9)
+    assert result.curve.length == pytest.approx(2.0 * bow(rise).length, rel=1e-6)
+
+
+@pytest.mark.parametrize("more", [{"pins": (12,)}, {"avoid": [box(-9.0, 9.0)]}])
+def test_a_straight_arc_grows(more):
+    """Its energy is 0, to which nothing that it costs is small."""
+    result = minimize(*wanted(bow(0.0), grow=3.0, vertices=25, mesh="fixed", max_iterations=40, **more))
+    assert result.certified
+    assert result.curve.length == pytest.approx(3.0, rel=1e-6)
+
+
+def test_a_straight_arc_between_pins_cannot_grow():
+    with pytest.raises(OptionError, match=r"or on straight arcs between them; .* or bend the arcs"):
+        relax(*wanted(bow(0.0), grow=2.0, pins=(0, 24), vertices=25))
+
+
+def test_edges_between_pins_keep_their_lengths():
+    curve = regular_polygon(24)
+    pins = Pins.of(curve, np.array([0, 1]))
+    constraints = Constraints.of(curve, pins).scaled(2.0, curve.mesh)
+    assert constraints.lengths[0] == curve.edge_lengths[0]
+    assert np.array_equal(constraints.lengths[1:], 2.0 * curve.edge_lengths[1:])
+
+
+@pytest.mark.parametrize("method", [name for name, method in METHODS.items() if not method.geometry.prescribes])
+def test_lengths_that_are_penalised_are_not_grown(method):
+    with pytest.raises(OptionError, match=f"grow prescribes lengths, but method {method} penalises them"):
+        relax(torus_trefoil(30), RelaxOptions(method=method, grow=2.0))
+
+
+@pytest.mark.parametrize(
+    "method", family((name for name, method in METHODS.items() if method.geometry.prescribes), every=3)
+)
+def test_every_other_method_grows(method):
+    result = minimize(*in_the_box(1.1, method=method, mesh="fixed", max_iterations=12))
+    assert result.certified
+    assert result.last.grown > 1.0
+
+
+@pytest.mark.parametrize("factor", [0.0, 1e-300, -1.0, np.nan, np.inf, 1e9, "2", None])
+def test_factors_that_are_none_are_refused(factor):
+    with pytest.raises(OptionError, match=r"^grow "):
+        RelaxOptions(grow=factor)
+
+
+def test_hops_do_not_grow_again():
+    result = minimize(*in_the_box(1.2, hops=1, max_iterations=30, tolerance=1e-2))
+    assert result.last.grown == pytest.approx(1.2, rel=1e-12)
+    assert result.curve.length == pytest.approx(1.2 * SADDLED.length, rel=1e-6)

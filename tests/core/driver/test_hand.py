@@ -1,0 +1,372 @@
+"""A hand that drags: the term that it is, where the curve goes, and what it never does, however violent it is."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from descent_contracts import point_on
+from families import family
+from mobius_flow.core import (
+    METHODS,
+    Curve,
+    Hand,
+    Iterate,
+    MobiusFlowError,
+    Outcome,
+    RelaxOptions,
+    Status,
+    Task,
+    Trajectory,
+    WithOutcome,
+    relax,
+)
+from mobius_flow.core.energies.pull import REACH, Pull, share_of
+from mobius_flow.core.knots import knot, knot_type
+from mobius_flow.core.proof import verify
+from mobius_flow.core.solve.metrics import DenseInnerProduct, SparseInnerProduct
+from shapes import hopf_link, opened, regular_polygon, torus_trefoil
+from smooth_curves import random_polygon
+from solids import plate
+from taylor import derivative_slope, hessian_slope
+
+CURVES = {
+    "knot": random_polygon(3, (13,), 3),
+    "link": random_polygon(5, (7, 5), 3),
+    "plane": random_polygon(5, (9,), 2),
+    "open": opened(random_polygon(5, (7, 5), 3), 1),
+}
+FIXED = {"vertices": 60, "mesh": "fixed"}
+
+
+def pulled(curve: Curve, away: float = 1.0, component: int = 0) -> Pull:
+    pull = Pull.at(curve, component, 0.3, 40.0)
+    return replace(pull, target=pull.target + away * np.arange(1.0, curve.dimension + 1.0))
+
+
+@pytest.mark.parametrize("away", [0.0, 0.1, 30.0])
+@pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)
+def test_taylor_slopes(curve: Curve, away: float) -> None:
+    pull = pulled(curve, away)
+    v = np.random.default_rng(5).normal(size=curve.vertices.shape)
+    assert derivative_slope(pull, curve, v, largest=0.3) == pytest.approx(2, abs=0.02)
+    assert hessian_slope(pull, curve, v, largest=0.3) >= 2.98  # it is even in the displacement where the force is 0
+    matrix = pull.sparse_hessian(curve)
+    np.testing.assert_allclose((matrix @ v.ravel()).reshape(v.shape), pull.hessian_product(curve, v), atol=1e-10)
+
+
+def test_the_force_is_bounded_and_that_of_a_spring_nearby() -> None:
+    curve = regular_polygon(50)
+    for away, force in ((1e-6, 1e-6 * np.sqrt(14.0) * 40.0), (1e9, REACH * 40.0)):
+        _, derivative = pulled(curve, away).value_and_derivative(curve)
+        assert np.linalg.norm(derivative.sum(axis=0)) == pytest.approx(force, rel=1e-6)
+
+
+@pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)
+def test_the_stiffness_is_no_less_than_the_second_derivative_and_knows_no_target(curve: Curve) -> None:
+    near, far = (pulled(curve, away) for away in (0.0, 5.0))
+    stiffness = near.stiffness(curve).toarray()
+    np.testing.assert_array_equal(stiffness, far.stiffness(curve).toarray())
+    for pull in (near, far):
+        more = np.kron(stiffness, np.eye(curve.dimension)) - pull.sparse_hessian(curve).toarray()
+        assert np.linalg.eigvalsh(more).min() > -1e-12 * stiffness.max()
+    together = np.ones(len(curve))
+    assert together @ stiffness @ together == pytest.approx(40.0)
+
+
+@pytest.mark.parametrize("solver", ["dense", "hierarchical"])
+def test_the_metric_has_the_stiffness(solver: str) -> None:
+    curve = torus_trefoil(60)
+    point = point_on(curve, solver=solver)
+    pull = Pull.at(point.curve, 0, 0.3, 40.0)
+    plain, held = (each.inner_product.dense() for each in (point, point.pulled(pull)))
+    np.testing.assert_allclose(held - plain, pull.stiffness(curve).toarray(), atol=1e-9 * np.abs(plain).max())
+
+
+def test_a_sparse_form_is_added_to_a_dense_one_as_a_matrix_is() -> None:
+    curve = torus_trefoil(20)
+    dense, sparse = DenseInnerProduct(np.eye(20) + 1.0), SparseInnerProduct(pulled(curve).stiffness(curve))
+    np.testing.assert_allclose(dense.plus(sparse, 2.0).dense(), dense.dense() + 2.0 * sparse.dense())
+    np.testing.assert_array_equal(dense.dense(), np.eye(20) + 1.0)
+
+
+def test_what_a_moved_target_keeps_is_what_would_be_computed_anew() -> None:
+    point = point_on(torus_trefoil(60))
+    pull = Pull.at(point.curve, 0, 0.3, 40.0)
+    held = point.pulled(pull)
+    held.gradient  # noqa: B018 (computed)
+    moved = held.pulled(replace(pull, target=pull.target + 0.2))
+    anew = moved.problem.at(moved.vertices)
+    assert moved.tangent_space is held.tangent_space
+    assert moved.energy == pytest.approx(anew.energy, rel=1e-13)
+    np.testing.assert_allclose(moved.gradient, anew.gradient, atol=1e-10)
+    gone = moved.pulled(None)
+    assert gone.energy == pytest.approx(point.energy, rel=1e-14)
+    np.testing.assert_allclose(gone.gradient, point.gradient, atol=1e-10)
+
+
+@pytest.mark.parametrize("curve", [hopf_link(40), opened(hopf_link(40), 1)], ids=["closed", "open"])
+def test_shares_of_lengths_are_found_again(curve: Curve) -> None:
+    for component in (0, 1):
+        for share in (0.1, 0.35, 0.8):
+            pull = Pull.at(curve, component, share, 1.0)
+            assert pull.weights.sum() == pytest.approx(1.0)
+            assert share_of(curve, component, curve.vertices[pull.vertex]) == pytest.approx(share, abs=0.02)
+            assert curve.mesh.component[pull.vertex] == component
+
+
+def drag(
+    curve: Curve | Task, hand: Hand, moves: dict[int, object], **settings: object
+) -> tuple[list[Iterate], Outcome]:
+    """The iterates of a run in which something is done to the hand at some of them."""
+    run, iterates = WithOutcome(relax(curve, RelaxOptions(**FIXED | settings), hand=hand)), []
+    for iterate in run:
+        del iterates[iterate.index :]
+        iterates.append(iterate)
+        if iterate.index in moves:
+            moves.pop(iterate.index)(hand, iterate)
+    assert run.outcome is not None
+    return iterates, run.outcome
+
+
+def verified(iterates: list[Iterate], tmp_path: object, obstacles: tuple = ()) -> None:
+    trajectory = Trajectory(obstacles=obstacles)
+    for iterate in iterates:
+        trajectory.add(iterate)
+    trajectory.save(tmp_path / "T.npz")
+    verdict = verify(tmp_path / "T.npz")
+    assert verdict.accepted, str(verdict)
+
+
+def held(hand: Hand, _iterate: Iterate) -> None:
+    hand.grab(0, 0.25)
+
+
+def pulled_out(hand: Hand, iterate: Iterate) -> None:
+    hand.move(place_outside(iterate.curve))
+
+
+def place_outside(curve: Curve) -> np.ndarray:
+    middle = curve.vertices.mean(axis=0)
+    return middle + 1.5 * (Pull.at(curve, 0, 0.25, 1.0).target - middle)
+
+
+@pytest.mark.parametrize("settings", [{}, {"mesh": "adaptive"}, {"solver": "hierarchical"}], ids=str)
+def test_the_curve_follows_rests_and_relaxes_on(settings: dict[str, object], tmp_path: object) -> None:
+    moves = {2: held, 3: pulled_out}
+    rested, outcome = drag(knot("3_1"), Hand(), dict(moves), **settings)
+    curve = rested[-1].curve
+    assert outcome.converged
+    assert "a hand holds it" in outcome.message
+    reached, wanted = Pull.at(curve, 0, 0.25, 1.0).target, place_outside(rested[3].curve)
+    assert np.linalg.norm(reached - wanted) < 0.03 * curve.length
+    free, outcome = drag(knot("3_1"), Hand(), moves | {40: lambda hand, _: hand.release()}, **settings)
+    assert outcome.converged
+    assert free[-1].energy == pytest.approx(rested[-1].energy, rel=1e-3)  # of a Möbius image, which hands may choose
+    for iterates in (rested, free):
+        verified(iterates, tmp_path)
+
+
+def test_energies_are_those_without_the_hand() -> None:
+    iterates, _ = drag(torus_trefoil(60), Hand(), {2: held, 3: pulled_out}, max_iterations=30)
+    for iterate in iterates[3:40:7]:
+        problem = point_on(iterate.curve).problem
+        assert iterate.energy == pytest.approx(problem.at_curve(iterate.curve).energy, rel=1e-9)
+
+
+def test_a_held_curve_is_not_at_its_end_and_says_no_rises() -> None:
+    hand = Hand()
+    iterates, outcome = drag(
+        torus_trefoil(60), hand, {2: held, 3: pulled_out, 25: lambda *_: hand.release()}, max_iterations=15
+    )
+    assert len(iterates) > 25
+    assert "rose" not in outcome.message
+
+
+def test_at_rest_the_run_asks_once_more_and_then_ends() -> None:
+    hand, rests = Hand(stays=True), []
+    run = WithOutcome(relax(regular_polygon(60), RelaxOptions(**FIXED), hand=hand))
+    for iterate in run:
+        if hand.rests:
+            rests.append(iterate.index)
+            np.testing.assert_array_equal(iterate.path[-1], iterate.curve.vertices)
+            if len(rests) == 1:
+                hand.grab(0, 0.0)
+                hand.move([0.5, 0.0, 0.0])
+            elif len(rests) == 2:
+                hand.release()
+    assert len(rests) == 3
+    assert run.outcome.status is Status.CONVERGED
+    assert rests == sorted(set(rests))
+
+
+def test_a_pin_is_left_where_the_hand_lets_go(tmp_path: object) -> None:
+    iterates, outcome = drag(
+        knot("4_1"), Hand(), {8: held, 9: pulled_out, 20: lambda hand, _: hand.release(pin=True)}, vertices=80
+    )
+    (pin,) = iterates[-1].pins
+    assert iterates[20].pins == ()
+    for iterate in iterates[21:]:
+        assert iterate.pins == (pin,)
+        np.testing.assert_array_equal(iterate.curve.vertices[pin], iterates[20].curve.vertices[pin])
+    assert outcome.converged
+    verified(iterates, tmp_path)
+
+
+def test_undo_takes_the_drag_back_with_its_pin(tmp_path: object) -> None:
+    plain, _ = drag(knot("4_1"), Hand(), {}, vertices=80)
+
+    def undone(hand: Hand, _iterate: Iterate) -> None:
+        hand.undo()
+        hand.undo()  # there is nothing else
+
+    moves = {8: held, 9: pulled_out, 20: lambda hand, _: hand.release(pin=True), 25: undone}
+    again, outcome = drag(knot("4_1"), Hand(), moves, vertices=80)
+    assert outcome.converged
+    assert again[-1].pins == ()
+    np.testing.assert_array_equal(again[8].curve.vertices, plain[8].curve.vertices)
+    assert again[-1].energy == pytest.approx(plain[-1].energy, rel=1e-5)
+    verified(again, tmp_path)
+
+
+@pytest.mark.parametrize("mesh", ["adaptive", "finer"])
+def test_undo_goes_back_to_the_mesh_that_there_was(mesh: str, tmp_path: object) -> None:
+    """A curve that is pulled far is given other vertices; those from before are there again, and the run goes on."""
+    hand, seen, undone = Hand(), [], False
+    for iterate in relax(torus_trefoil(60), RelaxOptions(vertices=60, mesh=mesh, tolerance=1e-3), hand=hand):
+        if undone and iterate.index == 4:
+            assert iterate.curve.mesh == seen[3].curve.mesh
+        del seen[iterate.index :]
+        seen.append(iterate)
+        if iterate.index == 3 and not undone:
+            hand.grab(0, 0.25)
+        if iterate.index >= 3 and not undone:
+            hand.move(seen[3].curve.vertices[15] + 0.2 * (iterate.index - 3) * np.array([0.0, 0.0, 1.0]))
+            if iterate.curve.mesh != seen[3].curve.mesh:
+                hand.undo()
+                undone = True
+    assert undone, "the mesh has changed under the hand"
+    verified(seen, tmp_path)
+
+
+def test_what_a_hand_holds_survives_other_meshes() -> None:
+    """Where vertices come and go the same place is held."""
+    hand, seen = Hand(), []
+    task = Task(curve=torus_trefoil(60))
+    for iterate in relax(task, RelaxOptions(vertices=60, mesh="adaptive", tolerance=1e-3), hand=hand):
+        if iterate.index == 3:
+            hand.grab(0, 0.25)
+        if 3 <= iterate.index < 40:
+            middle = iterate.curve.vertices.mean(axis=0)
+            hand.move(middle + 0.1 * (iterate.index - 3) * np.array([0.0, 0.0, 1.0]))
+        if iterate.index == 40:
+            hand.release()
+        seen.append(iterate)
+    assert len({len(iterate.curve) for iterate in seen}) > 1
+    top = seen[40].curve
+    height = top.vertices[:, 2] - top.vertices[:, 2].mean()
+    assert share_of(top, 0, top.vertices[height.argmax()]) == pytest.approx(0.25, abs=0.05)
+
+
+@pytest.mark.parametrize("target", [[np.nan, 0.0, 0.0], [np.inf, 0, 0], [1e50, 0, 0], "x", None, [], 3.0, [[0, 0, 0]]])
+def test_targets_that_are_no_points_are_refused(target: object) -> None:
+    hand = Hand()
+    hand.grab(0, 0.5)
+    with pytest.raises(MobiusFlowError, match="finite coordinates"):
+        hand.move(target)
+
+
+@pytest.mark.parametrize(("component", "share"), [(0, -0.1), (0, 1.1), (0, np.nan), ("x", 0.1), (0.5, 0.1)])
+def test_places_that_are_none_are_refused(component: object, share: object) -> None:
+    with pytest.raises(MobiusFlowError):
+        Hand().grab(component, share)
+
+
+@pytest.mark.parametrize("nonsense", [lambda hand: hand.grab(1, 0.5), lambda hand: hand.grab(-1, 0.5)])
+def test_a_component_that_is_not_there_ends_the_run_in_a_sentence(nonsense: object) -> None:
+    with pytest.raises(MobiusFlowError, match="component"):
+        drag(torus_trefoil(60), Hand(), {1: lambda hand, _: nonsense(hand)})
+
+
+def test_a_target_in_another_dimension_ends_the_run_in_a_sentence() -> None:
+    def elsewhere(hand: Hand, _iterate: Iterate) -> None:
+        hand.grab(0, 0.5)
+        hand.move([1.0, 2.0])
+
+    with pytest.raises(MobiusFlowError, match="coordinates"):
+        drag(torus_trefoil(60), Hand(), {1: elsewhere})
+
+
+def test_what_is_pinned_stays_and_a_hand_that_holds_nothing_does_nothing() -> None:
+    task = Task(curve=torus_trefoil(60), pins=tuple(range(60)))
+    iterates, _ = drag(task, Hand(), {0: held})
+    assert all(np.array_equal(iterate.curve.vertices, task.curve.vertices) for iterate in iterates)
+    plain, _ = drag(torus_trefoil(60), Hand(), {})
+    idle, _ = drag(torus_trefoil(60), Hand(), {2: pulled_out, 3: lambda hand, _: hand.release(pin=True)})
+    assert idle[-1].energy == plain[-1].energy
+
+
+WALLS = (plate(1.2, name="ceiling"), plate(-1.2, name="floor"))
+TASKS = {
+    "trefoil": (Task(curve=knot("3_1")), {"vertices": 60}),
+    "twist knot": (Task(curve=knot("5_2")), {"vertices": 100}),
+    "link": (Task(curve=hopf_link(40)), {"vertices": 80}),
+    "arcs": (Task(curve=opened(hopf_link(40), 1)), {"vertices": 80}),
+    "walls": (Task(curve=torus_trefoil(60), obstacles=WALLS), {"vertices": 60}),
+    "pins": (Task(curve=torus_trefoil(60), pins=(0, 7, 33)), {"vertices": 60}),
+    "adaptive": (Task(curve=torus_trefoil(60)), {"vertices": 60, "mesh": "adaptive"}),
+    "finer": (Task(curve=knot("4_1")), {"vertices": 80, "mesh": "finer"}),
+}
+
+
+def violent(task: Task, options: RelaxOptions, drags: int, seed: int) -> list[Iterate]:
+    """The iterates of a run with so many drags: slow, jumping, jittering, far out, into strands, and nonsense."""
+    rng, hand, iterates = np.random.default_rng(seed), Hand(stays=True), []
+    busy, left, kind, way = False, 2, 0, np.zeros(3)
+    for iterate in relax(task, options, hand=hand):
+        del iterates[iterate.index :]
+        iterates.append(iterate)
+        curve, left = iterate.curve, left - 1
+        size, middle = curve.component_lengths.mean(), curve.vertices.mean(axis=0)
+        if busy and left > 0 and not hand.rests:
+            targets = (
+                middle + way * size * (0.6 - 0.05 * left),
+                middle + 10.0 * size * rng.normal(size=3),
+                middle + 1e30 * way,
+                curve.vertices[rng.integers(len(curve))],
+                middle - 0.3 * size * way,
+            )
+            hand.move(targets[kind])
+            with pytest.raises(MobiusFlowError):
+                hand.move([np.nan, 0.0, np.inf])
+        elif left <= 0 or hand.rests:
+            if busy:
+                ends = rng.random()
+                hand.undo() if ends < 0.1 else hand.release(pin=ends < 0.3 and len(iterate.pins) < 5)
+                drags, left = drags - 1, int(rng.integers(1, 6))
+            elif drags == 0:
+                break
+            else:
+                hand.grab(int(rng.integers(len(curve.mesh.component_sizes))), float(rng.random()))
+                left, kind, way = int(rng.integers(2, 12)), int(rng.integers(5)), rng.normal(size=3)
+                way /= np.linalg.norm(way)
+            busy = not busy
+    return iterates
+
+
+@pytest.mark.parametrize("drags", [12, pytest.param(130, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", TASKS)
+def test_violent_drags_go_through_nothing(name: str, drags: int, tmp_path: object) -> None:
+    """With the slow ones they are a thousand."""
+    task, settings = TASKS[name]
+    iterates = violent(task, RelaxOptions(**{"mesh": "fixed"} | settings), drags, 7)
+    assert all(iterate.certified for iterate in iterates)
+    verified(iterates, tmp_path, task.obstacles)
+    if task.curve.mesh.all_closed:
+        assert knot_type(iterates[-1].curve).names == knot_type(task.curve).names
+
+
+@pytest.mark.parametrize("method", family(METHODS, every=4))
+def test_every_method_follows(method: str, tmp_path: object) -> None:
+    iterates = violent(TASKS["trefoil"][0], RelaxOptions(vertices=60, mesh="fixed", method=method), 4, 3)
+    assert all(iterate.certified for iterate in iterates)
+    verified(iterates, tmp_path)

@@ -1,0 +1,208 @@
+"""Parts of a link that are not linked are held in place once they are far apart, and only then."""
+
+import tracemalloc
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve, RelaxOptions, Status, minimize
+from mobius_flow.core.curve import refine
+from mobius_flow.core.descent.hessian import lagrangian_hessian
+from mobius_flow.core.driver.moves.links import _near, separate_parts
+from mobius_flow.core.driver.prepare import start_problem
+from mobius_flow.core.knots import knot
+from mobius_flow.core.knots.composite import knotted_ball
+from mobius_flow.core.solve.constraints import Barycenters, Constraints, weighted_barycenter
+from mobius_flow.core.solve.metrics import METRICS
+from taylor import taylor_slope
+
+SLOW = [pytest.param(method, marks=pytest.mark.slow) for method in ("cg", "flow-moebius", "trust-region")]
+
+
+def ring(center, radius=1.0, size=12):
+    t = 2 * np.pi * np.arange(size) / size
+    return np.array(center) + radius * np.column_stack([np.cos(t), np.sin(t), 0 * t])
+
+
+def rings(*xs, radius=1.0, size=12):
+    return Curve.from_components([ring([x, 0, 0], radius, size) for x in xs])
+
+
+def test_far_parts_are_told_apart():
+    assert separate_parts(rings(0, 4)) == (0, 1)
+    assert separate_parts(rings(0, 2.9)) == (0, 0)
+    assert separate_parts(rings(0, 9, 2.5, 11)) == (0, 1, 0, 1)
+    assert separate_parts(knot("3_1")) == (0,)
+    assert separate_parts(knot("L2a1")) == (0, 0)
+
+
+def test_a_large_part_keeps_small_ones_that_it_could_go_round():
+    """A chain of small rings through a large one: every two small balls are far apart, the balls of chains are not."""
+    large = ring([0, 0, 0], 5.0, 40)
+    small = [ring([5.0 + x, 0.0, 0.0], 0.1) for x in (-4.0, 0.0, 4.0)]
+    assert separate_parts(Curve.from_components([large, *small])) == (0, 0, 0, 0)
+
+
+def test_very_many_parts_are_one():
+    assert set(separate_parts(rings(*(4.0 * k for k in range(60))))) == {0}
+
+
+def test_parts_of_thousands_of_components_without_a_matrix_of_all_pairs():
+    count = 20_000  # a matrix of all pairs would have 400,000,000 entries
+    chain = [ring([1.5 * k, 0.0, 0.0], size=3) for k in range(count)]
+    far = [ring([1.5 * k, 1e6 * (k + 1), 0.0], size=3) for k in range(10)]
+    parts = separate_parts(Curve.from_components([*chain, *far]))
+    assert parts == (0,) * count + tuple(range(1, 11))
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_near_balls_are_all_found(seed):
+    rng = np.random.default_rng(seed)
+    centers, radii = rng.uniform(0, 30, (80, 3)), 10.0 ** rng.uniform(-2, 1, 80)
+    distance = np.linalg.norm(centers[:, None] - centers, axis=2)
+    near = distance < radii[:, None] + radii + np.maximum(radii[:, None], radii)
+    found = _near(centers, radii, 1.0).toarray()
+    np.testing.assert_array_equal(found | found.T, near)
+
+
+@pytest.fixture
+def parted():
+    rng = np.random.default_rng(4)
+    curve = rings(0, 5, 10)
+    curve = curve.with_vertices(curve.vertices + 0.1 * rng.normal(size=curve.vertices.shape))
+    blocks = (Barycenters.of(curve, parts=(0, 1, 1)),)
+    return curve, Constraints(1.1 * curve.edge_lengths, blocks)
+
+
+def test_barycenters_of_parts_add_up(parted):
+    curve, constraints = parted
+    both = constraints.block(Barycenters).target.reshape(2, 3)
+    np.testing.assert_allclose(both.sum(axis=0), weighted_barycenter(curve))
+    np.testing.assert_allclose(constraints.residual(curve)[len(curve) :], 0)
+
+
+def test_taylor_of_parts(parted):
+    curve, constraints = parted
+    u = np.random.default_rng(5).normal(size=curve.vertices.shape)
+    linear = constraints.derivative(curve).apply(u)
+    along = [constraints.residual(curve), linear]
+    slope = taylor_slope(lambda t: constraints.residual(curve.with_vertices(curve.vertices + t * u)), along)
+    assert slope == pytest.approx(2, abs=0.1)
+
+
+def test_solver_with_parts_against_dense_matrix(parted):
+    curve, constraints = parted
+    derivative = constraints.derivative(curve)
+    n, m = curve.vertices.shape
+    inner = METRICS["moebius"].at(curve)
+    matrix = inner.dense()
+    rows = np.stack([derivative.apply(unit.reshape(n, m)) for unit in np.eye(n * m)], axis=1)
+    assert rows.shape == (n + 6, n * m)
+    dense = np.block([[np.kron(matrix, np.eye(m)), rows.T], [rows, np.zeros((n + 6, n + 6))]])
+    covector = np.random.default_rng(6).normal(size=(n, m))
+    expected = np.linalg.solve(dense, np.concatenate([covector.ravel(), np.zeros(n + 6)]))
+    u, multipliers = inner.tangent_space(derivative).gradient(covector)
+    np.testing.assert_allclose(u.ravel(), expected[: n * m], atol=1e-8 * np.abs(expected).max())
+    np.testing.assert_allclose(derivative.apply_transpose(multipliers).ravel(), rows.T @ multipliers, atol=1e-8)
+
+
+def test_barycenters_of_many_parts_take_no_more_memory_than_one():
+    curve = rings(*(4.0 * k for k in range(50)), size=400)
+    tracemalloc.start()
+    blocks = (Barycenters.of(curve, parts=tuple(range(50))),)
+    derivative = Constraints(curve.edge_lengths, blocks).derivative(curve)
+    derivative.apply_transpose(derivative.apply(curve.vertices))
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert derivative.count == len(curve) + 150
+    assert peak < 1000 * len(curve)  # one row has 24 bytes a vertex
+
+
+def test_one_part_is_the_usual_constraint():
+    curve = knot("L2a1")
+    usual, one = Constraints.of(curve), Constraints(curve.edge_lengths, (Barycenters.of(curve, parts=(0, 0)),))
+    np.testing.assert_array_equal(*(list(each.derivative(curve).border()) for each in (usual, one)))
+
+
+@pytest.mark.parametrize("method", ["lbfgs", *SLOW])
+def test_unlinked_circles_come_to_rest(method):
+    """They used to drift apart until the iterations were used up."""
+    curve = Curve.from_components([ring([0, 0, 0], 1.0, 40), ring([0.2, 0, 0.1], 1.0, 40)])
+    result = minimize(curve, RelaxOptions(method=method, vertices=80))
+    assert result.status is Status.CONVERGED
+    assert "unlinked" in result.message
+    assert float(result.message.split()[-1]) == pytest.approx(8, rel=1e-2)
+    assert result.certified
+    assert np.abs(result.curve.vertices).max() < 20
+    for component in result.curve.components:
+        edges = np.linalg.norm(component - np.roll(component, 1, axis=0), axis=1)
+        radius = np.linalg.norm(component - component.mean(axis=0), axis=1)
+        assert radius.std() < 1e-2 * radius.mean()
+        assert edges.std() < 1e-9
+
+
+def test_held_parts_stay_held_on_another_mesh():
+    options = RelaxOptions(vertices=60)
+    curve, fine = (refine(rings(0, 5), vertices) for vertices in (30, 60))
+    problem = start_problem(curve, options)
+    parted = problem.constraints.replacing(Barycenters.of(problem.at_curve(curve).curve, parts=(0, 1)))
+    problem = replace(problem, constraints=parted)
+    point = problem.on(fine)
+    assert point.problem.constraints.block(Barycenters).parts == (0, 1)
+    np.testing.assert_allclose(point.residual[len(fine) :], np.zeros(6), atol=1e-12)
+
+
+def test_linked_components_are_not_held():
+    result = minimize(knot("L2a1"), RelaxOptions(vertices=120))
+    assert "unlinked" not in result.message
+    assert result.energies[-1] < 48
+
+
+@pytest.mark.parametrize("method", ["lbfgs", *SLOW])
+def test_strands_a_billionth_apart_come_apart(method):
+    t = 2 * np.pi * np.arange(60) / 60
+    eight = Curve(np.column_stack([np.sin(2 * t), np.cos(t), 0.5e-9 * np.sin(t)]))
+    result = minimize(eight, RelaxOptions(method=method, vertices=100))
+    assert result.status is Status.CONVERGED
+    assert result.certified
+    assert result.energies[-1] < 4.02
+    circles = Curve.from_components([ring([0, 0, 0], 1.0, 40), ring([0, 0, 1e-9], 1.0, 40)])
+    result = minimize(circles, RelaxOptions(method=method, vertices=80))
+    assert result.status is Status.CONVERGED
+    assert result.energies[-1] < 15
+
+
+def test_second_derivative_along_held_parts():
+    """Against differences of energies along a path on the constraints."""
+    curve = Curve.from_components([ring([0, 0, 0], 1.0, 24), ring([5.0, 0.3, 0.2], 1.0, 24)])
+    problem = start_problem(curve, RelaxOptions())
+    vertices = problem.units.from_user(curve.vertices)
+    vertices = vertices + 0.02 * np.random.default_rng(8).normal(size=vertices.shape)
+    start = curve.with_vertices(vertices)
+    constraints = Constraints(start.edge_lengths, (Barycenters.of(start, parts=(0, 1)),))
+    problem = replace(problem, constraints=constraints)
+    point = problem.at(vertices)
+    v = point.tangent_space.project(np.random.default_rng(9).normal(size=vertices.shape))
+    # the Lagrangian's slope along tangents vanishes only at critical points: the path's own bend is what (42) adds
+    expected = float(np.sum(v * lagrangian_hessian(point)(v)))
+    errors = []
+    for h in (1e-3, 5e-4):
+        ahead, behind = (point.retract(vertices + sign * h * v, 0 * point.residual) for sign in (1.0, -1.0))
+        bend = ahead.vertices + behind.vertices - 2 * vertices
+        along = np.sum((point.derivative - point.tangent_space.constraints.apply_transpose(point.multipliers)) * bend)
+        errors.append((ahead.energy - 2 * point.energy + behind.energy - along) / h**2 - expected)
+    assert abs(errors[1]) < 1e-3 * abs(expected)
+    assert abs(errors[1]) < 0.3 * abs(errors[0])
+
+
+@pytest.mark.slow
+def test_parts_are_judged_one_by_one():
+    """Two split Hopf links, and a trefoil far from a ring: neither is composite."""
+    hopf = [ring([0, 0, 0]), ring([0, 0, 0])[:, [0, 2, 1]] + [1.0, 0, 0]]
+    two = Curve.from_components([*hopf, *(c + np.array([8.0, 0, 0]) for c in hopf)])
+    assert knotted_ball(two) is None
+    trefoil = knot("3_1").components[0]
+    assert knotted_ball(Curve.from_components([trefoil, trefoil + np.array([20.0, 0, 0])])) is None
+    result = minimize(two, RelaxOptions(vertices=80))
+    assert result.status is Status.CONVERGED
+    assert "unlinked" in result.message

@@ -1,0 +1,177 @@
+"""Relaxations among symmetric curves: exact all along and proved, with their own minima, and what cannot be."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve, CurveError, Iterate, OptionError, RelaxOptions, Task, Trajectory, minimize
+from mobius_flow.core.curve.measures import bending
+from mobius_flow.core.curve.symmetry import NO_SYMMETRY, Symmetry, standing, symmetries
+from mobius_flow.core.descent import METHODS
+from mobius_flow.core.driver.moves.balance import moebius_image
+from mobius_flow.core.knots import knot, smooth_knot, torus_knot
+from mobius_flow.core.proof import verify
+from mobius_flow.lab.extrapolation import extrapolated
+from shapes import half_circle, regular_polygon
+from torus_energies import torus_knot_minimum
+
+EXACT = 1e-10  # shortest edges, of rounded coordinates
+
+
+def error(last: Iterate, *others: Iterate) -> float:
+    """How far vertices are from where symmetry puts them, under the group that the last curve is said to have."""
+    group = symmetries(last.curve, 1e-6).subgroup(last.symmetry)
+    assert group is not None
+    kept = Symmetry(group.name, group.centre, group.matrices)
+    return max(kept.on(each.curve).error(each.curve) for each in (last, *others))
+
+
+@pytest.mark.parametrize("method", [name for name, method in METHODS.items() if not method.comparison] + ["penalty-cg"])
+def test_every_iterate_is_exactly_symmetric_and_proved(method: str, tmp_path: Path) -> None:
+    iterates, trajectory = [], Trajectory()
+    options = RelaxOptions(method=method, symmetry="D3", vertices=70, max_iterations=9)
+    start = smooth_knot("3_1")
+    result = minimize(start, options, lambda each: (iterates.append(each), trajectory.add(each)))
+    given, moved, meshed, *others = iterates
+    assert given.symmetry == moved.symmetry == ""
+    assert given.curve.length == pytest.approx(start.length)  # the same polygon, with more vertices
+    assert len(meshed.curve) == 72
+    assert all(each.symmetry == "D3" for each in [meshed, *others])
+    assert error(result.last, meshed, *others) < EXACT
+    assert symmetries(moved.curve, 1e-6).name == "D3"
+    assert result.certified
+    assert result.energies[-1] < result.energies[0]
+    trajectory.save(tmp_path / "T.npz")
+    assert verify(tmp_path / "T.npz").accepted
+    assert result.report()["symmetry"] == "D3"
+
+
+def test_finer_meshes_and_second_derivatives_keep_a_rotary_reflection() -> None:
+    iterates: list[Iterate] = []
+    shape = smooth_knot("4_1")
+    flat = shape.with_vertices(shape.vertices @ standing(shape, symmetries(shape)).T * [1.0, 1.0, 0.6])
+    result = minimize(flat, RelaxOptions(symmetry="auto", vertices=None), iterates.append)
+    assert len({len(each.curve) for each in iterates[2:]}) > 1
+    assert error(result.last) < EXACT
+    assert result.outcome.negative_eigenvalues == result.outcome.symmetric_negative_eigenvalues == 0
+    assert "a minimum among curves of symmetry S4, a minimum among all; " in result.message
+    assert "symmetry S4 was kept, which the start missed by 0.000" in result.message
+
+
+def test_links_are_symmetric_across_components() -> None:
+    result = minimize(smooth_knot("L6a4"), RelaxOptions(symmetry="Th", vertices=192, max_iterations=12))
+    assert len(set(result.curve.mesh.component_sizes)) == 1
+    assert error(result.last) < EXACT
+
+
+@pytest.mark.parametrize(("p", "q", "index"), [(3, 4, 2), (3, 5, 4)])
+def test_torus_knots_are_saddles_that_only_broken_symmetry_leaves(p: int, q: int, index: int) -> None:
+    options = {"vertices": 160, "mesh": "fixed", "escape_saddles": True}
+    symmetric = minimize(torus_knot(p, q), RelaxOptions(symmetry=f"D{q}", hops=1, **options))
+    assert symmetric.outcome.negative_eigenvalues == index
+    assert symmetric.outcome.symmetric_negative_eigenvalues == 0
+    assert error(symmetric.last) < EXACT
+    said = f"a minimum among curves of symmetry D{q}, a saddle of index {index} among all"
+    assert said in symmetric.message
+    broken = minimize(symmetric.curve, RelaxOptions(**options))
+    assert broken.outcome.negative_eigenvalues == 0
+    assert broken.final_energy < symmetric.final_energy - 2.0
+    part = minimize(symmetric.curve, RelaxOptions(symmetry="C2", **options))
+    assert part.outcome.symmetric_negative_eigenvalues == 0
+    assert part.final_energy < symmetric.final_energy - 2.0
+    assert error(part.last) < EXACT
+
+
+@pytest.mark.parametrize(("p", "q"), [(2, 3), pytest.param(3, 4, marks=pytest.mark.slow)])
+def test_energies_are_those_of_kim_and_kusner(p: int, q: int) -> None:
+    options = RelaxOptions(symmetry="auto", vertices=48 * q, mesh="fixed", tolerance=1e-7)
+    found = extrapolated(minimize(torus_knot(p, q), options).curve, options)
+    assert found is not None
+    assert found.energy == pytest.approx(torus_knot_minimum(p, q), rel=1e-6)
+    assert found.order == pytest.approx(2.0, abs=0.05)
+
+
+def test_balance_takes_images_of_the_same_symmetry() -> None:
+    """There are such maps along the axis of C2, which meets the curve; D3 leaves none."""
+    curve = minimize(torus_knot(2, 3), RelaxOptions(symmetry="D3", vertices=120, mesh="fixed")).curve
+    pole = 0.7 * curve.vertices[0] / np.linalg.norm(curve.vertices[0])  # where a two-fold axis is
+    image = curve.with_vertices(moebius_image(curve.vertices / 2.0, np.array([1.0, *pole])))
+    # that it has uneven edges keeps the flow from balancing it by itself
+    options = RelaxOptions(symmetry="C2", mesh="fixed", edge_lengths="keep", balance=True, tolerance=0.1)
+    balanced = minimize(image, options)
+    assert "balanced: bending reduced" in balanced.message
+    assert error(balanced.last) < EXACT
+    assert bending(balanced.curve) < 0.95 * bending(image)
+    rigid = minimize(curve, RelaxOptions(symmetry="D3", mesh="fixed", balance=True))
+    assert "no other shape of the same energy that can be reached bends less" in rigid.message
+
+
+def test_lengths_reach_their_targets_where_the_barycenter_moves() -> None:
+    """The image of a relaxed curve has uneven edges; evening them out changes its length on the way."""
+    curve = minimize(torus_knot(2, 3), RelaxOptions(symmetry="D3", vertices=120, mesh="fixed")).curve
+    image = curve.with_vertices(moebius_image(curve.vertices / 2.0, np.array([1.0, 0.0, 0.0, 0.3])))
+    result = minimize(image, RelaxOptions(symmetry="C3", vertices=120, mesh="fixed", max_iterations=30))
+    assert result.outcome.converged
+    assert result.last.edge_length_error < 1e-9
+
+
+def test_a_curve_without_symmetry_is_relaxed_and_told_so() -> None:
+    result = minimize(smooth_knot("6_3"), RelaxOptions(symmetry="auto", max_iterations=2))
+    assert result.message.endswith("; symmetry C1, so that there was none to keep")
+    assert result.report()["symmetry"] is None
+    assert len(result.energies) == 3
+
+
+def test_no_iterations_leave_the_start() -> None:
+    result = minimize(torus_knot(2, 3), RelaxOptions(symmetry="D3", vertices=100, max_iterations=1))
+    assert result.last.symmetry == ""
+    assert len(result.energies) == 2
+
+
+def test_strands_that_meet_on_the_axis_are_refused() -> None:
+    """A rose of four leaves, whose strands pass its axis at different heights, which are the same in the mean."""
+    t = 2.0 * np.pi * np.arange(400) / 400
+    radius, height = np.cos(2.0 * t), 0.02 * np.cos(t + 0.3)
+    rose = Curve(np.stack([radius * np.cos(t), radius * np.sin(t), height], axis=1))
+    with pytest.raises(CurveError, match="is not free of contact, as where strands meet on an axis"):
+        minimize(rose, RelaxOptions(symmetry="C4"))
+
+
+@pytest.mark.parametrize(
+    ("given", "more", "said"),
+    [
+        (torus_knot(2, 3), {"symmetry": "C4"}, "the curve has no symmetry C4: within 0.1 times its size its group"),
+        (knot("6_2"), {"symmetry": "Th"}, "the curve has no symmetry Th: within 0.1"),
+        (Task(curve=torus_knot(2, 3), pins=(1,)), {}, "pins and obstacles break symmetry; leave them out"),
+        (half_circle(20), {}, "component 1 is open; symmetries are for closed components"),
+        (regular_polygon(20, 2), {}, "the curve is in dimension 2; symmetries are for curves in space"),
+    ],
+)
+def test_what_has_or_allows_no_symmetry_is_refused(given: Curve | Task, more: dict[str, str], said: str) -> None:
+    with pytest.raises((CurveError, OptionError)) as caught:
+        minimize(given, RelaxOptions(**{"symmetry": "C3", **more}))
+    assert str(caught.value).startswith(said)
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"symmetry": "C0"}, "symmetry is 'C0'; give auto, or a group such as C3, D2, S4 or Th"),
+        ({"symmetry": "d3"}, "symmetry is 'd3'; give auto"),
+        ({"symmetry": 3}, "symmetry is 3; it must be a name"),
+        ({"symmetry": "C3", "mesh": "adaptive"}, "symmetry keeps orbits of vertices, which mesh='adaptive' does not"),
+        ({"symmetry": "C3", "untangle": "always"}, "untangle='always' changes the mesh; leave it or symmetry out"),
+        ({"symmetry": "C3", "edge_lengths": (1.0, 1.0)}, "symmetry makes its own vertices, to which edge_lengths do"),
+    ],
+)
+def test_options_that_break_it_are_refused(options: dict[str, object], said: str) -> None:
+    with pytest.raises(OptionError) as caught:
+        RelaxOptions(**options)
+    assert str(caught.value).startswith(said)
+
+
+def test_there_is_none_by_default() -> None:
+    result = minimize(torus_knot(2, 3), RelaxOptions(max_iterations=1, untangle="never"))
+    assert result.last.symmetry == ""
+    assert isinstance(NO_SYMMETRY, Symmetry)
+    assert "symmetry" not in result.message

@@ -1,0 +1,308 @@
+"""Strand moves within a run: when they are made, what iterates and reports say of them, and what they must not lose."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from itertools import count, islice
+
+import numpy as np
+import pytest
+from mobius_flow.core import (
+    Curve,
+    CurveError,
+    Iterate,
+    Objective,
+    OptionError,
+    RelaxOptions,
+    Result,
+    Status,
+    Task,
+    Trajectory,
+    minimize,
+    relax,
+)
+from mobius_flow.core.base.deadline import TimeLimit, check_time
+from mobius_flow.core.collision import check_embedded
+from mobius_flow.core.descent.task import Units
+from mobius_flow.core.driver import run as running
+from mobius_flow.core.driver.moves import untangling
+from mobius_flow.core.driver.outcome import converged
+from mobius_flow.core.driver.prepare import start_problem
+from mobius_flow.core.driver.run import Run
+from mobius_flow.core.knots import knot, scramble
+from mobius_flow.core.proof import verify
+from mobius_flow.core.untangle import Stage
+from mobius_flow.lab.compare.comparison import compare
+from solids import plate
+
+ALWAYS = RelaxOptions(untangle="always", max_iterations=40)
+
+
+def relaxed(task: Task | Curve, options: RelaxOptions, folder) -> tuple[Result, list[Iterate]]:
+    """The result and all iterates of a run that the independent check accepts."""
+    iterates: list[Iterate] = []
+    trajectory = Trajectory(obstacles=Task.of(task).obstacles)
+    result = minimize(task, options, iterates.append)
+    for iterate in iterates:
+        trajectory.add(iterate)
+    trajectory.save(folder / "T.npz")
+    assert verify(folder / "T.npz").accepted
+    return result, iterates
+
+
+def squeezed(curve: Curve, part: float) -> Task:
+    """A curve between two plates that leave it so much more room, as a part of its size."""
+    low, high = curve.vertices[:, 2].min(), curve.vertices[:, 2].max()
+    gap = part * np.ptp(curve.vertices, axis=0).max()
+    return Task(curve=curve, obstacles=(plate(low - gap, name="below"), plate(high + gap, name="above")))
+
+
+def test_by_default_the_flow_comes_first_and_is_all_that_is_needed() -> None:
+    result = minimize(knot("tuzun-sikora"))
+    assert (result.status, result.last.strand_moves) == (Status.CONVERGED, None)
+    assert result.final_energy == pytest.approx(4.0, abs=1e-4)
+
+
+def test_where_the_flow_makes_no_headway_strands_are_moved_and_the_flow_ends_it(monkeypatch, tmp_path) -> None:
+    monkeypatch.setattr(running, "LOOKING_BACK", 0)
+    result, iterates = relaxed(knot("tuzun-sikora"), RelaxOptions(), tmp_path)
+    assert result.status is Status.CONVERGED
+    assert result.final_energy == pytest.approx(4.0, abs=1e-4)
+    assert "strand moves: no crossing is left" in result.message
+    moved = [each for each in iterates if each.strand_moves and not each.strand_moves.done]
+    assert moved[0].index == 2, "after one step, which is judged to be no headway"
+    assert result.iterations == len(iterates) - len(moved) - 2, "less the start and the mesh for the flow"
+    told = result.report()["strand_moves"]
+    assert told == result.last.strand_moves.report()
+    assert told["left"] == 0 < told["moves"]
+    assert len(result.curve) >= len(iterates[0].curve)
+
+
+def test_headway_is_a_hundredth_of_the_energy_in_a_hundred_iterations() -> None:
+    curve = Task.of(knot("0_1")).refined(None).curve
+    run = Run(start_problem(Task.of(curve), RelaxOptions()), curve, RelaxOptions())
+    for fall, headway in ((0.0, False), (0.009, False), (0.011, True)):
+        run.look_for_headway()
+        run._energies.extend(np.linspace(100.0, 100.0 * (1.0 - fall), 100))
+        assert run.makes_headway, "not judged yet"
+        run._energies.append(100.0 * (1.0 - fall))
+        assert run.makes_headway == headway
+
+
+@pytest.mark.slow
+def test_the_flow_alone_is_stuck_on_hakens_unknot_but_not_with_strand_moves(tmp_path) -> None:
+    result, iterates = relaxed(knot("haken"), RelaxOptions(), tmp_path)
+    assert result.final_energy == pytest.approx(4.0, abs=1e-4)
+    assert next(each.index for each in iterates if each.strand_moves) > running.LOOKING_BACK
+
+
+def test_energies_within_a_move_are_those_of_its_end(tmp_path) -> None:
+    _, iterates = relaxed(knot("goeritz"), RelaxOptions(untangle="always", max_iterations=1), tmp_path)
+    moves: dict[object, list[Iterate]] = {}
+    for each in iterates[1:-1]:
+        moves.setdefault(each.strand_moves and each.strand_moves._replace(iterates=0), []).append(each)
+    for each in moves.values():
+        end = each[-1].curve
+        value = Objective().value(end.with_vertices(Units.of(end).from_user(end.vertices)))
+        np.testing.assert_allclose([iterate.energy for iterate in each], value, rtol=1e-9)
+    left = [moves.left for moves in moves if moves]
+    assert left == sorted(left, reverse=True)
+
+
+@pytest.mark.parametrize("limit", [1, 4])
+def test_strand_moves_are_no_iterations(limit: int, tmp_path) -> None:
+    result, _ = relaxed(knot("tuzun-sikora"), replace(ALWAYS, max_iterations=limit, tolerance=1e-9), tmp_path)
+    assert (result.status, result.iterations) == (Status.ITERATION_LIMIT, limit)
+    assert result.message.startswith(f"stopped at the iteration limit ({limit})")
+    assert result.last.strand_moves.left == 0
+
+
+def test_without_iterations_nothing_moves() -> None:
+    asked = minimize(knot("tuzun-sikora"), RelaxOptions(max_iterations=0, untangle="always"))
+    assert asked.message.endswith("strand moves: none, as there are to be no iterations")
+    assert asked.report()["strand_moves"] is None
+
+
+def _cut(monkeypatch: pytest.MonkeyPatch, crossings: int, stop: Callable[[], None]) -> None:
+    """Have strand moves stopped in the middle of the next one, once so few crossings are left."""
+    whole = untangling.untangled
+
+    def cut(*given: object) -> Iterator[Stage]:
+        few = False
+        for stage in whole(*given):
+            if few and stage.seen is None:
+                yield replace(stage, path=stage.path[:1])
+                stop()
+            few = few or (stage.seen is not None and stage.seen.crossings <= crossings)
+            yield stage
+
+    monkeypatch.setattr(untangling, "untangled", cut)
+
+
+@pytest.mark.parametrize("ending", ["time limit", "interrupt"])
+@pytest.mark.parametrize(("crossings", "kept"), [(15, False), (9, True)])
+def test_what_is_cut_short_within_a_move_says_where_it_stands(ending, crossings, kept, monkeypatch, tmp_path) -> None:
+    def stop() -> None:
+        monkeypatch.setattr(TimeLimit, "is_reached", True)
+        check_time()
+        raise KeyboardInterrupt
+
+    _cut(monkeypatch, crossings, stop)
+    monkeypatch.setattr(running, "LOOKING_BACK", 0)
+    options = RelaxOptions(time_limit=1e6 if ending == "time limit" else None)
+    result, iterates = relaxed(knot("tuzun-sikora"), options, tmp_path)
+    assert result.status is (Status.TIME_LIMIT if options.time_limit else Status.INTERRUPTED)
+    assert (result.last.strand_moves is not None) is kept
+    said = "and {} of 21 crossings are left" if kept else "but with {} of 21 crossings left nothing is kept of that"
+    left = [result.last.strand_moves.left] if kept else range(11, crossings + 1)
+    assert any(result.message.endswith("; strands were being moved, " + said.format(count)) for count in left)
+    check_embedded(result.curve)
+    assert kept or len(iterates) == 2
+
+
+def test_seconds_of_all_moves_are_counted(monkeypatch: pytest.MonkeyPatch, tmp_path) -> None:
+    monkeypatch.setattr(untangling.time, "perf_counter", count().__next__)
+    _, iterates = relaxed(knot("tuzun-sikora"), replace(ALWAYS, max_iterations=1), tmp_path)
+    seconds = sorted({each.strand_moves.seconds for each in iterates if each.strand_moves})
+    assert seconds == list(range(1, len(seconds) + 1))
+    assert len(seconds) > 1
+
+
+def test_interrupted_runs_say_where_they_stand() -> None:
+    def interrupt(iterate: Iterate) -> None:
+        if iterate.strand_moves and iterate.strand_moves.moves > 0:
+            raise KeyboardInterrupt
+
+    result = minimize(knot("tuzun-sikora"), RelaxOptions(untangle="always"), interrupt)
+    assert result.status is Status.INTERRUPTED
+    left = result.last.strand_moves.left
+    assert result.message.endswith(f"strands were being moved, and {left} of 21 crossings are left")
+    assert result.report()["strand_moves"]["left"] == left
+    assert np.isfinite(result.energies).all()
+    assert (result.iterations, [phase.iterations for phase in result.phases]) == (0, [0])
+
+
+def test_components_have_their_own_lengths_again(tmp_path) -> None:
+    curve = scramble(knot("L2a1", 40), 1, moves=800)
+    result, _ = relaxed(curve, ALWAYS, tmp_path)
+    assert result.last.strand_moves.left == 2
+    np.testing.assert_allclose(result.curve.component_lengths, curve.component_lengths, rtol=1e-6)
+
+
+def test_arcs_between_pins_have_their_lengths_again(tmp_path) -> None:
+    curve = scramble(knot("3_1", 30), 1, moves=600)
+    result, iterates = relaxed(Task(curve=curve, pins=(0, 12)), ALWAYS, tmp_path)
+    shortest = min(each.curve.length for each in iterates)
+    assert shortest < 0.8 * curve.length
+    assert result.last.strand_moves.left <= 4
+    assert result.curve.length == pytest.approx(curve.length)
+    at = [int(np.flatnonzero((result.curve.vertices == curve.vertices[pin]).all(axis=1))[0]) for pin in (0, 12)]
+    begin, end = at[0], at[1] + len(result.curve) * (at[1] < at[0])
+    edges = np.arange(begin, end) % len(result.curve)
+    assert result.curve.edge_lengths[edges].sum() == pytest.approx(curve.edge_lengths[:12].sum())
+
+
+def test_arcs_between_many_pins_do_not_wind_round_others(tmp_path) -> None:
+    curve = knot("goeritz")
+    task = Task(curve=curve, pins=tuple(range(0, len(curve), 2)))
+    result, _ = relaxed(task, RelaxOptions(untangle="always", max_iterations=2), tmp_path)
+    assert "strand moves: none are made: others would stretch the curve between pins" in result.message
+
+
+def test_curves_grow_after_strand_moves(tmp_path) -> None:
+    curve = knot("goeritz")
+    result, _ = relaxed(curve, RelaxOptions(untangle="always", grow=1.5, max_iterations=30), tmp_path)
+    assert result.last.strand_moves.left == 0
+    assert result.curve.length == pytest.approx(1.5 * curve.length)
+
+
+def test_what_grows_in_confinement_is_left_to_the_flow() -> None:
+    options = RelaxOptions(untangle="always", grow=1.2, max_iterations=1)
+    result = minimize(squeezed(knot("goeritz"), 0.5), options)
+    assert "strand moves: none, as what grows between pins or among obstacles is left to the flow" in result.message
+
+
+def test_a_knot_between_pinned_ends_stays(tmp_path) -> None:
+    arc = knot("overhand", 60)
+    task = Task(curve=arc, pins=(0, 59))
+    result, _ = relaxed(task, RelaxOptions(), tmp_path)
+    assert result.final_energy > 50.0
+    assert "strand moves" not in result.message
+    result, _ = relaxed(task, RelaxOptions(untangle="always", max_iterations=1), tmp_path)
+    assert "others would undo a knot between pinned ends" in result.message
+    assert result.final_energy > 50.0
+
+
+def test_where_obstacles_leave_no_room_the_curve_is_left_to_the_flow(tmp_path) -> None:
+    result, _ = relaxed(squeezed(knot("tuzun-sikora"), 0.003), replace(ALWAYS, max_iterations=2), tmp_path)
+    assert "as no way for a strand is free" in result.message  # some kernels find a way for a strand or two
+
+
+def test_moves_that_leave_more_crossings_than_go_are_in_vain(monkeypatch) -> None:
+    monkeypatch.setattr(running, "LOOKING_BACK", 0)
+    start, stuck, after = islice(relax(squeezed(knot("tuzun-sikora"), 0.003)), 3)
+    assert start.curve.mesh == stuck.curve.mesh == after.curve.mesh
+    assert after.strand_moves is None
+
+
+def test_pinned_everywhere_nothing_moves(tmp_path) -> None:
+    curve = knot("goeritz")
+    task = Task(curve=curve, pins=tuple(range(len(curve))))
+    result, _ = relaxed(task, RelaxOptions(untangle="always"), tmp_path)
+    assert result.report()["strand_moves"] is None
+    assert "strand moves: none are made" in result.message
+
+
+def test_curves_in_the_plane_are_left_alone() -> None:
+    turn = 2 * np.pi * np.arange(12) / 12
+    ellipse = Curve(np.column_stack([np.cos(turn), 2 * np.sin(turn)]))
+    result = minimize(ellipse, RelaxOptions(untangle="always", max_iterations=3))
+    assert "only curves in space" in result.message
+
+
+def _none(curve: Curve, *_: object) -> Iterator[object]:
+    raise np.linalg.LinAlgError("singular")
+    yield
+
+
+def test_what_fails_within_moves_loses_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(untangling, "untangled", _none)
+    result = minimize(knot("goeritz"), RelaxOptions(untangle="always", max_iterations=2))
+    assert "strand moves: none are made: stopped where the curve is too degenerate: singular" in result.message
+
+
+def test_a_mesh_that_cannot_be_computed_with_gives_way_to_the_coarse_one(monkeypatch, tmp_path) -> None:
+    def refuse(*_: object) -> None:
+        raise CurveError("too near")
+
+    monkeypatch.setattr(untangling, "check_refined", refuse)
+    result, iterates = relaxed(knot("goeritz"), RelaxOptions(untangle="always", max_iterations=20), tmp_path)
+    assert len(result.curve) < len(iterates[0].curve)
+    assert result.final_energy < 10.0
+
+
+@pytest.mark.parametrize(("gone", "left", "made"), [(25, 30, False), (0, 0, False), (25, 25, True)])
+def test_at_rest_no_more_crossings_may_stay_than_go(gone, left, made, monkeypatch) -> None:
+    monkeypatch.setattr(untangling, "worth", lambda *_: (gone, left))
+    result = minimize(knot("goeritz"))
+    assert (result.last.strand_moves is not None or "strand moves" in result.message) is made
+
+
+def test_what_cannot_be_asked_for_together_is_refused() -> None:
+    for options in ({"mesh": "fixed"}, {"edge_lengths": "keep"}, {"edge_lengths": (1.0,) * 9}):
+        with pytest.raises(OptionError, match="untangle='always' changes the mesh"):
+            RelaxOptions(untangle="always", **options)
+        assert not RelaxOptions(**options).may_untangle
+    with pytest.raises(OptionError, match="untangle='always' has no part in a comparison"):
+        compare(knot("3_1"), ["lbfgs"], RelaxOptions(untangle="always"), 1.0)
+    (history,) = compare(knot("tuzun-sikora"), ["lbfgs"], RelaxOptions(max_iterations=2), 60.0)
+    assert history.iterations == 2
+
+
+def test_curves_at_rest_know_of_no_strand_moves() -> None:
+    assert RelaxOptions().untangle == "auto"
+    assert RelaxOptions().at_rest(knot("3_1")).untangle == "never"
+
+
+def test_what_stalls_instead_keeps_what_else_was_said() -> None:
+    outcome = converged(1e-5, 1e-4).adding("one thing").stalling("another")
+    assert (outcome.status, outcome.clauses) == (Status.STALLED, ("stalled: another", "one thing"))

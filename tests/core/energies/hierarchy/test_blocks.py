@@ -1,0 +1,149 @@
+"""The block list covers every pair of edges once, and far pairs are far."""
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve, OptionError
+from mobius_flow.core.energies.barrier import near_pairs
+from mobius_flow.core.energies.hierarchy import BlockList
+from mobius_flow.core.energies.hierarchy.blocks import edge_clusters
+from mobius_flow.core.knots import knot
+from shapes import hopf_link, opened, regular_polygon, scattered_rings, torus_trefoil
+from smooth_curves import random_polygon
+
+CURVES = {
+    "triangle": regular_polygon(3),
+    "plane": regular_polygon(50, 2),
+    "knot": torus_trefoil(400),
+    "tangle": random_polygon(3, (61,), 3),
+    "hopf": hopf_link(37),
+    "small": random_polygon(5, (3, 4, 5, 3, 11, 6), 3),
+    "fourfold": random_polygon(7, (26, 37), 4),
+    "rings": scattered_rings(150, 3),
+    "arcs": opened(scattered_rings(150, 3), *range(0, 150, 4)),
+    "planar rings": scattered_rings(40, 7, dimension=2),
+    "uneven": Curve.from_components([*scattered_rings(30, 3).components, torus_trefoil(101).vertices]),
+}
+CURVE = pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)
+LIST = pytest.mark.parametrize(("theta", "leaf"), [(0.2, 1), (0.25, 4), (0.5, 8), (0.9, 3)])
+
+
+def multiplicity(blocks: BlockList) -> np.ndarray:
+    """How often each pair of edges is counted, symmetric; shape (n, n)."""
+    n = len(blocks.tree.order)
+    far, near = np.zeros((n, n)), np.zeros((n, n))
+    for a, b, c, d in blocks.ranges.T:
+        far[a:b, c:d] += 1
+    np.add.at(near, blocks.near, 1)
+    near[np.ix_(blocks.tree.order, blocks.tree.order)] += far
+    return near + near.T
+
+
+@CURVE
+@LIST
+def test_every_pair_of_edges_exactly_once(curve: Curve, theta: float, leaf: int) -> None:
+    edge = np.arange(curve.mesh.edges)
+    expected = curve.mesh.disjoint(edge[:, None], edge[None, :])
+    np.testing.assert_array_equal(multiplicity(BlockList.of(curve, theta, leaf)), expected)
+
+
+@CURVE
+def test_near_pairs_are_sorted(curve: Curve) -> None:
+    blocks = BlockList.of(curve, 0.25, 4)
+    assert np.all(blocks.near[0] < blocks.near[1])
+    assert np.all(np.diff(blocks.near[0] * len(curve) + blocks.near[1]) > 0)
+
+
+@CURVE
+def test_share_of_near_pairs(curve: Curve) -> None:
+    blocks, n = BlockList.of(curve, 0.25, 4), curve.mesh.edges
+    neighbours_and_halves = len(curve.mesh.inner) + 0.5 * n
+    assert blocks.near_share * n**2 / 2 == pytest.approx(len(blocks.near[0]) + neighbours_and_halves, abs=1e-9)
+
+
+@CURVE
+def test_only_near_pairs_can_be_left_out(curve: Curve) -> None:
+    """Wherever among the pairs those would be that are not: the last two edges are neighbours, or of two components."""
+    blocks, n = BlockList.of(curve, 0.25, 4), curve.mesh.edges
+    listed = set(zip(blocks.near[0].tolist(), blocks.near[1].tolist(), strict=True))
+    for i, j in ((0, 1), (n - 2, n - 1)):
+        if (i, j) not in listed:
+            with pytest.raises(OptionError, match="is not a near one"):
+                blocks.near_pairs((np.array([i]), np.array([j])))
+
+
+def test_a_list_is_of_one_mesh_only() -> None:
+    curve = torus_trefoil(400)
+    assert BlockList.of(curve, 0.25, 4).is_separated(curve, 0.25)
+    assert not BlockList.of(curve, 0.25, 4).is_separated(opened(curve, 0), 0.25)
+
+
+@pytest.mark.parametrize("curve", [torus_trefoil(6_000), scattered_rings(1_000, 5, spread=40.0)], ids=["long", "many"])
+def test_row_sums_of_the_kernel_one(curve: Curve) -> None:
+    blocks, n = BlockList.of(curve, 0.25, 4), len(curve)
+    sums = np.zeros(n + 1)
+    a, b, c, d = blocks.ranges
+    for start, stop, partners in [(a, b, d - c), (c, d, b - a)]:
+        sums += np.bincount(start, partners, n + 1) - np.bincount(stop, partners, n + 1)
+    sums = np.cumsum(sums)[:-1]
+    near = np.bincount(blocks.near[0], minlength=n) + np.bincount(blocks.near[1], minlength=n)
+    np.testing.assert_array_equal(sums + near[blocks.tree.order], n - 3)
+
+
+@CURVE
+@LIST
+def test_blocks_are_far_apart(curve: Curve, theta: float, leaf: int) -> None:
+    blocks, order = BlockList.of(curve, theta, leaf), edge_clusters(curve, leaf).order
+    for a, b, c, d in blocks.ranges.T:
+        i, j = order[a:b, None], order[None, c:d]
+        apart = np.linalg.norm(curve.midpoints[i] - curve.midpoints[j], axis=-1)
+        assert np.all(apart > 0.5 * (1 / theta - 1) * (curve.edge_lengths[i] + curve.edge_lengths[j]))
+
+
+@pytest.mark.parametrize("name", ["tangle", "small", "fourfold"])
+def test_pairs_of_the_barrier_are_near(name: str) -> None:
+    curve = CURVES[name]
+    blocks = BlockList.of(curve, 0.25, 4)
+    listed = {frozenset(pair) for pair in zip(*blocks.near, strict=True)}
+    counted = {frozenset(pair) for pair in zip(*near_pairs(curve), strict=True)}
+    assert counted
+    assert counted <= listed
+
+
+@CURVE
+def test_clusters_are_parts_of_a_component_or_whole_ones(curve: Curve) -> None:
+    tree = edge_clusters(curve, 4)
+    assert sorted(tree.order) == list(range(curve.mesh.edges))
+    component = curve.mesh.edge_component[tree.order]
+    for start, stop in zip(tree.start, tree.stop, strict=True):
+        held, count = np.unique(component[start:stop], return_counts=True)
+        assert len(held) == 1 or np.array_equal(count, curve.mesh.edge_counts[held])
+
+
+@CURVE
+def test_children_halve_their_parent_and_leaves_are_small(curve: Curve) -> None:
+    tree = edge_clusters(curve, 4)
+    for inner, child in tree.downward():
+        np.testing.assert_array_equal(tree.start[inner], tree.start[child])
+        np.testing.assert_array_equal(tree.stop[child], tree.start[child + 1])
+        np.testing.assert_array_equal(tree.stop[inner], tree.stop[child + 1])
+    leaves = tree.leaves()
+    assert np.all((tree.stop - tree.start)[leaves] <= 4)
+    np.testing.assert_array_equal(np.append(tree.start[leaves], curve.mesh.edges), np.append(0, tree.stop[leaves]))
+
+
+def test_size_of_the_list_is_linear() -> None:
+    blocks, twice = (BlockList.of(torus_trefoil(n), 0.25, 4) for n in (5_000, 10_000))
+    assert len(twice.first) < 2.3 * len(blocks.first)
+    assert len(twice.near[0]) < 2.3 * len(blocks.near[0])
+
+
+def test_many_components_make_no_more_pairs_than_one_curve() -> None:
+    curve, single = scattered_rings(2_000, 5, spread=60.0), torus_trefoil(10_000)
+    many, one = BlockList.of(curve, 0.5, 4), BlockList.of(single, 0.5, 4)
+    assert len(many.first) < 50 * len(one.first)
+
+
+def test_a_knot_of_the_table() -> None:
+    blocks = BlockList.of(knot("8_19"), 0.25, 4)
+    assert blocks.first.size
+    assert blocks.near[0].size

@@ -1,0 +1,257 @@
+"""The compressed Möbius energy against the sum over all pairs, and its derivative."""
+
+import numpy as np
+import pytest
+from families import crossed
+from mobius_flow.core import Curve, MobiusFlowError, MoebiusEnergy, Objective, RelaxOptions, minimize
+from mobius_flow.core.curve.refine import refine, subdivide
+from mobius_flow.core.energies import ENERGIES, Energy
+from mobius_flow.core.energies.barrier import near_pairs, replaced_pairs
+from mobius_flow.core.energies.hierarchy import BlockList, HierarchicalMoebiusEnergy, moebius_energy
+from mobius_flow.core.knots import knot
+from mobius_flow.core.solve.metrics import FractionalMetric, L2Metric
+from mobius_flow.core.solve.metrics.moebius import MoebiusMetric
+from shapes import hopf_link, regular_polygon, scattered_rings, torus_trefoil
+from smooth_curves import SMOOTH_CURVES, random_polygon
+from taylor import derivative_slope
+
+
+def fourfold(n: int) -> Curve:
+    """A curve of four dimensions."""
+    rotation, _ = np.linalg.qr(np.random.default_rng(1).normal(size=(4, 4)))
+    t = 2 * np.pi * np.arange(n) / n
+    return Curve(np.column_stack([torus_trefoil(n).vertices, np.cos(5 * t)]) @ rotation)
+
+
+CURVES = {
+    "torus": torus_trefoil(350),
+    "hopf": hopf_link(150),
+    "wave": SMOOTH_CURVES["wave"].polygon(250),
+    "ellipse": SMOOTH_CURVES["ellipse"].polygon(250),
+    "fourfold": fourfold(250),
+    "rings": scattered_rings(60, 5, 20.0),
+    "planar rings": scattered_rings(50, 3, 20.0, 2),
+    "table": refine(knot("8_19"), 400),
+    "tangle": subdivide(random_polygon(3, (30,), 3), np.full(30, 20)),
+    "uneven": Curve.from_components([torus_trefoil(201).vertices, *scattered_rings(20, 3, 20.0).components]),
+}
+
+
+@pytest.fixture(autouse=True)
+def lists(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Near pairs are listed even where, as on curves as small as these, they are most of all."""
+    monkeypatch.setattr("mobius_flow.core.energies.hierarchy.blocks.MOSTLY_NEAR", 1.0)
+
+
+CURVE = pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)
+
+
+def with_small_leaves(curve: Curve, theta: float = HierarchicalMoebiusEnergy.theta) -> HierarchicalMoebiusEnergy:
+    """The energy with many blocks even on small curves."""
+    energy = HierarchicalMoebiusEnergy(BlockList.of(curve, theta, 4))
+    assert energy.blocks is not None
+    assert len(energy.blocks.first) > len(curve) / 4
+    return energy
+
+
+def direction_for(curve: Curve) -> np.ndarray:
+    return np.random.default_rng(11).normal(size=curve.vertices.shape)
+
+
+@CURVE
+def test_energy_to_six_digits_and_derivative_to_four(curve: Curve) -> None:
+    energy, derivative = with_small_leaves(curve).value_and_derivative(curve)
+    exact, exact_derivative = MoebiusEnergy().value_and_derivative(curve)
+    assert energy == pytest.approx(exact, rel=1e-6, abs=3e-5)
+    inner = MoebiusMetric().at(curve)
+
+    def dual_norm(covector: np.ndarray) -> float:
+        return float(np.sqrt(np.sum(covector * inner.solve(covector))))
+
+    assert dual_norm(derivative - exact_derivative) < 1e-4 * dual_norm(exact_derivative)
+
+
+@CURVE
+def test_taylor_slope_of_the_derivative(curve: Curve) -> None:
+    direction = direction_for(curve)
+    assert derivative_slope(with_small_leaves(curve), curve, direction, largest=1e-4) == pytest.approx(2, abs=0.02)
+
+
+@pytest.mark.parametrize(("name", "smooth"), crossed(CURVES, [True, False]))
+def test_products_with_the_second_derivative_to_four_digits(name: str, smooth: bool) -> None:
+    curve = CURVES[name]
+    inner, noise = FractionalMetric().at(curve).plus(L2Metric().at(curve)), direction_for(curve)
+    v = inner.solve(noise) if smooth else noise
+    exact = MoebiusEnergy().hessian_product(curve, v)
+    error = with_small_leaves(curve).hessian_product(curve, v) - exact
+    assert np.sum(error * inner.solve(error)) < 1e-8 * np.sum(exact * inner.solve(exact))
+
+
+def test_products_with_nothing_and_with_a_shift_are_nothing() -> None:
+    curve = CURVES["uneven"]
+    for v in (np.zeros_like(curve.vertices), np.ones_like(curve.vertices)):
+        scale = np.abs(MoebiusEnergy().hessian_product(curve, direction_for(curve))).max()
+        np.testing.assert_allclose(with_small_leaves(curve).hessian_product(curve, v), 0.0, atol=1e-7 * scale)
+
+
+def test_taylor_slope_where_expansions_are_poor(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("mobius_flow.core.energies.hierarchy.energy.OUTDATED", 1.0)
+    curve = torus_trefoil(200)
+    poor = with_small_leaves(curve, 0.8)
+    assert poor.value(curve) != pytest.approx(MoebiusEnergy().value(curve), rel=1e-4)
+    assert derivative_slope(poor, curve, direction_for(curve), largest=1e-4) == pytest.approx(2, abs=0.02)
+
+
+def test_curves_without_blocks_or_pairs() -> None:
+    for curve in (regular_polygon(3), regular_polygon(5, 2), scattered_rings(1, 4)):
+        energy, derivative = HierarchicalMoebiusEnergy().value_and_derivative(curve)
+        exact, exact_derivative = MoebiusEnergy().value_and_derivative(curve)
+        assert energy == pytest.approx(exact, rel=1e-14)
+        np.testing.assert_allclose(derivative, exact_derivative, atol=1e-14)
+
+
+def test_value_agrees_with_value_and_derivative() -> None:
+    curve = CURVES["hopf"]
+    energy = with_small_leaves(curve)
+    assert energy.value(curve) == pytest.approx(energy.value_and_derivative(curve)[0], rel=1e-14)
+
+
+def test_error_falls_with_the_fifth_power_of_separation() -> None:
+    curve = CURVES["tangle"]
+    exact = MoebiusEnergy().value_and_derivative(curve)[1]
+    errors = [
+        np.linalg.norm(with_small_leaves(curve, theta).value_and_derivative(curve)[1] - exact) for theta in (0.3, 0.15)
+    ]
+    assert errors[0] > 2**5 * errors[1]
+
+
+def test_far_from_the_origin() -> None:
+    """Coordinates of 10⁶ are rounded by some 10⁻⁹ of an edge, and the derivative sees angles between edges."""
+    curve = torus_trefoil(500)
+    value, derivative = HierarchicalMoebiusEnergy().value_and_derivative(curve)
+    moved_value, moved = HierarchicalMoebiusEnergy().value_and_derivative(curve.with_vertices(curve.vertices + 1e6))
+    assert moved_value == pytest.approx(value, rel=1e-11)
+    np.testing.assert_allclose(moved, derivative, atol=2e-6 * np.abs(derivative).max())
+
+
+@pytest.mark.parametrize("factor", [2.0**-200, 2.0**100])
+def test_units_that_are_powers_of_two_change_no_digit(factor: float) -> None:
+    curve = torus_trefoil(500)
+    value, derivative = HierarchicalMoebiusEnergy().value_and_derivative(curve)
+    scaled_value, scaled = HierarchicalMoebiusEnergy().value_and_derivative(
+        curve.with_vertices(factor * curve.vertices)
+    )
+    assert scaled_value == value
+    np.testing.assert_array_equal(factor * scaled, derivative)
+
+
+def test_many_vertices_lose_no_digits() -> None:
+    def energy_and_slope(n: int, energy: Energy) -> tuple[float, float]:
+        """The energy and its derivative along one smooth field."""
+        curve = Curve(torus_trefoil(n).vertices * [1.0, 1.3, 0.8])
+        value, derivative = energy.value_and_derivative(curve)
+        return value, float(np.sum(derivative * np.sin(curve.vertices[:, [1, 2, 0]])))
+
+    coarse, fine = (np.array(energy_and_slope(n, MoebiusEnergy())) for n in (500, 1000))
+    limit = fine + (fine - coarse) / 3.0  # the midpoint rule's error falls with 1/n²
+    value, slope = energy_and_slope(40_000, HierarchicalMoebiusEnergy())
+    assert value == pytest.approx(limit[0], rel=1e-6)
+    assert slope == pytest.approx(limit[1], rel=1e-5), "what the order of the expansions promises, see `theta`"
+
+
+def flat_trefoil() -> Curve:
+    """A curve with strands nearer than the barrier allows, and with many blocks all the same."""
+    curve = torus_trefoil(1200)
+    return curve.with_vertices(curve.vertices * [1.0, 1.0, 0.01])
+
+
+def test_leaving_out_is_exact() -> None:
+    curve = flat_trefoil()
+    pairs = replaced_pairs(curve)
+    assert len(pairs[0])
+    fast, slow = (energy.leaving_out(pairs).value(curve) for energy in (with_small_leaves(curve), MoebiusEnergy()))
+    assert fast == pytest.approx(slow, rel=1e-6)
+
+
+def test_objective_is_that_of_the_default_energy() -> None:
+    """As exact as the expansions: 10⁻⁶ of the energy, 10⁻⁵ of the derivative."""
+    curve = flat_trefoil()
+    assert len(near_pairs(curve)[0])
+    value, derivative = Objective.of(with_small_leaves(curve)).value_and_derivative(curve)
+    exact, exact_derivative = Objective().value_and_derivative(curve)
+    assert value == pytest.approx(exact, rel=1e-6)
+    np.testing.assert_allclose(derivative, exact_derivative, atol=1e-5 * np.abs(exact_derivative).max())
+
+
+def test_left_out_pairs_must_be_near() -> None:
+    curve = torus_trefoil(300)
+    blocks = BlockList.of(curve, HierarchicalMoebiusEnergy.theta, 4)
+    far = blocks.tree.order[blocks.ranges[0, :1]], blocks.tree.order[blocks.ranges[2, :1]]
+    assert HierarchicalMoebiusEnergy(blocks, (far[0][:0], far[1][:0])).value(curve)
+    for pairs in (far, (np.append(blocks.near[0][:2], far[0]), np.append(blocks.near[1][:2], far[1]))):
+        with pytest.raises(MobiusFlowError, match="not a near one"):
+            HierarchicalMoebiusEnergy(blocks, pairs).value(curve)
+
+
+def test_a_frozen_list_stays_until_strands_come_near() -> None:
+    curve = torus_trefoil(2000)
+    frozen, fresh = HierarchicalMoebiusEnergy().frozen_at(curve), HierarchicalMoebiusEnergy()
+    nearby, flat = (curve.with_vertices(curve.vertices * [1.0, 1.0, z]) for z in (0.95, 0.005))
+    assert frozen.value(nearby) != fresh.value(nearby)
+    assert frozen.value(nearby) == pytest.approx(MoebiusEnergy().value(nearby), rel=1e-6)
+    assert frozen.value(flat) == fresh.value(flat)
+    pairs = replaced_pairs(flat)
+    assert len(pairs[0])
+    exact = MoebiusEnergy(pairs).value(flat)
+    assert frozen.leaving_out(pairs).value(flat) == pytest.approx(exact, rel=1e-6)
+
+
+def test_a_frozen_list_is_of_no_use_to_another_mesh() -> None:
+    frozen = HierarchicalMoebiusEnergy().frozen_at(hopf_link(60))
+    for other in (torus_trefoil(120), hopf_link(80)):
+        assert frozen.value(other) == HierarchicalMoebiusEnergy().value(other)
+
+
+def test_densely_packed_strands_are_summed_pair_by_pair(monkeypatch: pytest.MonkeyPatch) -> None:
+    packed, loose = CURVES["tangle"], torus_trefoil(2000)
+    pairs = packed.mesh.tails[:2], packed.mesh.tails[2:4]
+    listed = HierarchicalMoebiusEnergy().value(loose)
+    monkeypatch.undo()
+    for fast, slow in (
+        (HierarchicalMoebiusEnergy(), MoebiusEnergy()),
+        (HierarchicalMoebiusEnergy(without=pairs), MoebiusEnergy(pairs)),
+    ):
+        assert fast.value(packed) == slow.value(packed)
+        for one, other in zip(fast.value_and_derivative(packed), slow.value_and_derivative(packed), strict=True):
+            np.testing.assert_array_equal(one, other)
+    assert HierarchicalMoebiusEnergy().value(loose) == listed != MoebiusEnergy().value(loose)
+
+
+def test_other_energies_have_no_fast_form() -> None:
+    pairs = (np.array([0]), np.array([2]))
+    assert HierarchicalMoebiusEnergy.instead_of(MoebiusEnergy(pairs)).without is pairs
+    for name in ENERGIES.keys() - {"moebius"}:
+        with pytest.raises(MobiusFlowError, match=f"{name!r} has no fast form"):
+            HierarchicalMoebiusEnergy.instead_of(ENERGIES[name])
+
+
+def test_it_is_an_energy() -> None:
+    assert isinstance(HierarchicalMoebiusEnergy(), Energy)
+
+
+def test_reported_energies_are_exact_unless_their_error_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    curve = torus_trefoil(700)
+    exact = MoebiusEnergy().value(curve)
+    assert moebius_energy(curve) == (exact, 0.0)
+    monkeypatch.setattr("mobius_flow.core.energies.hierarchy.sampling.EXACT_UP_TO", len(curve) - 1)
+    value, error = moebius_energy(curve)
+    assert 0.0 < abs(value / exact - 1.0) <= error
+
+
+def test_relax_takes_the_same_steps_with_it() -> None:
+    fast, slow = (
+        minimize(torus_trefoil(300), RelaxOptions(energy=energy, max_iterations=4)).energies
+        for energy in (HierarchicalMoebiusEnergy(), "moebius")
+    )
+    assert len(slow) == 5
+    assert fast == pytest.approx(slow, rel=1e-6)

@@ -1,0 +1,141 @@
+"""Keys where the mesh changes: all have the points of every mesh, which lie on the edges of the others."""
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, relax
+from mobius_flow.core.collision import is_free
+from mobius_flow.core.curve.refine import Markers, subdivide
+from mobius_flow.core.keys.motion import Recording
+from mobius_flow.core.keys.placement import Link, Placement
+from mobius_flow.core.knots import knot
+from recorded_motions import assert_proved, at_rest, followed, iterate
+from shapes import lattice_knot, regular_polygon, torus_trefoil
+
+
+@pytest.fixture(scope="module")
+def finer():
+    """A run that splits edges in the end."""
+    options = RelaxOptions(vertices=40, mesh="finer", tolerance=1e-3)
+    iterates = list(relax(lattice_knot("3_1"), options))
+    assert len(iterates[0].curve) < len(iterates[-1].curve)
+    return iterates
+
+
+@pytest.mark.parametrize("limit", [None, 6])
+def test_points_that_are_added_are_on_the_edges_of_all_keys(finer, limit):
+    turned = Placement(np.array([[0.0, -2.0, 0.0], [0.5, 0.0, 0.0], [0.0, 0.0, 1.0]]), np.array([1.0, 2.0, 3.0]))
+    link = Link((turned,), (1,))
+    motion = followed(finer, link)
+    keys = motion.keys(is_free, limit)
+    start, end = finer[0].curve, finer[-1].curve
+    assert {len(key.points) for key in keys.keys} == {len(end)}
+    assert_proved(keys, end.mesh)
+    stored = link.to_stored(start.mesh, start.vertices)
+    lengths = Curve(keys.keys[0].points.astype(np.float64)).length, Curve(stored).length
+    assert lengths[0] == pytest.approx(lengths[1], rel=1e-6)
+    assert {tuple(point) for point in stored.astype(np.float32)} <= {tuple(point) for point in keys.keys[0].points}
+    assert motion.start.mesh == end.mesh
+    course = motion.course(keys)
+    assert (np.diff(course.distance) >= 0).all()
+
+
+def test_splits_move_nothing(finer):
+    motion = followed(finer)
+    keys = motion.keys(is_free).keys
+    change = next(k for k, each in enumerate(finer) if len(each.curve) > 40)
+    shift = np.abs(keys[change].points - keys[change - 1].points).max()
+    assert shift < 1e-6 * np.abs(keys[change].points).max()
+
+
+@pytest.fixture(scope="module")
+def untangled():
+    """Strand moves, which put vertices on edges and leave others out, and then a flow."""
+    iterates = list(relax(knot("goeritz"), RelaxOptions(untangle="always", max_iterations=4)))
+    assert len({len(each.curve) for each in iterates}) > 10
+    return iterates
+
+
+@pytest.mark.parametrize("limit", [None, 40])
+def test_strand_moves_are_keyed(untangled, limit):
+    """Every vertex of every shape is a point of its key, and the others are on its edges."""
+    motion = followed(untangled)
+    keys = motion.keys(is_free, limit)
+    assert_proved(keys, motion.start.mesh)
+    iterates = {each.index: each.curve for each in untangled}
+    for key in (key for key in keys.keys if key.time in iterates):
+        curve, points = iterates[key.time], Curve(key.points.astype(np.float64))
+        assert {tuple(vertex) for vertex in curve.vertices.astype(np.float32)} <= {tuple(p) for p in key.points}
+        assert points.length == pytest.approx(curve.length, rel=1e-5)
+    assert len(motion.start) < 2 * max(len(each.curve) for each in untangled)
+
+
+def test_the_first_marker_may_come_to_lie_between_new_vertices():
+    hexagon = np.array(regular_polygon(6).vertices)
+    hexagon[0] = 0.5 * (hexagon[5] + hexagon[1])
+    along = np.linspace(hexagon[5], hexagon[1], 7)[1:-1]
+    finer = np.concatenate([hexagon[1:], along])
+    markers = Markers(6, closed=True)
+    markers.change([1, 2, 3, 4, 5], [0, 1, 2, 3, 4], 10)
+    markers.change(range(10), range(10), 10)
+    shapes = [markers.on(vertices, stage) for stage, vertices in enumerate((hexagon, finer, finer))]
+    for shape in shapes:
+        np.testing.assert_allclose(shape[0], hexagon[0], atol=1e-12)
+        assert Curve(shape).length == pytest.approx(Curve(hexagon).length)
+    np.testing.assert_allclose(shapes[1], shapes[2], atol=1e-12)
+
+
+def test_nothing_moves_while_the_mesh_changes(untangled):
+    motion = followed(untangled)
+    keys = motion.keys(is_free)
+    way = dict(zip([key.time for key in keys.keys], motion.course(keys).distance, strict=True))
+    changes = [each.index for each in untangled[1:] if not each.path]
+    assert len(changes) > 10
+    assert all(way[index] == way[index - 1] for index in changes)
+
+
+def test_an_adaptive_mesh_is_keyed():
+    uneven = subdivide(torus_trefoil(60), np.where(np.arange(60) < 12, 20, 2))
+    iterates = list(relax(uneven, RelaxOptions(mesh="adaptive", max_iterations=8)))
+    assert len(iterates[-1].curve) < len(iterates[0].curve)
+    motion = followed(iterates)
+    assert_proved(motion.keys(is_free), motion.start.mesh)
+
+
+def test_another_curve_cannot_be_followed(finer):
+    motion = Recording(at_rest(1))
+    motion.add(finer[-1])
+    with pytest.raises(MobiusFlowError, match="keyframes cannot follow a change to another curve: only 0 vertices"):
+        motion.add(finer[0])
+
+
+def test_pins_of_a_refined_mesh_keep_the_numbers_of_its_coarse_keys():
+    coarse = torus_trefoil(20)
+    pieces = np.full(20, 2)
+    fine = subdivide(coarse, pieces)
+    motion = Recording(at_rest(1))
+    motion.add(iterate(0, coarse.vertices, coarse, pins=(3,)))
+    shifted = fine.vertices + 0.1
+    shifted[6] = fine.vertices[6] + 1e-6
+    motion.add(iterate(1, fine.vertices, fine, path=(), pins=(6,)))
+    motion.add(iterate(2, shifted, fine, pins=(6,)))
+    frames = np.stack([key.points for key in motion.keys(lambda *_: True).keys])
+    np.testing.assert_array_equal(frames[:, 6], np.broadcast_to(coarse.vertices[3].astype(np.float32), (3, 3)))
+
+
+def test_a_drag_that_is_taken_back_takes_its_meshes_along():
+    """The same iterates with a detour over two finer meshes between the third and the fourth make the same keys."""
+    task, options = torus_trefoil(40), RelaxOptions(vertices=40, mesh="adaptive", max_iterations=30)
+    run = list(relax(task, options))
+    stage = next(k for k, each in enumerate(run) if k and not each.path)
+    plain, detour = followed(run), followed(run[: stage - 1])
+    curve = run[stage - 2].curve
+    for k in range(2):
+        curve = subdivide(curve, np.full(curve.mesh.edges, 2))
+        detour.add(iterate(stage - 1 + k, curve.vertices, curve, ()))
+    for each in run[stage - 1 :]:
+        detour.add(each)
+    expected, found = plain.keys(is_free), detour.keys(is_free)
+    assert_proved(found, detour.start.mesh)
+    np.testing.assert_array_equal(detour.course(found).distance, plain.course(expected).distance)
+    for a, b in zip(found.keys, expected.keys, strict=True):
+        np.testing.assert_array_equal(a.points, b.points)

@@ -1,0 +1,320 @@
+"""Which frames are keyed: straight lines from key to key are proved, in Blender's own numbers."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve, RelaxOptions, relax
+from mobius_flow.core.collision import is_free
+from mobius_flow.core.io.trajectory import StrandMoves
+from mobius_flow.core.keys.key_options import Pace, Timing
+from mobius_flow.core.keys.motion import Kind, Recording
+from mobius_flow.core.keys.placement import Link, Placement
+from mobius_flow.core.knots import torus_knot
+from recorded_motions import around, assert_proved, at_rest, collected, followed, iterate
+from shapes import regular_polygon, torus_trefoil
+
+
+def test_a_chord_that_collides_gets_keys_at_the_legs():
+    start, end = around(0.0), around(np.pi)
+    legs = tuple(around(angle).vertices for angle in np.linspace(0, np.pi, 5)[1:])
+    assert not is_free(start.mesh, start.vertices, end.vertices)
+    keys = collected([start, end], {1: legs}).keys(is_free)
+    assert 2 < len(keys.keys) <= 5
+    assert_proved(keys, start.mesh)
+    inner = keys.keys[1].points
+    assert any(np.array_equal(inner, leg.astype(np.float32)) for leg in legs)
+
+
+def test_a_chord_that_is_free_gets_no_keys():
+    start, end = around(0.0), around(0.4)
+    legs = tuple(around(angle).vertices for angle in (0.1, 0.2, 0.3, 0.4))
+    keys = collected([start, end], {1: legs}).keys(is_free)
+    assert len(keys.keys) == 2
+    assert_proved(keys, start.mesh)
+
+
+def test_thinning_inserts_iterates_where_chords_collide():
+    curves = [around(angle) for angle in np.linspace(0, np.pi, 21)]
+    keys = collected(curves).keys(is_free, limit=2)
+    assert 2 < len(keys.keys) < 10
+    assert_proved(keys, curves[0].mesh)
+    assert {key.time for key in keys.keys} <= set(range(21))
+
+
+@pytest.mark.parametrize("limit", [2, 5, 9])
+def test_thinning_where_nothing_collides(limit):
+    curves = [around(angle) for angle in np.linspace(0, 0.5, 21)]
+    keys = collected(curves).keys(is_free, limit=limit)
+    assert len(keys.keys) == limit
+    np.testing.assert_allclose([key.time for key in keys.keys], np.linspace(0, 20, limit), atol=0.5 + 1e-9)
+    assert_proved(keys, curves[0].mesh)
+
+
+@pytest.mark.parametrize("limit", [None, 2, 6])
+def test_a_real_run_is_proved(limit):
+    iterates = list(relax(torus_trefoil(48), RelaxOptions(max_iterations=40)))
+    motion = followed(iterates)
+    keys = motion.keys(is_free, limit)
+    assert_proved(keys, iterates[0].curve.mesh)
+    assert keys.keys[-1].time == iterates[-1].index
+    np.testing.assert_array_equal(keys.keys[-1].points, iterates[-1].curve.vertices.astype(np.float32))
+
+
+def test_what_cannot_be_proved_is_counted_not_hidden():
+    keys = collected([around(0.0), around(np.pi)]).keys(is_free)
+    assert not keys.certified
+    assert keys.unproved == 1
+    assert len(keys.keys) == 2
+
+
+def test_rounding_through_contact_is_counted():
+    """A gap far below 32 bits: the doubles are apart, what Blender stores is not."""
+    square = regular_polygon(4).vertices
+    other = square + np.array([1.0, 0.0, 1e-12])
+    curve = Curve.from_components([square + 1000.0, other + 1000.0])
+    assert not collected([curve, curve]).keys(is_free).certified
+    assert not collected([curve]).result(is_free).certified
+
+
+def test_an_uncertified_run_has_no_certified_result():
+    curve = around(0.0)
+    motion = Recording(at_rest(2))
+    motion.add(iterate(0, curve.vertices, curve))
+    motion.add(iterate(1, curve.vertices, curve, certified=False))
+    assert not motion.result(is_free).certified
+
+
+def test_times_of_legs_follow_their_lengths():
+    start = regular_polygon(4)
+    path = tuple(start.vertices + np.array([0, 0, z]) for z in (1.0, 4.0, 5.0))
+    motion = collected([start, start.with_vertices(path[-1])], {1: path})
+    keys = motion.keys(lambda _mesh, a, b: np.abs(b - a).max() < 3.5)
+    assert [key.time for key in keys.keys] == pytest.approx([0, 0.2, 0.8, 1])
+
+
+@pytest.mark.parametrize("still", [(0.0, 1.0), (1.0, 1.0), (0.0, 0.0)])
+def test_legs_too_short_for_32_bits_have_times_of_their_own(still):
+    start = regular_polygon(4)
+    path = tuple(start.vertices + np.array([0, 0, z]) for z in still)
+    motion = collected([start, start.with_vertices(path[-1])], {1: path})
+    times = [key.time for key in motion.keys(lambda *_: False).keys]
+    assert len(times) == 3
+    assert (times[0], times[-1]) == (0, 1)
+    assert (np.diff(times) > 0).all()
+
+
+def test_rounding_of_the_start_is_a_gap_of_its_own():
+    """Also where all that follows is proved, in the numbers that Blender stores."""
+    curve = regular_polygon(4).with_vertices(0.1 * regular_polygon(4).vertices)
+    motion = collected([curve, curve.with_vertices(2.0 * curve.vertices)])
+    keys = motion.keys(lambda _mesh, a, _b: np.array_equal(a, a.astype(np.float32)))
+    assert keys.unproved == 1
+
+
+def test_thinning_keys_iterates_rather_than_the_ends_of_legs():
+    angles = np.linspace(0, np.pi, 8)  # an odd number of steps, so that the middle of all legs is within one
+    curves = [around(angle) for angle in angles]
+    halves = {k + 1: (around(0.5 * (a + b)).vertices, around(b).vertices) for k, (a, b) in enumerate(pairwise(angles))}
+    times = [key.time for key in collected(curves, halves).keys(is_free, limit=2).keys]
+    assert len(times) > 2
+    assert times == [round(time) for time in times]
+
+
+@pytest.mark.parametrize("limit", [1, 2, 3])
+def test_thinned_keys_begin_at_the_start_and_end_at_the_end(limit):
+    """However long the curve rests there."""
+    start = regular_polygon(4)
+    curves = [start.with_vertices(start.vertices + np.array([0, 0, z])) for z in (0.0, 0.0, 0.0, 1.0, 2.0, 2.0, 2.0)]
+    times = [key.time for key in collected(curves).keys(lambda *_: True, limit).keys]
+    assert (times[0], times[-1]) == (0, 6)
+
+
+def test_one_unproved_leg_is_halved():
+    start = regular_polygon(4)
+    motion = collected([start, start.with_vertices(start.vertices + np.array([0, 0, 1.0]))])
+    keys = motion.keys(lambda _mesh, a, b: np.abs(b - a).max() < 0.3)
+    assert [key.time for key in keys.keys] == [0, 0.25, 0.5, 0.75, 1]
+    assert keys.certified
+
+
+def placed(linear, origin):
+    return Placement(np.array(linear, dtype=float), np.array(origin, dtype=float))
+
+
+TURNED = placed([[0, -2, 0], [0.5, 0, 0.1], [0, 0, -3]], [100, -7, 3])
+
+
+@pytest.mark.parametrize("placements", [(TURNED, placed(np.eye(3), [1, 2, 3])), (placed(np.eye(3), 3 * [0]), TURNED)])
+def test_chords_of_different_objects_are_proved_against_each_other(placements):
+    """Each square by itself may go straight; together the second must go round the first."""
+    link = Link(placements, (1, 1))
+    curves = [around(angle) for angle in np.linspace(0, np.pi, 21)]
+    keys = collected(curves, link=link).keys(is_free, limit=2)
+    mesh = curves[0].mesh
+    assert keys.certified
+    assert 2 < len(keys.keys) < 10
+    for a, b in pairwise(keys.keys):
+        world = [
+            np.concatenate([placements[k].to_world(key.points[mesh.slices[k]].astype(np.float64)) for k in (0, 1)])
+            for key in (a, b)
+        ]
+        assert is_free(mesh, *world)
+    for k, s in enumerate(mesh.slices):
+        alone = collected([Curve(curve.vertices[s]) for curve in curves], link=Link((placements[k],), (1,)))
+        assert len(alone.keys(is_free, limit=2).keys) == 2
+
+
+def test_a_single_object_is_proved_in_its_own_numbers():
+    """In the common space of one object points are exactly what Blender stores, wherever the object is."""
+    curve = torus_trefoil(30)
+    stored = TURNED.to_local(curve.vertices).astype(np.float32)
+    link = Link((TURNED,), (1,))
+    assert np.array_equal(link.to_common(curve.mesh, stored), stored)
+    assert link.scales == (1.0,)
+
+
+def test_objects_placed_alike_are_proved_in_their_own_numbers():
+    curve = around(0.3)
+    link = Link((TURNED, TURNED), (1, 1))
+    stored = link.to_stored(curve.mesh, curve.vertices).astype(np.float32)
+    assert np.array_equal(link.to_common(curve.mesh, stored), stored)
+
+
+def test_the_common_space_is_the_first_objects():
+    curve = around(0.3)
+    link = Link((TURNED, placed(np.eye(3), [1, 2, 3])), (1, 1))
+    common = link.to_common(curve.mesh, link.to_stored(curve.mesh, curve.vertices))
+    np.testing.assert_allclose(TURNED.to_world(common), curve.vertices, atol=1e-13)
+
+
+def test_a_hop_is_keyed_like_a_step():
+    """It is one iterate of many legs; only those are keyed that its chord needs."""
+    iterates = list(relax(torus_knot(3, 4, 90), RelaxOptions(vertices=90, hops=1, seed=1)))
+    motion = followed(iterates)
+    assert max(len(each.path) for each in iterates) > 20
+    keys = motion.keys(is_free)
+    assert len(keys.keys) < 2 * len(iterates)
+    assert_proved(keys, iterates[-1].curve.mesh)
+
+
+def test_pinned_points_keep_the_numbers_of_the_start():
+    """However they are rounded: here by turns to either side of what lies halfway between two 32-bit numbers."""
+    curve = torus_trefoil(40)
+    step = np.spacing(np.float32(1.0)).astype(np.float64)
+    motion = Recording(at_rest(1))
+    for k in range(4):
+        vertices = curve.vertices + 0.01 * k
+        vertices[7] = 1.0 + 0.5 * step + (-1) ** k * 1e-12
+        motion.add(iterate(k, vertices, curve, pins=(7,)))
+    frames = np.stack([key.points for key in motion.keys(lambda *_: True).keys])
+    np.testing.assert_array_equal(frames[:, 7], np.broadcast_to(frames[0, 7], (4, 3)))
+    assert not np.array_equal(frames[0], frames[-1])
+
+
+def turns(keys, frames):
+    """Angles by which the way of a motion turns at its keys in space and time, in degrees."""
+    pairs = zip(keys.keys, frames, strict=True)
+    ways = np.diff([np.append(key.points.astype(float).ravel(), frame) for key, frame in pairs], axis=0)
+    ways /= np.linalg.norm(ways, axis=1)[:, None]
+    return np.degrees(np.arccos(np.clip((ways[1:] * ways[:-1]).sum(axis=1), -1.0, 1.0)))
+
+
+ZIGZAG = Timing(pace=Pace.ITERATE, frames_per_iterate=12.0)
+
+
+@pytest.fixture
+def zigzag():
+    ring = regular_polygon(30)
+    shifts = [np.array([0.5 * k, 0.5 * (k % 2), 0.0]) for k in range(9)]
+    return collected([ring.with_vertices(ring.vertices + shift) for shift in shifts])
+
+
+@pytest.mark.parametrize("limit", [None, 65])
+def test_keys_on_curves_through_the_iterates_make_a_motion_smooth(zigzag, limit):
+    sharp, smooth = zigzag.keys(is_free, limit), zigzag.keys(is_free, limit, ZIGZAG)
+    assert_proved(smooth, zigzag.start.mesh)
+    assert len(smooth.keys) == pytest.approx(limit or 8 * 12 + 1, abs=9)
+    assert smooth.kinds[Kind.STEP] == 9
+    iterates = [key for key in smooth.keys if key.kind is Kind.STEP]
+    for one, other in zip(iterates, sharp.keys, strict=True):
+        assert one.time == other.time
+        np.testing.assert_array_equal(one.points, other.points)
+    corners = [turns(each, ZIGZAG.frames(zigzag.course(each))) for each in (sharp, smooth)]
+    assert corners[1].max() < 0.5 * corners[0].max()
+
+
+def test_at_most_half_of_many_keys_are_added():
+    ring = regular_polygon(20)
+    motion = collected([ring.with_vertices(ring.vertices + 0.1 * np.sin(k)) for k in range(100)])
+    keys = motion.keys(is_free, None, Timing(length=2000))
+    assert 0.5 * len(keys.keys) <= keys.kinds[Kind.STEP] == 100 < 0.6 * len(keys.keys)
+
+
+def test_where_a_smooth_motion_is_not_proved_it_stays_straight(zigzag):
+    iterates = {key.points.tobytes() for key in zigzag.keys(is_free).keys}
+
+    def free(_mesh, start, end):
+        near = min(start[0, 0], end[0, 0]) < 2.0
+        return near or {start.astype(np.float32).tobytes(), end.astype(np.float32).tobytes()} <= iterates
+
+    keys = zigzag.keys(free, None, ZIGZAG)
+    assert keys.certified
+    late = [key for key in keys.keys if key.time >= 4]
+    assert {key.kind for key in late} == {Kind.STEP}
+    assert keys.kinds[Kind.ADDED] > 20
+
+
+def test_points_at_rest_stay_exactly_where_they_are():
+    ring = regular_polygon(30)
+    moved = [
+        ring.with_vertices(ring.vertices + np.where(np.arange(30) < 15, 0.0, 0.1 * (k % 2))[:, None]) for k in range(9)
+    ]
+    keys = collected(moved).keys(is_free, None, ZIGZAG)
+    assert len({key.points[:15].tobytes() for key in keys.keys}) == 1
+
+
+def test_no_more_iterates_are_keyed_than_there_are_times_for():
+    ring = regular_polygon(5)
+    motion = collected([ring.with_vertices(ring.vertices + 0.1 * k) for k in range(200)])
+    timing = Timing(length=3)
+    keys = motion.keys(is_free, None, timing)
+    assert 40 < len(keys.keys) < 100
+    assert np.diff(timing.frames(motion.course(keys))).min() > 0.01
+
+
+def test_timing_decides_when_and_not_what():
+    motion = followed(relax(torus_trefoil(48), RelaxOptions(max_iterations=40, vertices=48, mesh="fixed")))
+    for limit in (None, 15):
+        found = [motion.keys(is_free, limit, Timing(pace=pace, length=30)) for pace in Pace]
+        kept = [[key.time for key in keys.keys if key.kind is Kind.STEP] for keys in found]
+        assert kept[0] == kept[1] == kept[2] == kept[3]
+
+
+def test_strand_moves_are_seen_by_flow_time_as_long_as_by_distance():
+    ring = regular_polygon(8)
+    moves = StrandMoves(2, 0)
+    shapes = [ring.with_vertices(ring.vertices + np.array([0.3 * k, 0.0, 0.0])) for k in range(9)]
+    made = [
+        iterate(k, each.vertices, ring, strand_moves=None if k == 0 else moves._replace(done=k > 4))
+        for k, each in enumerate(shapes)
+    ]
+    motion = followed(made)
+    keys = motion.keys(is_free)
+    assert [key.kind for key in keys.keys] == [Kind.STEP] + 4 * [Kind.MOVE] + 4 * [Kind.STEP]
+    timing = Timing(pace=Pace.FLOW_TIME, length=101)
+    np.testing.assert_allclose(timing.frames(motion.course(keys)), np.linspace(1, 101, 9), atol=0.02)
+
+
+def energies_passed(*energies):
+    start = regular_polygon(5)
+    motion = followed(iterate(k, start.vertices + 0.1 * k, start, energy=energy) for k, energy in enumerate(energies))
+    return motion.course(motion.keys(is_free)).fall
+
+
+def test_falls_of_the_energy_count_and_rises_on_the_way_to_another_curve():
+    there_and_back = energies_passed(90.0, 40.0, 7.0, 4.0, 4.0, 7.0, 40.0, 90.0)
+    np.testing.assert_allclose(np.diff(there_and_back), np.diff(there_and_back)[::-1], atol=1e-12)
+    assert there_and_back[3] > 5.0
+    finer_mesh = energies_passed(90.0, 40.0, 4.0, 5.0, 4.5)
+    assert finer_mesh[2] == finer_mesh[-1] > 5.0

@@ -1,0 +1,173 @@
+"""Pictures of curves and motions: tubes, pages for a browser, solids for printers, surfaces that move."""
+
+import io
+import json
+import re
+import shutil
+import struct
+import subprocess
+import sys
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve, CurveError, MobiusFlowError, RelaxOptions, Trajectory, minimize, relax
+from mobius_flow.core.collision.gap import thickness
+from mobius_flow.core.curve.measures import writhe_and_crossings
+from mobius_flow.core.keys.solids import animation, solid, wire
+from mobius_flow.core.keys.view import drawing, figure, motion, page, still
+from mobius_flow.core.knots import knot
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory):
+    """The path of a link whose mesh changes."""
+    path = tmp_path_factory.mktemp("view") / "T.npz"
+    trajectory = Trajectory()
+    for iterate in relax(knot("L2a1", 40), RelaxOptions(max_iterations=12, mesh="adaptive")):
+        trajectory.add(iterate)
+    trajectory.save(path)
+    return path
+
+
+def test_wires_are_as_wide_as_there_is_room():
+    curve = knot("3_1")
+    widest = 2 * thickness(curve)
+    assert len(wire(curve, 0.99 * widest)) == 1
+    for width in (1.01 * widest, 0.0, -1.0, np.nan, np.inf):
+        with pytest.raises(CurveError, match="room for"):
+            wire(curve, width)
+
+
+@pytest.mark.parametrize("kind", ["stl", "3mf"])
+def test_solids_come_back(kind):
+    trimesh = pytest.importorskip("trimesh")
+    curve = knot("L2a1")
+    read = trimesh.load(io.BytesIO(solid(curve, kind)), file_type=kind)
+    mesh = read.to_mesh() if kind == "3mf" else read
+    mesh.merge_vertices(digits_vertex=5)
+    assert mesh.body_count == 2
+    assert mesh.is_watertight
+    made = sum(trimesh.Trimesh(part.points, part.faces).volume for part in wire(curve))
+    assert mesh.volume == pytest.approx(made, rel=1e-4)
+
+
+def test_motions_have_one_mesh_and_their_ends(recorded):
+    shown = motion(recorded, 7)
+    assert 4 <= len(shown.curves) == len(shown.energies) <= 7
+    assert len({curve.mesh for curve in shown.curves}) == 1
+    first = np.load(recorded)["stage_000"][0]
+    gaps = np.linalg.norm(shown.curves[0].vertices[:, None] - first, axis=2).min(axis=1)
+    assert gaps.max() < np.linalg.norm(np.diff(first, axis=0), axis=1).max()
+    steps = [
+        np.linalg.norm(b.vertices - a.vertices, axis=1).max()
+        for a, b in zip(shown.curves, shown.curves[1:], strict=False)
+    ]
+    assert max(steps) < 0.5 * np.ptp(first, axis=0).max()  # no point jumps along the curve
+    assert len(motion(recorded, 500).curves) > 7
+
+
+def test_gltf_is_read_by_others(recorded):
+    trimesh = pytest.importorskip("trimesh")
+    shown = motion(recorded, 5)
+    data = animation(shown)
+    scene = trimesh.load(io.BytesIO(data), file_type="glb")
+    assert len(scene.geometry) == 2
+    length = struct.unpack("<I", data[12:16])[0]
+    document = json.loads(data[20 : 20 + length])
+    assert [len(mesh["primitives"][0]["targets"]) for mesh in document["meshes"]] == [len(shown.curves) - 1] * 2
+    assert len(document["animations"][0]["channels"]) == 2
+    assert struct.unpack("<I", data[8:12])[0] == len(data)
+
+
+def test_blender_reads_the_frames_as_shape_keys(recorded, tmp_path):
+    bpy = pytest.importorskip("bpy")
+    shown = motion(recorded, 5)
+    (tmp_path / "a.glb").write_bytes(animation(shown))
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.import_scene.gltf(filepath=str(tmp_path / "a.glb"))
+    meshes = [each for each in bpy.data.objects if each.type == "MESH"]
+    assert [len(each.data.shape_keys.key_blocks) for each in meshes] == [len(shown.curves)] * 2
+    corners = np.array([each.matrix_world @ v.co for each in meshes for v in each.data.vertices])
+    points = shown.curves[0].vertices
+    assert corners.min(axis=0) == pytest.approx(points.min(axis=0), abs=1.5 * shown.radius)
+    assert corners.max(axis=0) == pytest.approx(points.max(axis=0), abs=1.5 * shown.radius)
+
+
+def test_figures_have_a_slider_and_the_energy(recorded):
+    pytest.importorskip("plotly")
+    moving = motion(recorded, 6)
+    made = figure(moving)
+    assert [trace.type for trace in made.data] == ["mesh3d", "mesh3d", "scatter", "scatter"]
+    assert len(made.frames) == len(made.layout.sliders[0].steps) == len(moving.curves) > 3
+    alone = figure(still(Curve([[0.0, 0], [1, 0], [1, 1]])))
+    assert [trace.type for trace in alone.data] == ["mesh3d"]
+    result = minimize(knot("3_1", 40), RelaxOptions(max_iterations=3))
+    shown = result.show()
+    assert [trace.type for trace in shown.data] == ["mesh3d", "scatter"]
+    assert tuple(shown.data[1].y) == result.energies
+
+
+def test_what_cannot_be_shown_is_refused(tmp_path):
+    with pytest.raises(CurveError, match="dimension 4"):
+        still(Curve(np.eye(4)))
+    with pytest.raises(MobiusFlowError, match="none"):
+        motion(tmp_path / "none.npz")
+    frame = np.ones((1, 4, 3))
+    np.savez(tmp_path / "point.npz", stage_000=frame, component_sizes_000=[4])
+    with pytest.raises(MobiusFlowError, match="point"):
+        motion(tmp_path / "point.npz")
+
+
+BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(BROWSER is None, reason="no browser is installed")
+def test_a_browser_draws_the_page_without_a_network(recorded, tmp_path):
+    pytest.importorskip("plotly")
+    (tmp_path / "a.html").write_text(page(motion(recorded, 6), title="two rings"), encoding="utf-8")
+    flags = ["--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+    flags += ["--host-resolver-rules=MAP * ~NOTFOUND", "--virtual-time-budget=8000", "--window-size=900,600"]
+    picture = tmp_path / "a.png"
+    command = [BROWSER, *flags, f"--screenshot={picture}", (tmp_path / "a.html").as_uri()]
+    subprocess.run(command, check=True, capture_output=True, timeout=300)
+    image = pytest.importorskip("matplotlib.image").imread(picture)[:, :, :3]
+    coloured = np.ptp(image[:, :600], axis=2) > 0.25
+    assert 0.005 < coloured.mean() < 0.5
+
+
+@pytest.mark.parametrize("mirror", [1.0, -1.0])
+def test_a_drawing_shows_what_is_in_front(mirror):
+    """Its crossings, of lines that come later over earlier ones, have the signs of the curve's."""
+    curve = knot("3_1")
+    curve = curve.with_vertices(curve.vertices * [1.0, 1.0, mirror])
+    numbers = re.findall(r'x1="(\S+)" y1="(\S+)" x2="(\S+)" y2="(\S+)" stroke="rgb', drawing(curve))
+    segments = np.array(numbers, dtype=float).reshape(-1, 2, 2) * [1.0, -1.0]
+    signs = []
+    for k, (a, b) in enumerate(segments):
+        u, v = b - a, segments[:k, 1] - segments[:k, 0]
+        w, cross = segments[:k, 0] - a, u[0] * v[:, 1] - u[1] * v[:, 0]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            s, t = ((w[:, 0] * d[..., 1] - w[:, 1] * d[..., 0]) / cross for d in (v, u))
+        signs += np.sign(cross[(s > 0.1) & (s < 0.9) & (t > 0.1) & (t < 0.9)]).tolist()
+    assert signs
+    assert set(signs) == {np.sign(writhe_and_crossings(curve)[0])}
+
+
+def test_components_have_colours_of_their_own():
+    shades = re.findall(r"rgb\((\d+),(\d+),(\d+)\)", drawing(knot("hopf")))
+    assert {int(blue) > int(red) for red, _, blue in shades} == {True, False}
+
+
+def test_notebooks_get_a_picture_beside_the_figure(monkeypatch):
+    pytest.importorskip("plotly")
+    import plotly.io as pio
+
+    shown = []
+    display = SimpleNamespace(display=lambda bundle, raw: shown.append(bundle))
+    monkeypatch.setitem(sys.modules, "IPython.display", display)
+    monkeypatch.setattr(pio.renderers, "default", "plotly_mimetype")
+    figure(still(knot("3_1")))._ipython_display_()
+    assert set(shown[0]) == {"application/vnd.plotly.v1+json", "image/svg+xml"}
+    assert shown[0]["image/svg+xml"].startswith("<svg ")

@@ -1,0 +1,170 @@
+"""Invariants of diagrams against independent computations, and against tables."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from braid_words import burau_alexander
+from families import family
+from hard_curves import hard_unknot, spiral
+from jones import jones as slow_jones
+from mobius_flow.core import Curve, CurveError
+from mobius_flow.core.knots import KNOTS, braid_word, knot, scramble, torus_knot
+from mobius_flow.core.knots.braids import braid_diagram
+from mobius_flow.core.knots.diagrams import (
+    Diagram,
+    alexander,
+    doubled_bracket,
+    jones,
+    normalized_bracket,
+    quick_invariants,
+    signature,
+    simplified,
+    views,
+)
+from mobius_flow.core.knots.diagrams.invariants import FIELDS, MAX_CROSSINGS, alexander_values
+from shapes import hopf_link, regular_polygon
+from spherogram import Link
+
+_KNOWN = Path(__file__).parents[1] / "known_knots.txt"
+ROWS = {row[0]: row for line in _KNOWN.read_text().splitlines() if line[0] != "#" and (row := line.split())}
+CIRCLE = Diagram(((),), ())
+# Signatures that are not −2τ, from KnotInfo, for the handedness of the table.
+SIGNATURES = {"9_42": 2, "10_132": 0, "10_136": 2, "10_139": -6, "10_145": 2, "10_152": -6, "10_154": -4, "10_161": -4}
+
+
+@pytest.mark.parametrize("name", family(ROWS))
+def test_invariants_of_the_table(name: str) -> None:
+    diagram = braid_diagram(KNOTS[name])
+    _, _, _, tau, polynomial, lowest, coefficients = ROWS[name]
+    assert alexander(diagram) == tuple(map(int, polynomial.split(",")))
+    known = {2 * (int(lowest) + k): int(c) for k, c in enumerate(coefficients.split(",")) if c != "0"}
+    assert jones(diagram) == known
+    assert signature(diagram) == SIGNATURES.get(name, -2 * int(tau))
+
+
+@pytest.mark.parametrize("name", ["L2a1", "L5a1", "L6a4", "L7n2", "3_1#m4_1", "T(3,4)", "braid(1,1,3,3)", "braid(1,3)"])
+def test_links_have_the_jones_polynomial_of_slow_sums(name: str) -> None:
+    diagram = braid_diagram(braid_word(name))
+    link = Link(diagram.planar_code)
+    link.unlinked_unknot_components += sum(not part for part in diagram.passes)
+    assert jones(diagram) == slow_jones(link)
+
+
+@pytest.mark.parametrize("word", [(1, 2, 1, -3, 2, 2, 1), (1, 1, 2, -1, 3, 2, -3, 1, 2, 2, -1)])
+def test_alexander_polynomials_of_any_word(word: tuple[int, ...]) -> None:
+    diagram = braid_diagram(word)
+    assert len(diagram.passes) == 1
+    assert alexander(diagram) == burau_alexander(word, max(map(abs, word)) + 1)
+
+
+@pytest.mark.parametrize("name", ["3_1", "m3_1", "4_1", "6_2", "9_42"])
+def test_invariants_are_those_of_every_diagram(name: str) -> None:
+    for diagram in views(knot(name, 60), 4, seed=3):
+        simple = simplified(diagram)
+        assert alexander(diagram) == alexander(simple)
+        assert jones(diagram) == jones(simple)
+        assert signature(diagram) == signature(simple)
+        assert doubled_bracket(diagram) == doubled_bracket(simple)
+
+
+def test_mirror_images_have_mirrored_polynomials() -> None:
+    left, right = (braid_diagram(braid_word(name)) for name in ("m6_2", "6_2"))
+    for polynomial in (jones, doubled_bracket):
+        assert polynomial(left) == {-power: c for power, c in polynomial(right).items()}
+    assert signature(left) == -signature(right)
+
+
+def test_doubles_tell_what_the_jones_polynomial_does_not() -> None:
+    one, other = braid_diagram(KNOTS["8_16"]), braid_diagram(KNOTS["10_156"])
+    assert jones(one) == jones(other)
+    assert alexander(one) == alexander(other)
+    assert doubled_bracket(one) != doubled_bracket(other)
+
+
+def test_the_bracket_by_own_crossings_is_that_of_all_orientations() -> None:
+    one = braid_diagram([1, 1, 1, 1])
+    parts = list(one.passes)
+    other = Diagram((parts[0], parts[1][::-1]), tuple(-sign for sign in one.signs))
+    assert jones(one) != jones(other)
+    assert normalized_bracket(one, one.own_writhe) == normalized_bracket(other, other.own_writhe)
+
+
+def test_circles() -> None:
+    assert jones(CIRCLE) == {0: 1}
+    assert jones(Diagram(((), ()), ())) == {1: -1, -1: -1}
+    assert alexander(CIRCLE) == (1,)
+    assert signature(CIRCLE) == 0
+
+
+def test_what_is_too_large_is_not_computed() -> None:
+    assert alexander(braid_diagram((1,) * (MAX_CROSSINGS + 1))) is None
+    assert jones(braid_diagram(tuple(range(1, 24)) * 24)) is None
+
+
+@pytest.mark.parametrize("word", [(1, -2) * 25, (1, -2, 3) * 19, (1,) * 59])
+def test_coefficients_above_half_a_prime(word: tuple[int, ...]) -> None:
+    assert alexander(braid_diagram(word)) == burau_alexander(word, max(map(abs, word)) + 1)
+
+
+FIELD = FIELDS[0]
+
+DETERMINANTS = {"0_1": 1, "3_1": 3, "4_1": 5, "5_1": 5, "5_2": 7, "6_1": 9, "6_2": 11, "6_3": 13, "7_7": 21, "8_19": 3}
+
+
+@pytest.mark.parametrize("name", DETERMINANTS)
+def test_determinants(name):
+    value = quick_invariants(knot(name)).alexander[0][0]
+    assert min(value, FIELD.prime - value) == DETERMINANTS[name]
+
+
+def test_trefoil_at_a_root_of_unity():
+    """Δ = t − 1 + t⁻¹ is −2 at a cube root of unity."""
+    assert quick_invariants(knot("3_1")).alexander[0][1] == 2
+
+
+def test_knots_of_the_same_determinant_differ():
+    assert quick_invariants(knot("4_1")) != quick_invariants(knot("5_1"))
+    assert quick_invariants(knot("3_1")) != quick_invariants(knot("8_19"))
+    assert not quick_invariants(torus_knot(3, 5)).is_trivial  # determinant 1
+
+
+def test_scrambles_and_turns_keep_it():
+    curve = knot("6_2")
+    expected = quick_invariants(curve)
+    assert quick_invariants(scramble(curve, seed=5)) == expected
+    q, _ = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))
+    q[:, 0] *= np.sign(np.linalg.det(q))
+    assert quick_invariants(curve.with_vertices(curve.vertices @ q)) == expected
+
+
+@pytest.mark.parametrize(
+    "curve", [regular_polygon(50), spiral(5.0), hard_unknot(60, 7)], ids=["circle", "spiral", "60"]
+)
+def test_unknots(curve):
+    assert quick_invariants(curve).is_trivial
+
+
+def test_linking_numbers():
+    assert [abs(x) for x in quick_invariants(hopf_link(20)).linking] == [1]
+    assert quick_invariants(knot("L6a4")).linking == (0, 0, 0)
+
+
+def test_strands_that_nearly_touch_are_told_apart():
+    gap = 1e-12
+    curve = Curve([[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.0, gap], [0.0, 1.0, gap]])
+    assert quick_invariants(curve).is_trivial
+
+
+def test_curves_that_touch_themselves_have_none():
+    once = knot("3_1").vertices
+    with pytest.raises(CurveError, match="no view of the curve shows which one is in front"):
+        quick_invariants(Curve(np.concatenate([once, once])))
+
+
+@pytest.mark.parametrize("word", [(1, 1, 1), (1, -2) * 5, (1, 2, 3, -4) * 9])
+def test_determinants_by_elimination_are_those_of_burau(word):
+    """|Δ(−1)| by elimination modulo the prime, against the polynomial from another matrix."""
+    value = int(alexander_values(braid_diagram(word), np.array([FIELD.prime - 1]), FIELD)[0])
+    expected = sum((-1) ** k * c for k, c in enumerate(burau_alexander(word, max(map(abs, word)) + 1)))
+    assert min(value, FIELD.prime - value) == abs(expected) % FIELD.prime

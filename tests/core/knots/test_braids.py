@@ -1,0 +1,129 @@
+"""Torus knots and braid closures: components, equal edges, energies, and the limits of their arguments."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from knot_diagrams import pairwise_linking
+from knot_type import UNKNOT, knot_invariants
+from mobius_flow.core.base.errors import CurveError, MobiusFlowError
+from mobius_flow.core.curve import Curve
+from mobius_flow.core.knots import braid_closure, torus_knot
+
+
+def midpoint_energy(curve: Curve) -> float:
+    """Möbius energy by the midpoint rule, straight from its formula (Section 6.1.1 of [RS21])."""
+    e, m, lengths = curve.edge_vectors, curve.midpoints, curve.edge_lengths
+    d = m[:, None] - m[None]
+    index = np.arange(len(curve))
+    squared = np.where(curve.mesh.disjoint(index[:, None], index[None]), (d * d).sum(axis=2), np.inf)
+    along, across = np.einsum("ijk,ik->ij", d, e), np.einsum("ijk,jk->ij", d, e)
+    pairs = (np.outer(lengths, lengths) + e @ e.T) / squared - 2 * along * across / squared**2
+    return 4 * len(curve.mesh.component_sizes) + float(pairs.sum())
+
+
+def test_torus_trefoil_of_least_energy() -> None:
+    # 74.4120428860 is the minimum over torus trefoils (Kim & Kusner 1993), with this tube.
+    energies = [midpoint_energy(torus_knot(2, 3, n, minor=0.47407312473)) for n in (100, 200, 400)]
+    errors = np.array(energies) - 74.4120428860
+    assert np.log2(errors[:-1] / errors[1:]) == pytest.approx(2.0, abs=0.02)
+    assert errors[-1] < 0.014
+
+
+@pytest.mark.parametrize(("p", "q"), [(2, 3), (2, 7), (3, 4), (3, 5), (5, 3), (4, 5), (5, 2), (7, 2)])
+def test_torus_knots(p: int, q: int) -> None:
+    found = knot_invariants(torus_knot(p, q).vertices)
+    genus = (p - 1) * (q - 1) // 2
+    assert (found.genus, found.tau, found.fibered) == (genus, genus, True)
+    assert knot_invariants(torus_knot(-p, q).vertices).tau == -genus
+
+
+@pytest.mark.parametrize(("p", "q"), [(1, 1), (1, 6), (6, 1), (-1, 4)])
+def test_torus_unknots(p: int, q: int) -> None:
+    assert knot_invariants(torus_knot(p, q).vertices) == UNKNOT
+
+
+@pytest.mark.parametrize(("p", "q"), [(2, 2), (2, 6), (3, 3), (4, 6), (6, -4)])
+def test_torus_links(p: int, q: int) -> None:
+    parts = math.gcd(p, q)
+    link = torus_knot(p, q)
+    assert len(link.mesh.component_sizes) == parts
+    assert set(pairwise_linking(link.components).values()) == {p * q // parts**2}
+
+
+def test_a_torus_knot_lies_on_its_torus() -> None:
+    points = torus_knot(3, 5, major=7.0, minor=2.0).vertices
+    tube = np.hypot(np.hypot(points[:, 0], points[:, 1]) - 7.0, points[:, 2])
+    assert tube == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize(
+    "radii",
+    [
+        {"major": 1.0, "minor": 1.0},
+        {"minor": 0.0},
+        {"minor": -1.0},
+        {"major": math.nan},
+        {"major": math.inf},
+        {"major": -1.0},
+        {"major": 1e300},
+        {"minor": 1e-300},
+    ],
+)
+def test_impossible_radii(radii: dict[str, float]) -> None:
+    with pytest.raises(CurveError, match="0 < minor < major"):
+        torus_knot(2, 3, **radii)
+
+
+def test_the_trivial_braid_is_a_set_of_circles() -> None:
+    curve = braid_closure([], strands=3)
+    assert len(curve.mesh.component_sizes) == 3
+    for part in curve.components:
+        assert np.ptp(np.linalg.norm(part, axis=1)) == pytest.approx(0.0, abs=1e-12)
+    assert set(pairwise_linking(curve.components).values()) == {0}
+
+
+@given(word=st.lists(st.integers(-4, 4).filter(bool), max_size=12), strands=st.integers(5, 6))
+@settings(max_examples=12, deadline=None)
+def test_components_and_linking_numbers_are_those_of_the_word(word: list[int], strands: int) -> None:
+    curve = braid_closure(word, strands=strands)
+    component_at = list(range(strands))
+    at = list(range(strands))
+    for letter in word:
+        i = abs(letter) - 1
+        at[i], at[i + 1] = at[i + 1], at[i]
+    parent = {start: at.index(start) for start in range(strands)}
+    for start in range(strands):
+        cycle, place = [start], parent[start]
+        while place != start:
+            cycle.append(place)
+            place = parent[place]
+        component_at[start] = min(cycle)
+    order = sorted(set(component_at))
+    assert len(curve.mesh.component_sizes) == len(order)
+    crossings: dict[tuple[int, int], int] = {(i, j): 0 for j in range(len(order)) for i in range(j)}
+    here = [order.index(c) for c in component_at]
+    for letter in word:
+        i = abs(letter) - 1
+        a, b = sorted((here[i], here[i + 1]))
+        if a != b:
+            crossings[a, b] += 1 if letter > 0 else -1
+        here[i], here[i + 1] = here[i + 1], here[i]
+    assert pairwise_linking(curve.components) == {pair: total // 2 for pair, total in crossings.items()}
+
+
+@pytest.mark.parametrize(
+    ("word", "strands", "reason"),
+    [
+        ([1, 0], None, "letter 2"),
+        ([1.5], None, "each a whole number"),
+        ([1, 2], 2, "need 3"),
+        ([600], None, "at most 500"),
+        ([1] * 20_001, None, "20001 letters"),
+    ],
+)
+def test_words_that_are_none(word: list[int], strands: int | None, reason: str) -> None:
+    with pytest.raises(MobiusFlowError, match=reason):
+        braid_closure(word, strands=strands)

@@ -1,0 +1,134 @@
+"""Cables and doubles: known types around the circle, known polynomials around other knots; and Lissajous knots."""
+
+import numpy as np
+import pytest
+from families import crossed
+from knot_diagrams import pairwise_linking
+from knot_type import UNKNOT, knot_invariants
+from mobius_flow.core import Curve, CurveError
+from mobius_flow.core.collision import check_embedded
+from mobius_flow.core.knots import cable, double, knot, lissajous_knot, smooth_knot, torus_knot
+from mobius_flow.core.knots.formulas import MAX_STRANDS, SolidTorus
+from shapes import regular_polygon
+
+CIRCLE = regular_polygon(100)
+
+
+def times(p: tuple[int, ...], q: tuple[int, ...]) -> tuple[int, ...]:
+    return tuple(np.convolve(p, q).tolist())
+
+
+@pytest.mark.parametrize(("p", "q"), [(2, 3), (2, -3), (3, 2), (3, -4), (2, 5)])
+def test_cables_of_the_circle_are_torus_knots(p: int, q: int) -> None:
+    assert knot_invariants(cable(CIRCLE, p, q).vertices) == knot_invariants(torus_knot(p, q).vertices)
+
+
+@pytest.mark.parametrize("q", [-3, -1, 1, 3])
+def test_cables_of_a_trefoil(q: int) -> None:
+    """Δ of C(2, q) is Δ(t²) of the companion times that of T(2, q)."""
+    found = knot_invariants(cable(smooth_knot("3_1"), 2, q).vertices)
+    torus = (1, -1, 1) if abs(q) == 3 else (1,)
+    assert found.alexander == times((1, 0, -1, 0, 1), torus)
+
+
+@pytest.mark.parametrize(("name", "turns"), crossed(["0_1", "3_1", "4_1", "7_4"], [(2, 0), (2, 4), (3, -3)]))
+def test_links_of_parallel_strands(name: str, turns: tuple[int, int]) -> None:
+    p, q = turns
+    link = cable(smooth_knot(name), p, q)
+    parts = np.gcd(p, q)
+    assert set(pairwise_linking(link.components).values()) == {p * q // parts**2}
+    companion = knot_invariants(smooth_knot(name).vertices)
+    if parts == p:
+        assert all(knot_invariants(part) == companion for part in link.components)
+
+
+@pytest.mark.parametrize("clasp", [1, -1])
+@pytest.mark.parametrize("twists", [-2, -1, 0, 1, 3])
+def test_doubles_of_the_circle_are_twist_knots(twists: int, clasp: int) -> None:
+    found = knot_invariants(double(CIRCLE, twists, clasp=clasp).vertices)
+    w = twists * clasp
+    assert found.alexander == ((-w, 2 * w + 1, -w) if w else (1,))
+    assert found.genus == (1 if w else 0)
+
+
+def test_freedmans_unknot_is_an_unknot() -> None:
+    assert knot_invariants(knot("Freedman unknot", 300).vertices) == UNKNOT
+    assert 550 < len(knot("freedman")) < 650
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["3_1", "4_1", "m5_2"])
+@pytest.mark.parametrize("twists", [0, 2])
+def test_doubles_have_the_polynomial_of_their_twists(name: str, twists: int) -> None:
+    found = knot_invariants(double(smooth_knot(name), twists).vertices)
+    assert found.alexander == ((-twists, 2 * twists + 1, -twists) if twists else (1,))
+    assert found != UNKNOT
+    assert found.genus == 1
+
+
+def test_longitudes_do_not_link_the_knot() -> None:
+    for name in ("3_1", "m3_1", "6_2", "8_19"):
+        curve = smooth_knot(name)
+        tube, t = SolidTorus.around(curve), np.arange(400) / 400
+        center, longitude = (tube.points(t, np.full(400, r), np.zeros(400)) for r in (0.0, 0.5 * tube.reach))
+        assert pairwise_linking([center, longitude]) == {(0, 1): 0}
+        assert np.linalg.norm(center - longitude, axis=1) == pytest.approx(0.5 * tube.reach, rel=0.01)
+
+
+def test_the_reach_of_a_circle_is_its_radius() -> None:
+    assert SolidTorus.around(CIRCLE).reach == pytest.approx(1.0, rel=1e-3)
+
+
+def test_the_number_of_vertices_is_the_one_asked_for() -> None:
+    assert len(cable(CIRCLE, 3, 3, 200)) == len(double(CIRCLE, 1, vertices=200)) == 200
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda: cable(CIRCLE, 1, 3), "cable of 1 strands"),
+        (lambda: cable(CIRCLE, MAX_STRANDS + 1, 3), "strands are 2 to"),
+        (lambda: cable(CIRCLE, 2, 101), "turns -100 to 100"),
+        (lambda: cable(CIRCLE, 5, 4, 9), "too few"),
+        (lambda: cable(CIRCLE, 2, 3, 10**9), "too many"),
+        (lambda: cable(torus_knot(2, 2), 2, 3), "one closed curve in space"),
+        (lambda: cable(Curve(np.eye(3)[:, :2]), 2, 3), "one closed curve in space"),
+        (lambda: double(CIRCLE, 101), "twists is 101"),
+        (lambda: double(CIRCLE, 1, clasp=0), "clasp 1 or -1"),
+    ],
+)
+def test_what_is_refused(make, said: str) -> None:
+    with pytest.raises(CurveError, match=said):
+        make()
+
+
+@pytest.mark.parametrize(
+    ("frequencies", "phases", "name"),
+    [((3, 2, 7), (0.7, 0.2), "5_2"), ((3, 2, 5), (1.5, 0.2), "6_1"), ((1, 1, 1), (0.7, 0.2), "0_1")],
+)
+def test_small_lissajous_knots(frequencies: tuple[int, int, int], phases: tuple[float, float], name: str) -> None:
+    found, expected = (
+        knot_invariants(curve.vertices) for curve in (lissajous_knot(frequencies, phases), smooth_knot(name))
+    )
+    assert (found.alexander, found.genus, found.rank) == (expected.alexander, expected.genus, expected.rank)
+
+
+def test_a_lissajous_knot_fills_its_box_and_is_embedded() -> None:
+    curve = lissajous_knot((3, 5, 7), (0.3, 0.15))
+    check_embedded(curve)
+    assert np.ptp(curve.vertices, axis=0) == pytest.approx(2.0, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("frequencies", "phases", "said"),
+    [
+        ((2, 4, 5), (0.7, 0.2), "common divisor"),
+        ((0, 1, 3), (0.7, 0.2), "from 1 to 40"),
+        ((3, 4, 41), (0.7, 0.2), "from 1 to 40"),
+        ((3, 4, 7), (0.0, 0.0), "change a phase"),
+        ((3, 4, 7), (np.nan, 0.0), "finite"),
+    ],
+)
+def test_refused_lissajous_knots(frequencies: tuple[int, int, int], phases: tuple[float, float], said: str) -> None:
+    with pytest.raises(CurveError, match=said):
+        lissajous_knot(frequencies, phases)

@@ -1,0 +1,227 @@
+"""A morph begins at one curve and ends at the other, bit for bit, and the independent verifier accepts all of it."""
+
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from families import family
+from mobius_flow.core import (
+    Curve,
+    CurveError,
+    Mesh,
+    NoMotionError,
+    Obstacle,
+    OptionError,
+    RelaxOptions,
+    Status,
+    Task,
+    Trajectory,
+    morph,
+    relax,
+)
+from mobius_flow.core.knots import knot, overhand, smooth_knot
+from mobius_flow.core.morph import morphing
+from mobius_flow.core.morph.meeting import meeting, run_back
+from mobius_flow.core.proof import verify
+
+QUICK = RelaxOptions(tolerance=1e-3, mesh="fixed", untangle="never")
+RECTANGLE = [[0.0, 0, 0], [3, 0, 0], [3, 1, 0], [0, 1, 0]]
+ZIGZAG = [[9.0, 9, 9], [10, 9, 9.5], [11, 9, 9], [11, 11, 8.5], [10, 10, 8], [9, 11, 9]]
+FAR = np.array([50.0, -20.0, 7.0])
+
+
+def moved(curve, scale=3.0):
+    """A curve elsewhere, turned over and of another size."""
+    turn = np.array([[0.0, 0.6, 0.8], [1.0, 0.0, 0.0], [0.0, 0.8, -0.6]])
+    return curve.with_vertices(FAR + scale * curve.vertices @ turn.T)
+
+
+def proved(a, b, options, path):
+    """A morph, its iterates, and what `verify` says."""
+    trajectory, iterates = Trajectory(obstacles=Task.of(a).obstacles), []
+
+    def take(iterate):
+        iterates.append(iterate)
+        trajectory.add(iterate)
+
+    result = morph(a, b, options, take)
+    trajectory.save(path)
+    return result, iterates, verify(path)
+
+
+@pytest.mark.parametrize(
+    ("a", "b"),
+    [
+        (Curve(RECTANGLE), Curve(ZIGZAG)),
+        (knot("3_1", 60), moved(smooth_knot("3_1", 70))),
+        pytest.param(knot("4_1", 80), moved(knot("m4_1", 80), 0.01), marks=pytest.mark.slow),
+        (knot("hopf", 40), moved(knot("hopf", 50))),
+        (Curve([[0.0, 0], [3, 0], [3, 1], [0, 1]]), Curve([[5.0, 5], [6, 5], [7, 7], [6, 6], [5, 7]])),
+    ],
+    ids=["unknots", "trefoils", "amphichiral", "link", "plane"],
+)
+def test_it_leads_from_one_to_the_other(a, b, tmp_path):
+    result, iterates, verdict = proved(a, b, QUICK, tmp_path / "t.npz")
+    assert verdict.accepted, verdict.reason
+    assert result.certified
+    assert result.status is Status.CONVERGED
+    assert np.array_equal(iterates[0].curve.vertices, a.vertices)
+    assert np.array_equal(result.curve.vertices, b.vertices)
+    assert result.curve.mesh == b.mesh
+    assert [each.index for each in iterates] == list(range(len(iterates)))
+    assert result.final_energy > 0
+
+
+def test_a_component_is_run_through_backwards_only_where_it_must_be(tmp_path):
+    hopf = knot("hopf", 40)
+    first, second = hopf.components
+    other = Curve.from_components([first, second[::-1]])  # the linking number has another sign
+    result, _, verdict = proved(hopf, other, QUICK, tmp_path / "t.npz")
+    assert verdict.accepted
+    assert "another order or direction" in result.message
+    assert {tuple(p) for p in result.curve.vertices.tolist()} == {tuple(p) for p in other.vertices.tolist()}
+
+
+def test_a_mirror_image_is_refused_before_anything_moves():
+    with pytest.raises(
+        NoMotionError, match=r"first curve is 3_1, the second curve its mirror image m3_1: no .* \(signatures"
+    ):
+        morph(knot("3_1"), knot("m3_1"), callback=lambda _: pytest.fail("something moved"))
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "invariant"),
+    [
+        ("3_1", "4_1", "signatures −2 and 0"),
+        ("4_1", "unknot", r"Alexander polynomials \[−1, 3, −1\] and \[1\]"),
+        ("6_1", "m6_1", "different Jones polynomials"),
+        ("hopf", "L4a1", r"linking numbers \[1\] and \[2\], without signs"),
+        ("L5a1", "T(2,4)", "linking numbers"),
+    ],
+)
+def test_the_invariant_that_tells_types_apart_is_named(a, b, invariant):
+    a, b = (Curve(RECTANGLE) if name == "unknot" else knot(name) for name in (a, b))
+    with pytest.raises(NoMotionError, match=invariant):
+        morph(a, b)
+
+
+def test_mutants_of_different_genera_are_told_apart():
+    """Conway's knot and Kinoshita's and Terasaka's, which no polynomial of the table distinguishes."""
+    pytest.importorskip("knot_floer_homology")
+    conway = "3 1 4 22 1 7 2 6 7 3 8 2 11 4 12 5 5 12 6 13 8 16 9 15 20 9 21 10 10 17 11 18 18 13 19 14 14 19 15 20"
+    other = "3 1 4 22 1 7 2 6 7 3 8 2 11 4 12 5 5 12 6 13 8 17 9 18 14 9 15 10 10 20 11 19 18 14 19 13 20 15 21 16"
+    a, b = knot(f"PD: {conway} 16 22 17 21"), knot(f"PD: {other} 16 21 17 22")
+    with pytest.raises(NoMotionError, match=r"genera 3 and 2, by knot Floer homology"):
+        morph(a, b, callback=lambda _: pytest.fail("something moved"))
+
+
+def test_shapes_that_do_not_meet_are_told_with_their_energies():
+    stopped = RelaxOptions(max_iterations=0, mesh="fixed")
+    corners = [[x, y, z] for x in (-9.0, 9.0) for y in (-9.0, 9.0) for z in (-9.0, 9.0)]
+    sides = [(0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5)]
+    walls = Obstacle(corners, [side[:3] for side in sides] + [(side[0], *side[2:]) for side in sides])
+    with pytest.raises(NoMotionError, match=r"no motion was found.* energies .* times their size"):
+        morph(Task(curve=knot("3_1", 60), obstacles=(walls,)), moved(knot("3_1", 60), 0.1), stopped)
+
+
+@pytest.mark.parametrize("misses", family([4, 1, 2, 3]))  # the most misses come after all fewer ones
+def test_where_shapes_do_not_meet_both_go_on_with_equal_meshes_and_then_hop(misses, tmp_path, monkeypatch):
+    module, asked = sys.modules["mobius_flow.core.morph.morph"], []
+
+    def met(*shapes):
+        asked.append([len(ways[0][0].curve) for ways in shapes[:2]])
+        alignment, joint = meeting(*shapes)
+        return alignment, joint if len(asked) > misses else None
+
+    monkeypatch.setattr(module, "meeting", met)
+    options = replace(QUICK, hops=1, max_iterations=60)
+    result, _, verdict = proved(knot("4_1", 60), knot("4_1", 300), options, tmp_path / "t.npz")
+    assert verdict.accepted
+    assert len(asked) == misses + 1
+    assert asked[0][0] < asked[0][1] == 300
+    assert asked[2:] == [[300, 300]] * (misses - 1)
+    assert np.array_equal(result.curve.vertices, knot("4_1", 300).vertices)
+
+
+def test_every_leg_is_run_back():
+    start = next(relax(Curve(RECTANGLE), QUICK))
+    legs = tuple(start.curve.vertices + 0.1 * k for k in range(1, 4))
+    way = [start, replace(start, curve=start.curve.with_vertices(legs[-1]), path=legs)]
+    (there,) = run_back(way)
+    assert [leg.tolist() for leg in there.path] == [each.tolist() for each in (legs[1], legs[0], start.curve.vertices)]
+    assert there.curve is start.curve
+
+
+def test_both_avoid_the_obstacles_of_the_first(tmp_path):
+    wall = Obstacle([[-0.5, -2, -1], [-0.5, 3, -1], [-0.5, 0, 3]], [[0, 1, 2]])
+    a = Task(curve=Curve(RECTANGLE), obstacles=(wall,))
+    result, _, verdict = proved(a, Curve(np.array(ZIGZAG) - [9, 9, 8]), QUICK, tmp_path / "t.npz")
+    assert verdict.accepted
+    assert verdict.obstacles == 1
+    assert np.array_equal(result.curve.vertices, np.array(ZIGZAG) - [9, 9, 8])
+
+
+def test_arcs_are_held_at_their_ends(tmp_path):
+    arcs = [
+        Curve([[0.0, 0, 0], [1, 2, 0], [2, 2, 1], [3, 0, 0]], Mesh((4,), (False,))),
+        Curve([[0.0, 0, 0], [1, 0, -2], [1.5, 1, -3], [2, 0, -2], [3, 0, 0]], Mesh((5,), (False,))),
+    ]
+    result, iterates, verdict = proved(*arcs, QUICK, tmp_path / "t.npz")
+    assert verdict.accepted
+    assert verdict.pins == 2
+    assert np.array_equal(result.curve.vertices, arcs[1].vertices)
+    assert all(np.array_equal(each.curve.vertices[[0, -1]], arcs[0].vertices[[0, -1]]) for each in iterates)
+
+
+def test_a_chain_leads_over_all_curves(tmp_path):
+    curves = [Curve(RECTANGLE), Curve(ZIGZAG), moved(Curve(RECTANGLE))]
+    trajectory, iterates = Trajectory(), list(morphing([Task(curve=each) for each in curves], QUICK, "ABC"))
+    for each in iterates:
+        trajectory.add(each)
+    trajectory.save(tmp_path / "t.npz")
+    assert verify(tmp_path / "t.npz").accepted
+    passed = [each.curve.vertices.tolist() for each in iterates]
+    assert [passed.index(each.vertices.tolist()) for each in curves] == sorted(
+        passed.index(each.vertices.tolist()) for each in curves
+    )
+    assert passed[-1] == curves[-1].vertices.tolist()
+
+
+@pytest.mark.parametrize(
+    ("b", "sentence"),
+    [
+        (
+            knot("hopf"),
+            "the first curve is 1 closed component, the second curve is 2 closed components; motions neither",
+        ),
+        (overhand(), "is 1 closed component, the second curve is 1 open component"),
+        (Curve([[0.0, 0], [1, 0], [0, 1]]), "first curve is in dimension 3, the second curve in dimension 2"),
+    ],
+)
+def test_what_no_motion_can_do_is_said(b, sentence):
+    with pytest.raises(CurveError, match=sentence):
+        morph(Curve(RECTANGLE), b)
+
+
+def test_pins_and_ends_elsewhere_are_refused():
+    with pytest.raises(OptionError, match="leave pins out"):
+        morph(Task(curve=Curve(RECTANGLE), pins=(0,)), Curve(ZIGZAG))
+    wall = Obstacle([[9.0, 0, 0], [9, 1, 0], [9, 0, 1]], [[0, 1, 2]])
+    with pytest.raises(OptionError, match="the second curve has obstacles of its own"):
+        morph(Curve(RECTANGLE), Task(curve=Curve(ZIGZAG), obstacles=(wall,)))
+    with pytest.raises(CurveError, match="move their ends together"):
+        morph(overhand(), moved(overhand()))
+
+
+def test_a_curve_that_touches_itself_is_named():
+    crossing = Curve([[0.0, 0, 0], [1, 1, 0], [1, 0, 0], [0, 1, 0]])
+    with pytest.raises(CurveError, match=r"^edge 1 .* touch"):
+        morph(crossing, Curve(RECTANGLE))
+    with pytest.raises(CurveError, match=r"^the second curve: edge 1 .* touch"):
+        morph(Curve(RECTANGLE), crossing)
+
+
+def test_the_time_may_be_up():
+    result = morph(knot("3_1"), knot("3_1", 70), RelaxOptions(time_limit=1e-9))
+    assert result.status is Status.TIME_LIMIT

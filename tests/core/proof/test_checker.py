@@ -1,0 +1,121 @@
+"""The checker: it decides as the program does, but in another way, by whole numbers alone, and as a single file.
+
+That it decides about whole files as ``verify`` does is tested wherever a test calls that: see `second_opinion`.
+"""
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import degenerate_motions
+import motions
+import numpy as np
+import obstacle_motions
+import pytest
+from exact_times import ways
+from mobius_flow.core import Curve, Mesh, Task, Trajectory, relax
+from mobius_flow.core.collision.exact import first_contact
+from mobius_flow.core.collision.exact_triangle import first_contact_with_triangle
+from mobius_flow.core.driver import RelaxOptions
+from mobius_flow.core.knots import knot
+from mobius_flow.core.proof import checker, verify
+from solids import box, rod
+
+CHECKER = Path(checker.__file__)
+COUNT = 25
+
+
+def edge_motions():
+    rng = np.random.default_rng(47)
+    for kind in degenerate_motions.KINDS:
+        yield from (kind(rng) for _ in range(COUNT))
+    for kind in motions.KINDS:
+        yield from (kind(rng, dimension) for dimension in (2, 3) for _ in range(COUNT))
+
+
+def test_it_decides_about_edges_as_the_program_does():
+    met = 0
+    for motion in edge_motions():
+        ends = ways(*(frame.tolist() for frame in motion))
+        found = checker.meet(*ends)
+        assert found == (first_contact(*motion) is not None), motion
+        assert not (found and checker.apart(ends[:2], ends[2:])), motion
+        met += found
+    assert met > 200
+
+
+@pytest.mark.parametrize("kind", obstacle_motions.KINDS, ids=lambda kind: kind.__name__)
+def test_it_decides_about_triangles_as_the_program_does(kind):
+    rng = np.random.default_rng(49)
+    for _ in range(COUNT):
+        motion = kind(rng)
+        points = ways(*(frame.tolist() for frame in motion))
+        found = checker.meet_triangle(*points)
+        assert found == (first_contact_with_triangle(*motion) is not None), motion
+        assert not (found and checker.apart(points[:2], points[2:])), motion
+
+
+def test_it_needs_nothing_but_the_standard_library():
+    tree = ast.parse(CHECKER.read_text())
+    found = {alias.name for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in node.names}
+    found |= {node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
+    assert {name.partition(".")[0] for name in found} <= sys.stdlib_module_names
+
+
+RUNS = {
+    "a knot, its mesh being refined": (lambda: Task(curve=knot("4_1", 60)), {"mesh": "adaptive", "max_iterations": 14}),
+    "a link": (lambda: Task(curve=knot("L5a1", 80)), {"max_iterations": 8}),
+    "arcs and pins": (lambda: Task(curve=knot("overhand", 60), pins=(0, 59)), {"max_iterations": 6}),
+    "obstacles": (lambda: Task(curve=ring(), obstacles=(rod(0.0, 0.0), box(2.0, 3.0))), {"max_iterations": 6}),
+    "strand moves": (lambda: Task(curve=knot("goeritz")), {"untangle": "always", "max_iterations": 4}),
+    "growth": (lambda: Task(curve=knot("3_1", 60)), {"grow": 1.3, "max_iterations": 10}),
+}
+
+
+def ring():
+    angle = 2 * np.pi * np.arange(40) / 40
+    return Curve(np.stack([1.5 * np.cos(angle), np.sin(angle), 0.2 * np.sin(2 * angle)], axis=1))
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_runs_are_accepted_forwards_and_backwards(name, tmp_path):
+    task, settings = RUNS[name]
+    task = task()
+    trajectory = Trajectory(obstacles=task.obstacles)
+    for iterate in relax(task, RelaxOptions(**settings)):
+        trajectory.add(iterate)
+    arrays = trajectory.arrays()
+    last = sum(key.startswith("stage_") for key in arrays) - 1
+    backwards = {}
+    for key, array in arrays.items():
+        kind, _, number = key.rpartition("_")
+        turned = array[::-1] if kind == "stage" else array
+        backwards[f"{kind}_{last - int(number):03d}" if kind.startswith(("stage", "component")) else key] = turned
+    for each in (arrays, backwards):
+        np.savez_compressed(tmp_path / "T.npz", **each)
+        verdict = verify(tmp_path / "T.npz")  # and the checker, see above
+        assert verdict.accepted, str(verdict)
+
+
+def test_crossings_that_were_tuned_to_be_overlooked_are_refused(tmp_path):
+    rng = np.random.default_rng(51)
+    arcs = degenerate_motions.ARCS
+    for _ in range(5):
+        frames = np.stack(degenerate_motions.tied_windows(rng))
+        mesh = Mesh((2,) * arcs, closed=(False,) * arcs)
+        arrays = {"component_sizes_000": np.array(mesh.component_sizes), "component_closed_000": np.array(mesh.closed)}
+        np.savez(tmp_path / "T.npz", stage_000=frames, **arrays)
+        assert not verify(tmp_path / "T.npz").accepted
+
+
+def test_the_command_says_which_and_why(tmp_path):
+    square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+    np.savez(tmp_path / "good.npz", stage_000=np.stack([square, 2 * square]), component_sizes_000=[4])
+    np.savez(tmp_path / "bad.npz", stage_000=np.stack([square, -square]), component_sizes_000=[4])
+    for names, status in ((["good"], 0), (["good", "bad"], 1), ([], 1)):
+        paths = [f"{name}.npz" for name in names]
+        done = subprocess.run([sys.executable, "-I", CHECKER, *paths], cwd=tmp_path, capture_output=True, text=True)
+        assert done.returncode == status
+        assert all(f"{path}: " in done.stdout for path in paths)
+    assert "bad.npz: rejected: stage 0, frame 0: edges " in done.stdout or not names

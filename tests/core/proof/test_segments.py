@@ -1,0 +1,94 @@
+"""The exact decision about two moving segments: cases known by hand, and fine sampling."""
+
+import os
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from degenerate_motions import crossing_shadows
+from exact_times import meet, meetings
+
+THIRD = Fraction(1, 3)
+
+
+def exact(points: list[list[float]]) -> list[list[Fraction]]:
+    return [[Fraction(x) for x in p] for p in points]
+
+
+CROSS = [[-1, 0, 1], [1, 0, 1], [0, -1, 0], [0, 1, 0]]
+FLAT = [[0, 1], [1, 1], [0, 0], [1, 0]]
+IN_A_ROW = [[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]]
+
+
+def moved(points: list[list[float]], first: list[float], second: list[float]) -> list[list[float]]:
+    steps = (first, first, second, second)
+    return [[x + d for x, d in zip(p, step, strict=True)] for p, step in zip(points, steps, strict=True)]
+
+
+@pytest.mark.parametrize(
+    ("start", "end", "contact"),
+    [
+        (CROSS, moved(CROSS, [0, 0, -3], [0, 0, 0]), THIRD),
+        (CROSS, moved(CROSS, [0, 0, -1], [0, 0, 0]), 1),
+        (CROSS, moved(CROSS, [0, 0, -0.999], [0, 0, 0]), None),
+        (CROSS, moved(CROSS, [0, 1, -1], [0, 0, 0]), 1),  # over an end, exactly
+        (CROSS, moved(CROSS, [0, 1.001, -1], [0, 0, 0]), None),
+        (CROSS, moved(CROSS, [0, 4, -3], [0, 0, 0]), None),
+        (FLAT, moved(FLAT, [0, -3], [0, 0]), THIRD),  # parallel, face to face
+        (FLAT, moved(FLAT, [5, -1], [0, 0]), None),
+        (FLAT, moved(FLAT, [1, -1], [0, 0]), 1),  # end to end
+        (FLAT, [[1, 0], [1, 1], [0, 0], [1, 0]], 1),
+        (IN_A_ROW, moved(IN_A_ROW, [3, 0, 0], [0, 0, 0]), THIRD),  # collinear
+        (IN_A_ROW, moved(IN_A_ROW, [3, 0.001, 0], [0, 0, 0]), None),
+        (IN_A_ROW, IN_A_ROW, None),
+        (IN_A_ROW, moved(IN_A_ROW, [0, 7, 0], [0, 0, 7]), None),
+        ([[0, 0], [2, 2], [0, 2], [2, 0]], [[0, 0], [2, 2], [0, 2], [2, 0]], 0),
+        ([[0, 0, 0], [2, 0, 0], [1, 0, 0], [1, 1, 1]], [[9, 9, 9], [8, 8, 7], [1, 2, 3], [4, 4, 4]], 0),
+        ([[0, 0], [0, 0], [1, 0], [1, 1]], [[2, 1], [2, 1], [1, 0], [1, 1]], Fraction(1, 2)),  # a point and an edge
+        ([[0, 0], [0, 0], [1, 1], [1, 1]], [[2, 2], [2, 2], [1, 1], [1, 1]], Fraction(1, 2)),  # two points
+    ],
+)
+def test_known_contacts(start: list[list[float]], end: list[list[float]], contact: Fraction | None) -> None:
+    found = list(meetings(exact(start), exact(end)))
+    assert bool(found) == (contact is not None) == meet(exact(start), exact(end))
+    if contact is not None:
+        time = Fraction(contact)
+        first = min(found, key=lambda root: root.low)
+        assert first.sign_of((-time.numerator, time.denominator)) == 0
+
+
+def test_contact_at_an_irrational_time() -> None:
+    """The point (t, 0) meets the edge from (0, −1) to (2, 4t − 1) where 2t² = 1."""
+    start, end = [[0, -1], [2, -1], [0, 0], [0, 0]], [[0, -1], [2, 3], [1, 0], [1, 0]]
+    found = list(meetings(exact(start), exact(end)))
+    assert {root.sign_of((-1, 0, 2)) for root in found} == {0}
+
+
+def test_edges_that_meet_beside_a_multiple_root() -> None:
+    """The polynomials have multiple roots where roots are told apart; MOBIUS_FLOW_SHADOWS=3000 makes more of them."""
+    rng = np.random.default_rng(617)
+    for _ in range(int(os.environ.get("MOBIUS_FLOW_SHADOWS", "300"))):
+        start, end = crossing_shadows(rng)
+        assert meet(exact(start.tolist()), exact(end.tolist())), (start.tolist(), end.tolist())
+
+
+def test_random_motions_against_sampling() -> None:
+    rng = np.random.default_rng(17)
+    t = np.linspace(0, 1, 4001)[:, None]
+    hits = 0
+    for _ in range(120):
+        start, end = rng.normal(size=(2, 4, 3))
+        x0, x1, y0, y1 = ((1 - t) * p + t * q for p, q in zip(start, end, strict=True))
+        volume = np.einsum("ti,ti->t", x0 - y0, np.cross(x1 - x0, y1 - y0))
+        crossings = [crossing(*(p[k] for p in (x0, x1, y0, y1))) for k in np.flatnonzero(volume[1:] * volume[:-1] < 0)]
+        margin = min((abs(abs(s - 0.5) - 0.5) for pair in crossings for s in pair), default=1.0)
+        if margin > 1e-2:  # sampling can tell
+            expected = any(0 < s < 1 and 0 < r < 1 for s, r in crossings)
+            hits += expected
+            assert meet(exact(start.tolist()), exact(end.tolist())) == expected
+    assert hits > 10
+
+
+def crossing(x0: np.ndarray, x1: np.ndarray, y0: np.ndarray, y1: np.ndarray) -> tuple[float, float]:
+    s, r = np.linalg.lstsq(np.stack([x1 - x0, y0 - y1], axis=1), y0 - x0, rcond=None)[0]
+    return float(s), float(r)

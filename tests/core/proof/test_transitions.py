@@ -1,0 +1,96 @@
+"""Changes of mesh: vertices that rounding puts beside their edge, against exact decisions about all pairs of edges."""
+
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+from exact_times import meet
+from mobius_flow.core import Mesh
+from mobius_flow.core.base.types import FloatArray
+from mobius_flow.core.proof import verify
+from mobius_flow.core.proof.checker import RefusedError, straightened
+
+DENORMAL = 5e-324
+UNITS = (DENORMAL, 2.0**-1040, 2.0**-52, 2.0**-20)
+
+
+def write(path: Path, bent: FloatArray, straight: FloatArray, strand: FloatArray) -> Path:
+    np.savez(
+        path,
+        stage_000=np.concatenate([bent, strand])[None],
+        component_sizes_000=np.array([len(bent), len(strand)]),
+        stage_001=np.concatenate([straight, strand])[None],
+        component_sizes_001=np.array([len(straight), len(strand)]),
+    )
+    return path
+
+
+def test_a_change_too_small_for_doubles_is_checked(tmp_path: Path) -> None:
+    """Half of the smallest number is the way from the bent edge to the straight one, and a strand is in between."""
+    u = DENORMAL
+    bent = np.array([[-1, 0, 0], [0, 0, 0], [1, u, 0], [1, 5, 0], [-1, 5, 0]], dtype=float)
+    strand = np.array([[0, 0, -1], [0, u, 3], [0, -5, 3], [0, -5, -1]], dtype=float)
+    verdict = verify(write(tmp_path / "T.npz", bent, np.delete(bent, 1, axis=0), strand))
+    assert not verdict.accepted
+    assert "meet" in verdict.reason
+
+
+def test_the_smallest_doubles_have_last_places_that_are_as_large(tmp_path: Path) -> None:
+    bent = DENORMAL * np.array([[-1000.0, 0, 0], [0, 3, 0], [1000, 0, 0], [0, 1000, 0]])
+    strand = DENORMAL * np.array([[5000.0, 0, 0], [6000, 0, 0], [5000, 1000, 0]])
+    assert verify(write(tmp_path / "T.npz", bent, np.delete(bent, 1, axis=0), strand)).accepted
+
+
+def crosses(bent: FloatArray, strand: FloatArray) -> bool:
+    """Whether putting vertex 1 onto the edge between its neighbours meets anything, by all pairs of edges."""
+    moved = straightened(bent.tolist(), [0, *range(2, len(bent))])
+    points = np.concatenate([bent, strand])
+    first = [[Fraction(x) for x in p] for p in points.tolist()]
+    last = [moved.get(k, p) for k, p in enumerate(first)]
+    mesh = Mesh((len(bent), len(strand)))
+    ends = list(zip(mesh.tails.tolist(), mesh.heads.tolist(), strict=True))
+    return any(
+        meet([first[k] for k in (*ends[i], *ends[j])], [last[k] for k in (*ends[i], *ends[j])])
+        for i in range(mesh.size)
+        for j in range(i)
+        if mesh.disjoint(np.array([i]), np.array([j]))[0]
+    )
+
+
+@pytest.mark.parametrize("unit", UNITS)
+def test_random_transitions(tmp_path: Path, unit: float) -> None:
+    rng, seen = np.random.default_rng(41), {True: 0, False: 0}
+    for _ in range(24):
+        bent = np.array([[-4, 0, 0], [0, 0, 0], [4, 0, 0], [4, 40, 0], [-4, 40, 0]], dtype=float)
+        strand = np.array([[0, 0, -8], [0, 0, 8], [0, -40, 8], [0, -40, -8]], dtype=float)
+        scale = 1.0 if unit < 1e-300 else unit * 2.0**50  # large numbers, in which the unit is a rounding error
+        bent, strand = scale * bent, scale * strand
+        bent[:3] += unit * rng.integers(-3, 4, size=(3, 3))
+        strand[:2] += unit * rng.integers(-3, 4, size=(2, 3))
+        try:
+            expected = crosses(bent, strand)
+        except RefusedError:
+            continue
+        verdict = verify(write(tmp_path / "T.npz", bent, np.delete(bent, 1, axis=0), strand))
+        assert verdict.accepted == (not expected), (bent.tolist(), strand.tolist(), str(verdict))
+        seen[expected] += 1
+    assert min(seen.values()) > 1
+
+
+EDGE = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
+
+
+@pytest.mark.parametrize("places", [[0.0], [1.0], [0.5, 0.5], [0.5, 0.25], [-0.25], [1.25]])
+def test_vertices_on_an_edge_follow_each_other_between_its_ends(places: list[float]) -> None:
+    polygon = np.array([EDGE[0], *([x, 0.0, 0.0] for x in places), *EDGE[1:]])
+    with pytest.raises(RefusedError, match="is not on the edge between its neighbours"):
+        straightened(polygon.tolist(), [0, len(places) + 1, len(places) + 2])
+
+
+def test_rounding_is_sixteen_units_of_the_last_place_of_the_largest_coordinate() -> None:
+    kept, height = [0, 2, 3], 2.0**-48
+    near, far = (np.array([EDGE[0], [0.5, y, 0.0], *EDGE[1:]]) for y in (height, np.nextafter(height, 1.0)))
+    assert straightened(near.tolist(), kept) == {1: (0.5, 0.0, 0.0)}
+    with pytest.raises(RefusedError):
+        straightened(far.tolist(), kept)

@@ -1,0 +1,120 @@
+"""Whole curves are untangled by proved motions: knots, links, arcs, among pins and obstacles, and interrupted."""
+
+from collections.abc import Sequence
+from itertools import islice
+
+import numpy as np
+import pytest
+from families import family
+from mobius_flow.core import Curve, Mesh, Obstacle
+from mobius_flow.core.collision import check_embedded
+from mobius_flow.core.knots import knot, knot_type, scramble
+from mobius_flow.core.untangle import Stage, Untangled, untangled, worth
+from passes import verdict
+from solids import plate
+
+
+def run(curve: Curve, pins: Sequence[int] = (), walls: Sequence[Obstacle] = ()) -> tuple[Curve, Untangled]:
+    """Where it ends and how, if the independent check accepts the way."""
+    stages: list[Stage] = []
+    work = untangled(curve, np.array(pins, dtype=np.intp), walls)
+    try:
+        while True:
+            stages.append(next(work))
+    except StopIteration as end:
+        found: Untangled = end.value
+    assert verdict(curve, stages, pins, walls).accepted
+    return stages[-1].end, found
+
+
+@pytest.mark.parametrize("name", family(["culprit", "goeritz", "thistlethwaite", "ochiai-1", "d28", "ochiai-4"], 3))
+def test_famous_unknots_lose_all_crossings(name: str) -> None:
+    end, found = run(knot(name))
+    assert (found.crossings, found.least) == (0, True)
+    assert end.length == pytest.approx(knot(name).length)
+
+
+@pytest.mark.parametrize("case", family([("5_2", 5), ("m7_4", 7), ("L6a4", 6), ("3_1#m4_1", 7), ("3_1#3_1", 6)], 2))
+def test_scrambled_knots_and_links_come_to_their_crossings(case: tuple[str, int]) -> None:
+    name, crossings = case
+    curve = scramble(knot(name, 100), 1, moves=3000)
+    end, found = run(curve)
+    assert (found.crossings, found.least) == (crossings, True)
+    assert str(knot_type(end)) == str(knot_type(curve))
+    assert len(end.mesh.component_sizes) == len(curve.mesh.component_sizes)
+
+
+def test_a_knot_of_which_no_least_diagram_is_known_says_so() -> None:
+    _, found = run(scramble(knot("8_19", 100), 1, moves=3000))
+    assert (found.crossings, found.least) == (8, False)
+    assert "no move of a strand is known" in found.reason
+
+
+def test_pins_stay_and_strands_end_at_them() -> None:
+    curve, pins = scramble(knot("5_2", 60), 1, moves=2000), [0, 20, 40]
+    end, found = run(curve, pins)
+    assert found.crossings == 5
+    places = set(map(tuple, end.vertices.tolist()))
+    assert all(tuple(point) in places for point in curve.vertices[pins].tolist())
+
+
+def test_arcs_come_apart_and_keep_their_ends() -> None:
+    closed = scramble(knot("3_1", 60), 1, moves=2000).vertices
+    curve = Curve(closed[:-1], Mesh((59,), (False,)))
+    end, found = run(curve)
+    assert found.crossings == 0
+    np.testing.assert_array_equal(end.vertices[[0, -1]], curve.vertices[[0, -1]])
+
+
+@pytest.mark.parametrize(("part", "free"), [(0.5, True), (0.01, False)])
+def test_plates_leave_room_or_none(part: float, free: bool) -> None:
+    curve = knot("ochiai-1")
+    low, high = curve.vertices[:, 2].min(), curve.vertices[:, 2].max()
+    gap = part * np.ptp(curve.vertices, axis=0).max()
+    _, found = run(curve, walls=[plate(low - gap, name="below"), plate(high + gap, name="above")])
+    assert (found.crossings == 0) is free
+    assert free or "no way for a strand is free" in found.reason
+
+
+def test_wherever_it_is_left_the_curve_is_embedded_and_of_its_type() -> None:
+    curve = knot("ochiai-1")
+    stages = list(islice(untangled(curve), 12))
+    assert verdict(curve, stages).accepted
+    check_embedded(stages[-1].end)
+    assert str(knot_type(stages[-1].end)) == "unknot"
+
+
+def test_the_same_seed_gives_the_same_motions() -> None:
+    once, again = ([stage.end.vertices for stage in untangled(knot("goeritz"), seed=3)] for _ in range(2))
+    assert all(map(np.array_equal, once, again))
+
+
+def test_what_cannot_be_untangled_is_left_alone() -> None:
+    assert list(untangled(Curve(np.random.default_rng(1).normal(size=(9, 4))))) == []
+    gone, left = worth(knot("5_2", 100))
+    assert gone < left == 5
+    gone, left = worth(knot("ochiai-2"), 20)
+    assert gone > 20 > left
+
+
+@pytest.mark.parametrize("gap", [1e-9, 1e-13, 1e-15])
+def test_strands_too_near_to_tell_are_left_alone(gap: float) -> None:
+    turn = 4.0 * np.pi * np.arange(400) / 400  # a trefoil, twice
+    x, y = np.sin(turn) + 2.0 * np.sin(2.0 * turn), np.cos(turn) - 2.0 * np.cos(2.0 * turn)
+    aside = gap * np.cos(0.5 * np.outer(turn, [1, 3, 5]))
+    curve = Curve(np.column_stack([x, y, -np.sin(3.0 * turn)]) + aside)
+    work = untangled(curve)
+    with pytest.raises(StopIteration) as end:
+        next(work)
+    assert "strands touch, or nearly do" in end.value.value.reason
+    assert worth(curve) == (0, 0)
+
+
+def test_curves_with_too_many_crossings_are_left_alone() -> None:
+    rng, turn = np.random.default_rng(1), 2.0 * np.pi * np.arange(6000) / 6000
+    waves = sum(rng.normal(size=(3, 1)) * np.cos(k * turn + rng.uniform(0.0, 6.0, size=(3, 1))) for k in range(60, 130))
+    work = untangled(Curve(waves.T))
+    with pytest.raises(StopIteration) as end:
+        next(work)
+    assert "5,000 crossings" in end.value.value.reason
+    assert worth(Curve(waves.T)) == (0, 0)

@@ -1,0 +1,36 @@
+"""One cluster for all tests of batches."""
+
+import csv
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from mobius_flow.cli import main
+from mobius_flow.lab.batch import sandbox
+
+Rows = list[dict[str, str]]
+
+
+@pytest.fixture(scope="session")
+def scheduler(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """The address of a scheduler in this process, with one worker."""
+    distributed = pytest.importorskip("distributed")
+    one = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "memory_limit": 0}
+    place = {"dashboard_address": "127.0.0.1:0", "local_directory": str(tmp_path_factory.mktemp("dask"))}
+    with distributed.LocalCluster(**one, **place, worker_dashboard_address="127.0.0.1:0") as cluster:
+        yield cluster.scheduler_address
+        with sandbox.closed():
+            pass
+
+
+@pytest.fixture
+def batch(scheduler: str, tmp_path: Path) -> Callable[..., Rows]:
+    """Run a batch on it into tmp_path/out, and give the rows of its table."""
+
+    def run(*words: object, status: int = 0) -> Rows:
+        out = tmp_path / "out"
+        assert main(["batch", *map(str, words), "-o", str(out), "--scheduler", scheduler]) == status
+        with (out / "results.csv").open(encoding="utf-8", newline="") as stream:
+            return list(csv.DictReader(stream))
+
+    return run

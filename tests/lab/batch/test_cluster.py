@@ -1,0 +1,213 @@
+"""Batches on clusters: the default one, and one whose processes are started by hand."""
+
+import csv
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+
+import pytest
+from mobius_flow.cli import main
+from mobius_flow.core import write_curve
+from processes import finished, listening, running
+from shapes import regular_polygon
+
+distributed = pytest.importorskip("distributed")
+psutil = pytest.importorskip("psutil")  # which Dask needs too
+PATIENCE = 300.0  # seconds
+
+
+def table(path: Path) -> list[dict[str, str]]:
+    with (path / "results.csv").open(encoding="utf-8", newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+@pytest.fixture
+def rings(tmp_path: Path) -> Path:
+    place = tmp_path / "in"
+    place.mkdir()
+    for k in range(8):
+        write_curve(place / f"ring{k}.txt", regular_polygon(8 + k))
+    return place
+
+
+def test_this_machine_s_cores_with_one_blas_thread_each(
+    rings: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("OPENBLAS_NUM_THREADS", "7")
+    assert main(["batch", str(rings), "-o", str(tmp_path / "out"), "--max-iterations", "1", "--vertices", "20"]) == 0
+    said = capfd.readouterr()
+    assert "\n✓ 8 runs      8 iteration limit\n" in said.out
+    assert said.err == "8 runs\n"
+    assert len(table(tmp_path / "out")) == 8
+    assert '"blas_threads": 1,' in (tmp_path / "out/ring3/report.json").read_text()
+
+
+def command(*words: str) -> list[str]:
+    """Dask's command as the documents give it, on this machine alone."""
+    return [sys.executable, "-m", "mobius_flow.lab.batch.dask", *words, "--host", "127.0.0.1"]
+
+
+@pytest.fixture
+def port() -> int:
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        return int(free.getsockname()[1])
+
+
+@contextmanager
+def cluster(port: int, workers: int, room: Path) -> Iterator[list["subprocess.Popen[str]"]]:
+    """The processes of a scheduler and of its workers, which have one thread each."""
+    one = ("--nthreads", "1", "--no-nanny", "--no-dashboard", "--local-directory", str(room))
+    worker = command("worker", f"tcp://127.0.0.1:{port}", *one)
+    scheduler = command("scheduler", "--port", str(port), "--no-dashboard")
+    with ExitStack() as stack:
+        yield [stack.enter_context(running(each)) for each in [scheduler] + [worker] * workers]
+
+
+def wait_for_one(out: Path) -> None:
+    """Until there are the results of a run."""
+    until = time.monotonic() + PATIENCE
+    while not any(out.glob("ring*/")) and time.monotonic() < until:
+        time.sleep(0.02)
+
+
+@pytest.mark.slow
+def test_a_worker_that_is_killed_costs_no_row(port: int, rings: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    words = ["batch", str(rings), "-o", str(out), "--scheduler", f"tcp://127.0.0.1:{port}"]
+    program = [sys.executable, "-m", "mobius_flow", *words, "--vertices", "60", "--tolerance", "1e-9"]
+    with cluster(port, 2, tmp_path) as processes, running(program) as process:
+        wait_for_one(out)
+        processes[1].kill()
+        said, complained = process.communicate()
+    assert process.returncode == 0
+    assert "\n✓ 8 runs " in said
+    assert "failed" not in said
+    assert complained == ""
+    assert [row["name"] for row in table(out)] == [f"ring{k}" for k in range(8)]
+    assert {path.name for path in out.iterdir()} == {*(f"ring{k}" for k in range(8)), "results.csv", "results.parquet"}
+
+
+@pytest.mark.slow
+def test_an_interrupt_leaves_nothing_on_the_cluster(port: int, rings: Path, tmp_path: Path) -> None:
+    out, address = tmp_path / "out", f"tcp://127.0.0.1:{port}"
+    words = ["batch", str(rings), "7_1..8_21", "-o", str(out), "--scheduler", address]
+    with cluster(port, 1, tmp_path) as processes, running([sys.executable, "-m", "mobius_flow", *words]) as process:
+        wait_for_one(out)
+        process.send_signal(signal.SIGINT)
+        said = process.communicate()
+        assert (process.returncode, *said) == (130, "", "mobius-flow: interrupted\n")
+        done = [row["status"] for row in table(out)]
+        assert done
+        assert "failed" not in done
+        with distributed.Client(address) as client:
+            until = time.monotonic() + PATIENCE
+            while (left := client.run_on_scheduler(lambda dask_scheduler: len(dask_scheduler.tasks))) and (
+                time.monotonic() < until
+            ):
+                time.sleep(0.02)
+        assert left == 0
+        children = psutil.Process(processes[1].pid).children()
+    assert len(children) == 1  # it lives on as long as its worker, and no longer
+    assert psutil.wait_procs(children, timeout=PATIENCE)[1] == []
+
+
+@pytest.mark.slow
+def test_a_scheduler_that_is_killed_costs_no_result(port: int, rings: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    words = ["batch", str(rings), "-o", str(out), "--vertices", "60", "--tolerance", "1e-9"]
+    program = [sys.executable, "-m", "mobius_flow", *words, "--scheduler", f"tcp://127.0.0.1:{port}"]
+    with cluster(port, 1, tmp_path) as processes, running(program) as process:
+        wait_for_one(out)
+        processes[0].kill()
+        said = process.communicate()
+    assert said == ("", "mobius-flow: the Dask scheduler is lost; give the same command again to go on\n")
+    assert process.returncode == 2
+    done = {row["name"]: row for row in table(out)}
+    assert 0 < len(done) < 8
+    assert "failed" not in {row["status"] for row in done.values()}
+    assert main(words) == 0
+    rows = {row["name"]: row for row in table(out)}
+    assert len(rows) == 8
+    assert [rows[name] for name in done] == list(done.values()), "what was done is not done again"
+    assert not list(out.glob(".*"))
+
+
+@pytest.mark.slow
+def test_a_command_that_is_killed_costs_nothing(port: int, rings: Path, tmp_path: Path) -> None:
+    """What its runs under way come to on the cluster is found by the same command, and not done again."""
+    out = tmp_path / "out"
+    words = ["batch", str(rings), "-o", str(out), "--scheduler", f"tcp://127.0.0.1:{port}"]
+    program = [sys.executable, "-m", "mobius_flow", *words, "--vertices", "60", "--tolerance", "1e-9"]
+    with cluster(port, 1, tmp_path):
+        with running(program) as process:
+            wait_for_one(out)
+            process.kill()
+        done = {path: path.stat().st_mtime_ns for path in out.glob("ring*/report.json")}
+        again = finished(program)
+    assert again.returncode == 0
+    assert "\n✓ 8 runs " in again.stdout
+    assert {path: path.stat().st_mtime_ns for path in done} == done
+    assert len(table(out)) == 8
+
+
+@pytest.mark.slow
+def test_it_works_beside_snappy_and_listens_on_loopback_alone(port: int, rings: Path, tmp_path: Path) -> None:
+    """The commands of the documents, with nannies, where SnapPy is installed in place of python-snappy."""
+    manual = (Path(__file__).parents[3] / "docs/batch.md").read_text(encoding="utf-8")
+    commands = re.findall(r"^    python -m mobius_flow.lab.batch.dask (.*?) *#", manual, re.MULTILINE)
+    assert len(commands) == 2
+    (tmp_path / "planted").mkdir()
+    (tmp_path / "planted/snappy.py").write_text("Manifold = None\n")
+    (tmp_path / "tmp").mkdir()
+    environment = os.environ | {"PYTHONPATH": str(tmp_path / "planted")}
+    broken = finished([sys.executable, "-c", "import distributed"], env=environment)
+    assert "has no attribute 'compress'" in broken.stderr, "it is mended there: ours may go"
+    batch = ["batch", str(rings), "-o", str(tmp_path / "out"), "--scheduler", f"tcp://127.0.0.1:{port}"]
+    places = ["--port", str(port)], ["--local-directory", str(tmp_path / "dask")]
+    words = [each.replace("HEAD:8786", f"127.0.0.1:{port}").split() for each in commands]
+    lines = [command(*each, *place) for each, place in zip(words, places, strict=True)]
+    program = [sys.executable, "-m", "mobius_flow", *batch, "--vertices", "60"]
+    with ExitStack() as stack:
+        processes = [stack.enter_context(running(line, env=environment)) for line in lines]
+        processes.append(stack.enter_context(running(program, env=environment | {"TMPDIR": str(tmp_path / "tmp")})))
+        heard: list[set[str]] = [set(), set(), set()]
+        while processes[-1].poll() is None:
+            heard = [was | listening(process) for was, process in zip(heard, processes, strict=True)]
+        out, error = processes[-1].communicate()
+        assert "\n✓ 8 runs      8 converged\n" in out
+        assert error == "8 runs\n"
+    assert heard == [{"127.0.0.1"}, {"127.0.0.1"}, set()]
+    assert os.listdir(tmp_path / "tmp") == []
+
+
+ORPHAN = """
+import os, sys
+from mobius_flow.lab.batch.sandbox import Sandbox
+print(Sandbox()._process.pid, flush=True)
+os._exit(0)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="looks at processes")
+def test_children_end_with_their_parent() -> None:
+    pid = finished([sys.executable, "-c", ORPHAN]).stdout.strip()
+    until = time.monotonic() + PATIENCE
+    while (left := _runs(pid)) and time.monotonic() < until:
+        time.sleep(0.02)
+    assert not left
+
+
+def _runs(pid: str) -> bool:
+    try:
+        return " Z " not in Path(f"/proc/{pid}/stat").read_text()
+    except OSError:
+        return False

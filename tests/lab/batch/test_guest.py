@@ -1,0 +1,302 @@
+"""A batch replaces its own files only, listens to nobody, and leaves nothing behind."""
+
+import csv
+import hashlib
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager, nullcontext
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mobius_flow.cli import main
+from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, read_curve, write_curve
+from mobius_flow.lab.batch import campaign, single
+from mobius_flow.lab.batch.folder import new_folder
+from mobius_flow.lab.batch.job import inputs, jobs
+from processes import finished, listening, running
+from shapes import regular_polygon
+
+pytest.importorskip("pyarrow")
+psutil = pytest.importorskip("psutil")  # which Dask needs
+PROGRAM = [sys.executable, "-m", "mobius_flow", "batch"]
+QUICK = ["--vertices", "12", "--max-iterations", "0"]
+OTHERWISE = ["--vertices", "24", "--max-iterations", "0"]  # by which results are to be replaced
+KEPT = "ring/curve.txt", "ring/report.json", "ring/trajectory.npz", "results.csv"
+OLD = time.time() - 1e6
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A directory of results, and the input beside it."""
+    place = tmp_path_factory.mktemp("results")
+    write_curve(place / "ring.txt", regular_polygon(12))
+    assert main(["batch", str(place / "ring.txt"), "-o", str(place / "out"), "--quiet", *QUICK]) == 0
+    return place
+
+
+@pytest.fixture
+def place(results: Path, tmp_path: Path) -> Path:
+    """A copy of it, to be spoiled."""
+    shutil.copytree(results, tmp_path / "place")
+    return tmp_path / "place"
+
+
+def replaced_by(path: Path, text: str) -> None:
+    if path.is_dir():
+        shutil.rmtree(path)
+    path.unlink(missing_ok=True)
+    path.write_text(text)
+
+
+def moved_and_linked(path: Path) -> None:
+    path.rename(path.parents[1] / "elsewhere")
+    path.symlink_to(path.parents[1] / "elsewhere")
+
+
+def with_a_note_in_the_table(path: Path) -> None:
+    path.write_text(path.read_text().replace("stopped at", "discuss with Anna: stopped at"))
+
+
+def with_a_column(path: Path) -> None:
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    table = pq.read_table(path)
+    pq.write_table(table.append_column("remark", pa.array(["mine"])), path)
+
+
+def with_a_remark(path: Path) -> None:
+    path.write_text(json.dumps(json.loads(path.read_text()) | {"remark": "mine"}))
+
+
+def someone_s_project(path: Path) -> None:
+    shutil.rmtree(path)
+    path.mkdir()
+    (path / "thesis.tex").write_text("x")
+    (path / "report.json").write_text('{"row": {}, "recipe": {}}')
+
+
+def emptied(path: Path) -> None:
+    shutil.rmtree(path)
+    path.mkdir()
+
+
+def a_pipe(path: Path) -> None:
+    path.unlink()
+    os.mkfifo(path)
+
+
+FOREIGN: dict[str, tuple[str, Callable[[Path], object]]] = {
+    "a folder with a thesis and a report": ("out/ring", someone_s_project),
+    "an empty folder": ("out/ring", emptied),
+    "a file in place of a folder": ("out/ring", lambda path: replaced_by(path, "mine")),
+    "results behind a link": ("out/ring", moved_and_linked),
+    "a note among results": ("out/ring/note.md", lambda path: path.write_text("mine")),
+    "a folder among results": ("out/ring/pictures", lambda path: path.mkdir()),
+    "a curve that was edited": ("out/ring/curve.txt", lambda path: path.write_text(f"{path.read_text()}# mine\n")),
+    "a trajectory of another program": ("out/ring/trajectory.npz", lambda path: replaced_by(path, "mine")),
+    "a report with a remark": ("out/ring/report.json", with_a_remark),
+    "a report that is a pipe": ("out/ring/report.json", a_pipe),
+    "someone's table": ("out/results.csv", lambda path: replaced_by(path, "name,energy\n3_1,74\n")),
+    "a table with a note": ("out/results.csv", with_a_note_in_the_table),
+    "a table that is a link": ("out/results.csv", moved_and_linked),
+    "a table that is a pipe": ("out/results.csv", a_pipe),
+    "someone's Parquet table": ("out/results.parquet", lambda path: replaced_by(path, "PAR1")),
+    "a Parquet table with another column": ("out/results.parquet", with_a_column),
+    "a file in place of the directory": ("out", lambda path: replaced_by(path, "mine")),
+}
+
+
+def everything(place: Path) -> dict[str, tuple[object, ...]]:
+    """What is in a directory, to the byte."""
+    found = {}
+    for path in sorted(place.rglob("*")):
+        status = path.lstat()
+        content = path.read_bytes() if path.is_file() else os.readlink(path) if path.is_symlink() else None
+        found[str(path)] = (status.st_ino, status.st_mode, status.st_mtime_ns, content)
+    return {name: each if "/out/" in name else each[::3] for name, each in found.items()}
+
+
+@pytest.mark.skipif(os.name != "posix", reason="links and pipes")
+@pytest.mark.parametrize(("path", "spoil"), FOREIGN.values(), ids=FOREIGN)
+def test_what_is_not_its_own_is_refused_before_any_work(
+    path: str, spoil: Callable[[Path], object], place: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    spoil(place / path)
+    if path == "out/results.csv" and (place / path).is_symlink():
+        (place / "elsewhere").write_text("mine")
+    before = everything(place)
+    assert main(["batch", str(place / "ring.txt"), "-o", str(place / "out"), *OTHERWISE]) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err.startswith((f"mobius-flow: {place / path}: ", f"mobius-flow: {place / 'out/ring'}: "))
+    assert said.err.count("\n") == 1
+    assert "; move it, or name another directory" in said.err or path == "out"
+    assert everything(place) == before
+
+
+def test_results_are_replaced_and_other_files_are_left_alone(place: Path) -> None:
+    (place / "out/notes").mkdir()
+    for name in ("notes/thesis.tex", "notes.md", ".mobius-flow-mine.partial"):
+        (place / "out" / name).write_text("mine")
+    mine = {name: each for name, each in everything(place).items() if "/ring" not in name and "results." not in name}
+    assert main(["batch", str(place / "ring.txt"), "-o", str(place / "out"), "--quiet", *OTHERWISE]) == 0
+    assert json.loads((place / "out/ring/report.json").read_text())["options"]["vertices"] == 24
+    assert mine.items() <= everything(place).items()
+    assert len(everything(place)) == len(mine) + 7  # ring.txt, ring, its three files, and the tables
+
+
+def test_what_arrives_during_the_work_survives(place: Path) -> None:
+    with ExitStack() as stack:
+        stack.enter_context(pytest.raises(MobiusFlowError, match=r"thesis\.tex: was not written by"))
+        stack.enter_context(new_folder(place / "out/ring"))
+        (place / "out/ring/thesis.tex").write_text("mine")
+        before = everything(place / "out/ring")
+    assert everything(place / "out/ring") == before
+    assert sorted(os.listdir(place / "out")) == ["results.csv", "results.parquet", "ring"]
+
+
+def test_a_table_that_is_edited_during_the_work_survives(
+    place: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table = place / "out/results.csv"
+    monkeypatch.setattr(campaign, "live", lambda *_: nullcontext(lambda _: table.write_text("mine")))
+    words = ["batch", str(place / "ring.txt"), "-o", str(place / "out"), *OTHERWISE]
+    assert main(words) == 2
+    assert f"{table}: was not written by" in capsys.readouterr().err
+    assert table.read_text() == "mine"
+    table.unlink()
+    monkeypatch.setattr(campaign, "live", lambda *_: nullcontext(lambda _: pytest.fail("done twice")))
+    assert main(words) == 0
+    assert "ring,1," in table.read_text()
+
+
+@pytest.mark.slow
+def test_a_batch_that_is_killed_between_its_tables_goes_on(place: Path) -> None:
+    old = (place / "out/results.csv").read_bytes()
+    words = ["batch", str(place / "ring.txt"), "-o", str(place / "out"), "--quiet"]
+    assert main([*words, *OTHERWISE]) == 0
+    (place / "out/results.csv").write_bytes(old)  # the Parquet file is replaced first
+    assert main([*words, *QUICK]) == 0
+
+
+@pytest.mark.slow
+def test_results_that_are_called_like_unfinished_ones_are_not_swept_away(place: Path) -> None:
+    name = ".mobius-flow-x.partial"
+    (place / "ring.txt").rename(place / f"{name}.txt")
+    words = ["batch", str(place / f"{name}.txt"), "-o", str(place / "out"), "--quiet"]
+    for options in (QUICK, OTHERWISE):
+        assert main([*words, *options]) == 0
+        os.utime(place / "out" / name, (OLD, OLD))
+    write_curve(place / "b.txt", regular_polygon(12))
+    assert main(["batch", str(place / "b.txt"), "-o", str(place / "out"), "--quiet", *QUICK]) == 0
+    assert len(os.listdir(place / "out" / name)) == 3
+
+
+def test_no_cell_is_a_formula(results: Path, tmp_path: Path) -> None:
+    names = ["=1+1", "-2", "+3", "@SUM(A1)", "\t=1", "＝1"]
+    for name in names:
+        shutil.copy(results / "ring.txt", tmp_path / f"{name}.txt")
+        (tmp_path / f"{name}2.txt").write_text("=1+1\n")  # is refused
+    assert main(["batch", str(tmp_path), "-o", str(tmp_path / "out"), "--quiet", *QUICK]) == 0
+    with (tmp_path / "out/results.csv").open(encoding="utf-8", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    texts = [text for row in rows for text in row.values() if text and not re.fullmatch(r"-?[0-9.e+-]+", text)]
+    assert not [text for text in texts if text[0] in "=+-@\t\r\n＝"]
+    assert {row["name"] for row in rows if row["status"] == "converged"} == {f"_{name}" for name in names}
+    assert {row["name"] for row in rows if row["status"] == "failed"} == {f"_{name}2" for name in names}
+    assert read_curve(tmp_path / "out/_=1+1/curve.txt")
+
+
+def test_a_curve_has_a_head(results: Path) -> None:
+    first, second, _ = (results / "out/ring/curve.txt").read_text(encoding="utf-8").split("\n", 2)
+    with (results / "out/results.csv").open(encoding="utf-8", newline="") as stream:
+        (row,) = csv.DictReader(stream)
+    assert first == f"# ring: unknot, Möbius energy {float(row['energy']):.9g}, converged"
+    assert second == f"# mobius-flow {row['version']} batch, options {row['options']}"
+    assert row["input_sha256"] == hashlib.sha256((results / "ring.txt").read_bytes()).hexdigest()
+
+
+def test_a_curve_in_four_dimensions_is_refused_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+
+    write_curve(tmp_path / "a.json", Curve(np.pad(regular_polygon(12).vertices, ((0, 0), (0, 1)))))
+    monkeypatch.setattr(single, "minimize", lambda *_: pytest.fail("work for nothing"))
+    (job,) = jobs(
+        inputs([str(tmp_path / "a.json")]),
+        1,
+        tmp_path / "out",
+        RelaxOptions(),
+        {"avoid": [], "pins": [], "pin_tangents": False},
+        False,
+    )
+    row = single.relaxed(job)
+    assert row.failed
+    assert row.message.startswith(f"{tmp_path / 'a.json'}: the curve is in dimension 4, and curve.txt holds")
+
+
+@pytest.mark.slow
+def test_any_time_limit(results: Path, tmp_path: Path) -> None:
+    words = [str(results / "ring.txt"), "-o", str(tmp_path / "out"), *QUICK, "--time-limit", "1e300"]
+    ended = finished([*PROGRAM, *words])
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "1 run: 1 converged\n", "")
+
+
+def test_it_listens_to_nobody_and_leaves_nothing_in_the_temporary_directory(tmp_path: Path) -> None:
+    temporary = tmp_path / "tmp"
+    temporary.mkdir()
+    words = [*PROGRAM, "9_1..9_3", "-o", str(tmp_path / "out")]
+    with running(words, env=os.environ | {"TMPDIR": str(temporary)}) as process:
+        while not psutil.Process(process.pid).children():
+            assert listening(process) == set()
+        for _ in range(20):
+            assert listening(process) == set()
+            time.sleep(0.1)
+        process.terminate()
+        _, said = process.communicate()
+    assert process.returncode == 130, said
+    assert os.listdir(temporary) == []
+
+
+@contextmanager
+def full_disk(place: Path) -> Iterator[None]:
+    """A file system of one megabyte."""
+    place.mkdir()
+    if os.name != "posix" or os.geteuid() != 0:
+        pytest.skip("only root may mount")
+    if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1m", "tmpfs", str(place)], capture_output=True).returncode:
+        pytest.skip("nothing may be mounted here")
+    try:
+        yield
+    finally:
+        subprocess.run(["umount", str(place)], check=True)
+
+
+@pytest.mark.slow
+def test_a_full_disk_costs_no_result(results: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with full_disk(tmp_path / "disk"):
+        out = tmp_path / "disk/out"
+        words = ["batch", str(results / "ring.txt"), str(tmp_path / "*.txt"), "-o", str(out), *QUICK]
+        write_curve(tmp_path / "a.txt", regular_polygon(12))
+        assert main(words) == 0
+        for k in range(3):
+            write_curve(tmp_path / f"b{k}.txt", regular_polygon(12))
+        blocker = tmp_path / "disk/blocker"
+        free = shutil.disk_usage(out).free
+        blocker.write_bytes(b"x" * (free - 8192))  # room for half a run
+        before = [(out / name).read_bytes() for name in KEPT]
+        capsys.readouterr()
+        assert main(words) == 2
+        said = capsys.readouterr().err
+        assert re.fullmatch(rf"mobius-flow: {out}/.*: cannot be written: No space left on device.*\n", said)
+        assert [(out / name).read_bytes() for name in KEPT] == before
+        assert not list(out.glob(".*"))
+        blocker.unlink()
+        assert main(words) == 0
+        assert capsys.readouterr().out == "5 runs: 5 converged\n"

@@ -1,0 +1,166 @@
+"""What ``compare`` writes: tables, figures and strips."""
+
+import csv
+import json
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mobius_flow.cli import main
+from mobius_flow.core import METHODS, RelaxOptions, write_curve
+from mobius_flow.core.curve.measures import writhe_and_crossings
+from mobius_flow.core.driver.run import Run
+from mobius_flow.lab.compare.command import WRITERS, usual
+from mobius_flow.lab.compare.comparison import History, compare, least_energy
+from mobius_flow.lab.compare.figures import draw_curve, figure_class, write_strip
+from shapes import torus_trefoil
+
+HELPED = History("flow-l2", "stalled", (0.0, 0.1, 0.2, 0.3), (9.0, 8.0, 7.0, 6.5), (1.0, 0.9, 0.8, 0.7), (2, 3), "l2")
+
+
+def test_fallback_steps_in_tables(tmp_path: Path) -> None:
+    WRITERS[".csv"](tmp_path / "a.csv", [HELPED])
+    rows = list(csv.DictReader((tmp_path / "a.csv").read_text(encoding="utf-8").splitlines()))
+    assert [row["fallback"] for row in rows] == ["0", "0", "1", "1"]
+    assert {row["metric"] for row in rows} == {"l2"}
+    WRITERS[".json"](tmp_path / "a.json", [HELPED])
+    (plain,) = json.loads((tmp_path / "a.json").read_text())
+    assert plain["fallback"] == [2, 3]
+    assert set(plain) == {"method", "status", "seconds", "energy", "gradient_norm", "fallback", "metric"}
+
+
+def test_figures_show_energy_its_distance_to_the_least_and_the_gradient(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    axes, figure = pytest.importorskip("matplotlib.axes"), pytest.importorskip("matplotlib.figure")
+    drawn, said = [], []
+    plot, title = axes.Axes.plot, figure.Figure.suptitle
+    monkeypatch.setattr(axes.Axes, "plot", lambda *a, **k: drawn.append((*a[1:], k)) or plot(*a, **k))
+    monkeypatch.setattr(figure.Figure, "suptitle", lambda *a, **k: said.append(a[1]) or title(*a, **k))
+    rising = replace(
+        HELPED, method="cg", metric="moebius", status="time_limit", energy=(9.0, 8.0, 8.5, 7.0), fallback=()
+    )
+    WRITERS[".png"](tmp_path / "a.png", [HELPED, rising, replace(rising, method="flow-moebius")])
+    lines, ends = [each for each in drawn if len(each) == 3], [each for each in drawn if len(each) == 4]
+    heights = [list(y) for _, y, _ in lines[::6]]
+    assert heights[0] == [9.0, 8.0, 7.0, 6.5]
+    assert heights[1][:3] == [2.5, 1.5, 0.5]
+    assert np.isnan(heights[1][3])  # the least one itself has no logarithm
+    assert heights[2] == [1.0, 0.9, 0.8, 0.7]
+    assert [list(x) for x, *_ in lines[:4:3]] == [[0, 1, 2, 3], [0.0, 0.1, 0.2, 0.3]]
+    assert [keywords.get("markevery") for *_, keywords in lines] == 6 * [[2, 3], None, None]
+    colors, dashes = ([keywords[name] for *_, keywords in lines[:3]] for name in ("color", "linestyle"))
+    assert colors[0] != colors[1] == colors[2], "one for each metric"
+    assert dashes[0] == dashes[2] != dashes[1], "one for each kind of method"
+    assert {mark for *_, mark, _ in ends} == {"x"}, "where it is stuck"
+    assert said == ["E rises: cg in 1 of 3 steps, flow-moebius in 1 of 3 steps"]
+    assert (tmp_path / "a.png").stat().st_size > 1000
+
+
+def test_the_least_energy_is_that_of_methods_that_keep_lengths() -> None:
+    other = replace(HELPED, method="penalty-cg", energy=(9.0, 5.0))
+    assert least_energy([HELPED, other]) == 6.5
+    assert least_energy([other]) == 5.0
+
+
+@pytest.mark.parametrize("mirror", [[1, 1, 1], [1, 1, -1]])
+def test_nearer_strands_cover_farther_ones(mirror: list[int]) -> None:
+    """The picture is no mirror image."""
+    pytest.importorskip("matplotlib")
+    axes = figure_class()().subplots()
+    curve = torus_trefoil(30)
+    curve = curve.with_vertices(mirror * curve.vertices)
+    draw_curve(axes, curve, "C0", 2.0)
+    (lines,) = axes.collections
+    assert _writhe_sign(np.array(lines.get_segments())[::2]) == np.sign(writhe_and_crossings(curve)[0])
+
+
+def _writhe_sign(segments: np.ndarray) -> int:
+    """Sign of the crossings of a drawing whose segments come from far to near."""
+    signs = []
+    for near, (a, b) in enumerate(segments):
+        for c, d in segments[:near]:
+            u, v = b - a, d - c
+            cross = u[0] * v[1] - u[1] * v[0]
+            if abs(cross) > 1e-12:
+                s, t = np.linalg.solve(np.column_stack([u, -v]), c - a)
+                if 0.01 < s < 0.99 and 0.01 < t < 0.99:
+                    signs.append(np.sign(cross))
+    assert len(set(signs)) == 1
+    return int(signs[0])
+
+
+def test_a_strip_has_a_row_for_each_method(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("matplotlib")
+    write_curve(tmp_path / "in.txt", torus_trefoil(40))
+    words = ["compare", tmp_path / "in.txt", "-o", tmp_path / "s.png", "--methods", "cg,flow-l2", "--vertices", "40"]
+    assert main([str(word) for word in [*words, "--strip", "2,0,9", "--max-iterations", "3"]]) == 0
+    assert (tmp_path / "s.png").stat().st_size > 5000
+    assert [line.split()[1:4] for line in capsys.readouterr().out.splitlines()[1:]] == 2 * [["iteration", "limit", "3"]]
+
+
+def test_a_strip_ends_with_its_last_stage(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("matplotlib")
+    write_curve(tmp_path / "in.txt", torus_trefoil(40))
+    words = ["compare", tmp_path / "in.txt", "-o", tmp_path / "s.png", "--methods", "cg", "--strip", "2,0"]
+    assert main([str(word) for word in words]) == 0
+    assert " iteration limit           2 " in capsys.readouterr().out
+
+
+def test_a_strip_shows_the_end_where_a_stage_was_not_reached(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    curve = torus_trefoil(20)
+    write_strip([0, 50], tmp_path / "s.svg", [replace(HELPED, stages={0: curve, 3: curve})])
+    assert (tmp_path / "s.svg").stat().st_size > 5000
+
+
+def test_what_is_compared_is_announced_and_a_table_needs_no_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_curve(tmp_path / "in.txt", torus_trefoil(20))
+    named = ", ".join(usual())
+    words = ["compare", str(tmp_path / "in.txt"), "--vertices", "20", "--max-iterations", "1"]
+    assert main([*words, "--time-limit", "7"]) == 0
+    shown = capsys.readouterr()
+    every = f"--methods '*' takes all {len(METHODS)}"
+    assert shown.err == f"comparing {named}: at most 7 s each, {7 * len(usual())} s in all; {every}\n"
+    assert [line.split()[0] for line in shown.out.splitlines()] == ["method", *usual()]
+    assert main([*words, "--methods", "*", "-o", str(tmp_path / "c.csv")]) == 0
+    shown = capsys.readouterr()
+    assert [line.split()[0] for line in shown.out.splitlines()[1:]] == list(METHODS)
+    assert shown.err.endswith(f"✓ wrote       {tmp_path}/c.csv\n")
+
+
+def test_the_time_limit_is_the_clocks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is recorded is processor time, which a busy machine does not change."""
+    step = Run.step
+    monkeypatch.setattr(Run, "step", lambda self: time.sleep(0.2) or step(self))
+    (run,) = compare(torus_trefoil(20), ["cg"], RelaxOptions(vertices=20, tolerance=1e-12), 0.3)
+    assert run.status == "time_limit"
+    assert run.iterations <= 2
+    assert run.seconds[-1] < 0.3
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--strip", "0,x", "-o", "s.png"], "strip has 'x'; give numbers of iterations, such as 0,10,50"),
+        (["--strip", "0,5", "-o", "s.csv"], "s.csv: a strip is a picture; let OUT end in .png or .svg"),
+        (["--time-limit", "0", "-o", "s.csv"], "time_limit is 0.0; it must be a finite number above 0"),
+        (["--time-limit", "inf", "-o", "s.csv"], "time_limit is inf; it must be a finite number above 0"),
+    ],
+)
+def test_what_cannot_be_is_refused(
+    words: list[str],
+    said: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    pytest.importorskip("matplotlib")
+    monkeypatch.chdir(tmp_path)
+    write_curve("in.txt", torus_trefoil(20))
+    assert main(["compare", "in.txt", *words]) == 2
+    assert said in capsys.readouterr().err
