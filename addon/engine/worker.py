@@ -1,12 +1,14 @@
 """Both ends of the worker: what it does in its process, and how Blender starts it, takes in its iterates and ends it.
 
 The worker yields the driver's iterates, with proofs for the motions that Blender's own numbers make of them. Blender
-never waits for it, and ends it at once.
+never waits for it, and ends it at once. What they tell each other is pickled: both run the same files.
 """
 
 import contextlib
+import hashlib
 import inspect
 import os
+import pickle
 import queue
 import subprocess
 import sys
@@ -31,22 +33,21 @@ from ...core.driver import Relaxation
 from ...core.keys.motion import frames_of
 from ...core.keys.placement import Frame, Link, Placement
 from ...core.morph import morphing
-from . import wire
 
-Inbox = queue.SimpleQueue[wire.Packet | None]
+Inbox = queue.SimpleQueue[Any]
 
 
-def messages(inbox: Inbox) -> Iterator[wire.Packet]:
-    """Yield the iterates of a job as messages, or one message with the reason why it cannot be done.
+def messages(inbox: Inbox) -> Iterator[Any]:
+    """Yield the iterates of a job, each with the names of motions that are proved, and at last the outcome or an error.
 
-    The inbox holds the job first, and then pauses and actions of the hand, read between steps; None ends it.
+    The inbox holds the job first, what `Worker` is given, and then pauses and actions of the hand, read between steps;
+    None ends it.
     """
     job = inbox.get()
     if job is None:
         return
-    (task, options, link), hand = wire.unpack_job(job), Hand(stays=job[0]["stays"])
-    goals = wire.unpack_goals(job)
-    obstacles = in_common_space(task.obstacles, link)
+    task, options, link, stays, goals = job
+    obstacles, hand = in_common_space(task.obstacles, link), Hand(stays=stays)
     last: Frame | None = None
     paused = False
     try:
@@ -57,20 +58,20 @@ def messages(inbox: Inbox) -> Iterator[wire.Packet]:
             last, proved = frames[-1], []  # names of the motions that are free of contact, in the common space
             if all(len(shape) == mesh.size for shape in shapes):
                 common = pairwise(link.to_common(mesh, shape) for shape in shapes)
-                proved = [wire.digest(a, b) for a, b in common if is_free(mesh, a, b, obstacles)]
-            yield wire.pack_iterate(iterate, proved)
+                proved = [digest(a, b) for a, b in common if is_free(mesh, a, b, obstacles)]
+            yield iterate, proved
             while paused or hand.rests or not inbox.empty():
                 if (said := inbox.get()) is None:
                     return
-                deed, facts = said[0]["deed"], said[0]["facts"]
+                deed, facts = said
                 if deed == "pause":
                     (paused,) = facts
                 else:
                     getattr(hand, deed)(*facts)
         assert run.outcome is not None, "the loop is through"
-        yield wire.pack_outcome(run.outcome)
+        yield run.outcome
     except MobiusFlowError as error:
-        yield wire.pack_error(error)
+        yield error
 
 
 def begun(task: Task, options: RelaxOptions, goals: Mapping[str, Curve], hand: Hand) -> Relaxation:
@@ -86,6 +87,11 @@ def in_common_space(avoid: Iterable[Obstacle], link: Link) -> tuple[Obstacle, ..
     """The world's obstacles in the space where motions of a link are proved: vertices are mapped there in doubles."""
     there = Placement(np.eye(3), np.zeros(3)).relative_to(link.placements[0])
     return tuple(Obstacle(there.to_world(each.vertices), each.faces, each.name) for each in avoid)
+
+
+def digest(start: FloatArray, end: FloatArray) -> str:
+    """Name of the straight motion between two arrays of vertices: exactly these bits, nothing else."""
+    return hashlib.blake2b(start.tobytes() + end.tobytes(), digest_size=16).hexdigest()
 
 
 class WorkerError(MobiusFlowError):
@@ -108,10 +114,10 @@ class Worker:
         goals: Mapping[str, Curve] = MappingProxyType({}),
     ) -> None:
         self._inbox: Inbox = queue.SimpleQueue()
-        self._inbox.put(wire.pack_job(task, options, link, stays, goals))
+        self._inbox.put((task, options, link, stays, dict(goals)))
         self._obstacles = in_common_space(task.obstacles, link)
         self._proved: set[str] = set()
-        self._queue: queue.Queue[wire.Packet | None] = queue.Queue(64)  # wait while Blender draws; then the worker does
+        self._queue: queue.Queue[Any] = queue.Queue(64)  # wait while Blender draws; then the worker does
         self._closed = threading.Event()
         self.process = _start()
         self._thread = threading.Thread(target=self._feed, name="Möbius Flow", daemon=True)
@@ -124,7 +130,7 @@ class Worker:
 
         ``pause`` is for the worker itself: whether it waits there.
         """
-        self._inbox.put(({"deed": deed, "facts": facts}, []))
+        self._inbox.put((deed, facts))
 
     def poll(self) -> Iterate | Outcome | None:
         """Take the next iterate if there is one; after the last one comes the outcome.
@@ -137,17 +143,17 @@ class Worker:
             return None
         if message is None:
             raise WorkerError(Message("The computation ended unexpectedly; memory may have run out"))
-        if "error" in message[0]:
-            raise wire.unpack_error(message)
-        if "outcome" in message[0]:
-            return wire.unpack_outcome(message)
-        iterate, proved = wire.unpack_iterate(message)
+        if isinstance(message, MobiusFlowError):
+            raise message
+        if isinstance(message, Outcome):
+            return message
+        iterate, proved = message
         self._proved.update(proved)
-        return iterate
+        return iterate  # type: ignore[no-any-return]
 
     def is_free(self, mesh: Mesh, start: FloatArray, end: FloatArray) -> bool:
         """As `core.collision.is_free`, but most motions were proved by the worker already."""
-        return wire.digest(start, end) in self._proved or bool(is_free(mesh, start, end, self._obstacles))
+        return digest(start, end) in self._proved or bool(is_free(mesh, start, end, self._obstacles))
 
     def close(self) -> None:
         """End the process now and the thread with it; harmless to repeat."""
@@ -165,18 +171,18 @@ class Worker:
     def _feed(self) -> None:
         """Pass messages on until there are no more or nobody wants them."""
         try:
-            from_worker = None if self.process is None else partial(wire.read, _pipes(self.process)[1])
+            from_worker = None if self.process is None else partial(pickle.load, _pipes(self.process)[1])
             for message in messages(self._inbox) if from_worker is None else iter(from_worker, None):
                 if not self._put(message):
                     return
             self._put(None)
-        except (EOFError, OSError, ValueError):
+        except (EOFError, OSError, ValueError, pickle.UnpicklingError):
             self._put(None)
         finally:
             if self.process is not None:
                 _pipes(self.process)[1].close()
 
-    def _put(self, message: wire.Packet | None) -> bool:
+    def _put(self, message: Any) -> bool:
         while not self._closed.is_set():
             try:
                 self._queue.put(message, timeout=0.1)  # seconds, and then see whether anybody still wants it
@@ -191,7 +197,8 @@ def _send(process: "subprocess.Popen[bytes]", inbox: Inbox) -> None:
     to_worker = _pipes(process)[0]
     with contextlib.suppress(OSError), to_worker:  # to a worker that is gone
         for packet in iter(inbox.get, None):
-            wire.write(to_worker, packet)
+            pickle.dump(packet, to_worker)
+            to_worker.flush()
 
 
 def _pipes(process: "subprocess.Popen[bytes]") -> tuple[IO[bytes], IO[bytes]]:
@@ -210,7 +217,7 @@ def _start() -> "subprocess.Popen[bytes] | None":
     places = dict.fromkeys(str(file.parents[file.stem == "__init__"]) for file in libraries)
     try:
         return subprocess.Popen(
-            [sys.executable, "-P", "-s", str(program)],
+            [sys.executable, "-P", "-s", str(program), __package__],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             env={**os.environ, "PYTHONPATH": os.pathsep.join(places)},

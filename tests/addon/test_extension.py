@@ -149,7 +149,7 @@ def test_the_manifest_itself_names_no_wheels():
 
 
 INSTALL = """
-import sys
+import importlib, sys
 sys.path.insert(0, sys.argv[1])
 import bpy
 for name in ("scipy", "mobius_flow"):
@@ -193,6 +193,15 @@ assert np.allclose(shown(frames[0]), written[0], atol=1e-6)
 assert np.allclose(shown(frames[-1]), written[-1], atol=1e-6)
 print("relaxed", np.__version__, scipy.__file__)
 name = next(name for name in bpy.context.preferences.addons.keys() if name.endswith("mobius_flow"))
+# the worker of a run in a window, under the name that Blender gives the package
+live = importlib.import_module(f"{name}.addon.engine.worker")
+task = live.Task(curve=live.Curve(written[0].astype(float)))
+link = live.Link((live.Placement(np.eye(3), np.zeros(3)),), (1,))
+worker = live.Worker(task, live.RelaxOptions(max_iterations=3), link)
+assert worker.process is not None
+arrived = [worker._queue.get(timeout=100) for _ in range(5)]
+assert isinstance(arrived[-1], live.Outcome), arrived[-1]
+worker.close()
 bpy.ops.preferences.addon_disable(module=name)
 assert not hasattr(bpy.types.Scene, "mobius_flow")
 """

@@ -7,10 +7,8 @@ from blender_scenes import add_curve, stored
 from mathutils import Vector
 from mobius_flow import Relaxation
 from mobius_flow.addon.curves import bake, surroundings
-from mobius_flow.addon.engine import wire
 from mobius_flow.addon.scripting import begin
-from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, Task
-from mobius_flow.core.keys.placement import Link, Placement
+from mobius_flow.core import MobiusFlowError
 from mobius_flow.core.knots import knot
 
 SHORT = {"vertices": 12, "length": 30, "untangle": "never"}
@@ -84,17 +82,3 @@ def test_ends_that_are_in_one_place_but_for_rounding_are_held_there():
         point.co = (*(away @ Vector(place)), 1.0)
     goal.data.splines[0].points[2].co.z += 0.5
     assert Relaxation(moving).morph(goal, **SHORT).certified
-
-
-def test_goals_reach_the_worker(tmp_path):
-    link = Link((Placement(np.eye(3), np.zeros(3)),), (1,))
-    goals = {"Links": knot("hopf", 40), "Bent": Curve(ZIGZAG)}
-    job = wire.pack_job(Task(curve=Curve(RECTANGLE)), RelaxOptions(), link, False, goals)
-    with (tmp_path / "job").open("w+b") as pipe:
-        wire.write(pipe, job)
-        pipe.seek(0)
-        received = wire.unpack_goals(wire.read(pipe))
-    assert list(received) == list(goals)
-    for one, other in zip(received.values(), goals.values(), strict=True):
-        assert one.mesh == other.mesh
-        np.testing.assert_array_equal(one.vertices, other.vertices)

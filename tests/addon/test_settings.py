@@ -1,7 +1,6 @@
 """The scene's settings, the operator's and the panels are the library's options: none is declared a second time."""
 
 from dataclasses import asdict, dataclass
-from io import BytesIO
 from types import SimpleNamespace
 
 import bpy
@@ -9,14 +8,11 @@ import numpy as np
 import pytest
 from blender_scenes import add_trefoil, relax, sentence, stored
 from mobius_flow.addon import properties
-from mobius_flow.addon.engine import wire
 from mobius_flow.addon.sidebar.panels import VIEW3D_PT_mobius_flow_expert
 from mobius_flow.addon.sidebar.relax import VIEW3D_PT_mobius_flow
-from mobius_flow.core import METHODS, Curve, OptionError, RelaxOptions, Task, minimize
+from mobius_flow.core import METHODS, Curve, OptionError, RelaxOptions, minimize
 from mobius_flow.core.base.arguments import declared, option
-from mobius_flow.core.keys.placement import Link, Placement
 from option_values import unlike_default
-from shapes import torus_trefoil
 
 SHOWN = {each.name: each for each in declared(RelaxOptions) if each.is_setting}
 GIVEN = {name: unlike_default(each) for name, each in SHOWN.items()}
@@ -201,13 +197,3 @@ def test_the_result_is_the_librarys(options):
     np.testing.assert_array_equal(stored(obj.data), result.astype(np.float32))
     plain = minimize(start, RelaxOptions(max_iterations=6)).curve.vertices
     assert not np.array_equal(stored(obj.data), plain.astype(np.float32))
-
-
-def test_the_worker_is_sent_every_option():
-    options = RelaxOptions(**GIVEN | {"mesh": "auto"})  # others make their own edge_lengths
-    curve = torus_trefoil(30)
-    pipe = BytesIO()
-    wire.write(pipe, wire.pack_job(Task(curve=curve), options, Link((Placement(np.eye(3), np.zeros(3)),), (1,))))
-    pipe.seek(0)
-    _, received, _ = wire.unpack_job(wire.read(pipe))
-    assert received == options

@@ -1,19 +1,10 @@
-"""What objects show becomes obstacles of the world, and reaches the worker and the common space to the last digit."""
-
-import queue
-from io import BytesIO
-from itertools import pairwise
+"""What objects show becomes obstacles of the world."""
 
 import numpy as np
 import pytest
 from mobius_flow.addon.curves.surroundings import Surface, obstacles
-from mobius_flow.addon.engine import wire
-from mobius_flow.addon.engine.worker import in_common_space, messages
-from mobius_flow.core import Curve, CurveError, Obstacle, RelaxOptions, Task
-from mobius_flow.core.collision import is_free
-from mobius_flow.core.keys.motion import frames_of
-from mobius_flow.core.keys.placement import Link, Placement
-from shapes import hopf_link
+from mobius_flow.core import CurveError
+from mobius_flow.core.keys.placement import Placement
 
 HERE = Placement(np.eye(3), np.zeros(3))
 THERE = Placement(np.array([[2.0, 1.0, 0.0], [0.0, -1.0, 0.5], [0.0, 0.0, 3.0]]), np.array([5.0, 6.0, 7.0]))
@@ -73,63 +64,3 @@ def test_equal_pieces():
     assert surface(THERE).equals(surface(THERE))
     assert not surface(THERE).equals(surface(HERE))
     assert not surface().equals(surface(edges=none(2)))
-
-
-def test_the_common_space_is_that_of_the_first_object():
-    (faces, _) = obstacles("Wall", [surface()])
-    (mapped,) = in_common_space([faces], Link((THERE, HERE), (1, 1)))
-    np.testing.assert_allclose(THERE.to_world(mapped.vertices), faces.vertices, atol=1e-15)
-    assert mapped.name == "Wall"
-    (same,) = in_common_space([faces], Link((HERE, THERE), (1, 1)))
-    np.testing.assert_array_equal(same.vertices, faces.vertices)
-
-
-def job(avoid, placement=HERE):
-    """A ring through a circle, stretched so that it would leave it, stored in an object's coordinates."""
-    ring = hopf_link(24).vertices[24:] * [1.0, 1.0, 4.0]
-    link = Link((placement,), (1,))
-    stored = link.to_stored(Curve.from_components([ring]).mesh, ring).astype(np.float32)
-    curve = Curve.from_components([placement.to_world(stored.astype(float))])
-    task = Task(curve=curve, obstacles=avoid)
-    return task, RelaxOptions(max_iterations=20, vertices=60, mesh="fixed"), link
-
-
-def circle():
-    points = hopf_link(24).vertices[:24]
-    k = np.arange(24)
-    return Obstacle(points, np.stack([k, (k + 1) % 24], axis=1), "Circle")
-
-
-def test_the_worker_is_sent_the_obstacles():
-    pipe = BytesIO()
-    square = Obstacle(SQUARE, TRIANGLES, "a wall")
-    wire.write(pipe, wire.pack_job(*job((square, circle()))))
-    pipe.seek(0)
-    task, _, _ = wire.unpack_job(wire.read(pipe))
-    assert [each.name for each in task.obstacles] == ["a wall", "Circle"]
-    for sent, received in zip((square, circle()), task.obstacles, strict=True):
-        np.testing.assert_array_equal(received.vertices, sent.vertices)
-        np.testing.assert_array_equal(received.faces, sent.faces)
-
-
-@pytest.mark.parametrize("placement", [HERE, THERE], ids=["plain", "placed"])
-def test_the_worker_proves_motions_beside_obstacles(placement):
-    """What it proves is free of the obstacle in Blender's own numbers; without it the curve would have crossed."""
-    task, options, link = job((circle(),), placement)
-    beside = in_common_space(task.obstacles, link)
-    assert _frames_are_free(task, options, link, beside)
-    assert not _frames_are_free(job((), placement)[0], options, link, beside)
-
-
-def _frames_are_free(task, options, link, beside):
-    inbox = queue.SimpleQueue()
-    inbox.put(wire.pack_job(task, options, link))
-    *replies, end = messages(inbox)
-    assert "outcome" in end[0]
-    received = [wire.unpack_iterate(reply) for reply in replies]
-    proved = {name for _, names in received for name in names}
-    mesh = received[0][0].curve.mesh
-    common = [link.to_common(mesh, frame) for iterate, _ in received for frame in frames_of(link, iterate)]
-    motions = list(pairwise(common))
-    assert {wire.digest(a, b) for a, b in motions} == proved
-    return all(is_free(mesh, a, b, beside) for a, b in motions)

@@ -3,12 +3,8 @@
 import re
 
 import pytest
-from mobius_flow.addon.engine import wire
-from mobius_flow.core import Curve, CurveError, Obstacle, OptionError, Outcome, Status, Task, relax
-from mobius_flow.core.base.errors import Place
-from mobius_flow.core.base.messages import Message
-from mobius_flow.core.collision import Contact
-from mobius_flow.core.driver.outcome import converged, stalled
+from mobius_flow.core import Curve, CurveError, Obstacle, Outcome, Status, Task, relax
+from mobius_flow.core.driver.outcome import converged
 from mobius_flow.core.driver.words import in_blenders_words, spline_names
 from shapes import torus_trefoil
 
@@ -66,20 +62,6 @@ def test_what_is_avoided_keeps_its_name():
 @pytest.mark.parametrize("components", BAD.values(), ids=BAD)
 def test_what_the_core_refuses_is_told_without_its_terms(components):
     assert not TERMS.search(in_blenders_words(str(refusal(Curve.from_components(components))), NAMES))
-
-
-def test_messages_survive_the_way_from_the_worker():
-    edges = Contact((2, 7)).message
-    outcome = stalled(Message("{contact} are so close", contact=edges), Place((1,), (0.0, 1.0))).adding(
-        "{x:.2g}", x=0.5
-    )
-    arrived = wire.unpack_outcome(wire.pack_outcome(outcome))
-    assert arrived == outcome
-    assert in_blenders_words(arrived.message, NAMES) == "stalled: segment 3 and segment 8 are so close; 0.5"
-    for kind in (CurveError, OptionError):
-        error = wire.unpack_error(wire.pack_error(kind(edges)))
-        assert type(error) is kind
-        assert in_blenders_words(str(error), NAMES) == "segment 3 and segment 8"
 
 
 def test_clauses_are_kept_where_an_outcome_stalls():
