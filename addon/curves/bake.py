@@ -42,7 +42,7 @@ def remember(
         frames, shown = np.append(data[_RECORD]["frames"], frames[1:]), [*_noted(data), *shown[1:]]
     record = data[_RECORD]
     if before is not None or count:  # versions that did not note them wrote shape keys as they are
-        record["frames"], record["course"] = frames.tolist(), np.concatenate(course.columns).tolist()
+        record["frames"], record["course"] = frames.tolist(), np.concatenate(course).tolist()
     elif data.shape_keys:
         shown = [Similarity()] * (len(data.shape_keys.key_blocks) - len(shown) + 1) + [*shown[1:]]
     _note_sizes(data, shown)

@@ -18,7 +18,7 @@ from ...core.base.deadline import termination_raises
 from ...core.base.errors import OutputError
 from ...core.base.files import atomic_write
 from ...core.collision import is_free
-from ...core.keys.motion import Key, Keys, Playing, check_dimension, recorded, spatial
+from ...core.keys.motion import Key, Keys, Playing, check_dimension, recorded
 from ...core.keys.placement import Measure, Origin
 from ...core.keys.tube import rounded
 from .looks import DEFAULT, LOOKS
@@ -131,7 +131,7 @@ def write_picture(
     with the curve, seen down its third axis, and its shadow, and nothing behind them.
     """
     check_dimension(curve)
-    link = Origin.of(spatial(curve.vertices)).link(curve.mesh)
+    link = Origin.of(curve).link(curve.mesh)
     points = link.to_stored(curve.mesh, curve.vertices).astype(np.float32)
     _render(path, Keys((Key(0.0, points),), 0), curve.mesh, (width, height), look, samples, cut_out)
 

@@ -3,8 +3,9 @@
 Chords between keys are proved whatever their times: a key's frame says when it is passed, not where the curve goes.
 """
 
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from enum import Enum
+from typing import NamedTuple
 
 import numpy as np
 
@@ -28,8 +29,7 @@ class Pace(Enum):
     ITERATE = "By Iterate"
 
 
-@dataclass(frozen=True, eq=False)
-class Course:
+class Course(NamedTuple):
     """How far a relaxation has come at each of several frames; ascending arrays of shape (frames,)."""
 
     iterates: FloatArray  # number of iterates passed
@@ -40,56 +40,48 @@ class Course:
 
     def at(self, iterates: FloatArray) -> "Course":
         """The same at other frames, by the number of iterates passed."""
-        return Course(*(np.interp(iterates, self.iterates, column) for column in self.columns))
-
-    @property
-    def columns(self) -> list[FloatArray]:
-        return [getattr(self, each.name) for each in fields(self)]
+        return Course(*(np.interp(iterates, self.iterates, column) for column in self))
 
     def then(self, other: "Course") -> "Course":
         """This course and another one, whose first frame is the last of this one."""
-        pairs = zip(self.columns, other.columns, strict=True)
+        pairs = zip(self, other, strict=True)
         return Course(*(np.append(one, one[-1] + more[1:] - more[0]) for one, more in pairs))
 
     def share(self, pace: Pace) -> FloatArray:
         """Share of the time passed at each frame, from 0 to 1."""
-        if pace is Pace.ITERATE:
-            return _share(self.iterates, self.iterates)
         if pace is Pace.EVEN:
             # set off and come to rest gently, each in so much of the time, from and to a tenth of the speed
             time, ramp = np.linspace(0.0, 1.0, 1001), 0.12
-            speed = np.clip(np.minimum(time, 1.0 - time) / ramp, 0.1, 1.0)
-            passed = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]))])
+            passed = _passed(time, np.clip(np.minimum(time, 1.0 - time) / ramp, 0.1, 1.0))
             return np.asarray(np.interp(self.evenly, passed / passed[-1], time))
-        if pace is Pace.DISTANCE:
-            return _share(self.distance, self.iterates)
-        # strand moves are no flow, but are seen for as long as they would be by distance
-        part = self.moved[-1] / max(self.distance[-1], 1e-300)
-        flow, moves = (_share(each, self.iterates) for each in (self.flow_time, self.moved))
-        return np.asarray((1.0 - part) * flow + part * moves)
+        if pace is Pace.FLOW_TIME:
+            # strand moves are no flow, but are seen for as long as they would be by distance
+            part = self.moved[-1] / max(self.distance[-1], 1e-300)
+            return np.asarray((1.0 - part) * self._share(self.flow_time) + part * self._share(self.moved))
+        return self._share(self.distance if pace is Pace.DISTANCE else self.iterates)
 
     @property
     def evenly(self) -> FloatArray:
         """Share of an even motion passed at each frame, were it not to set off and come to rest gently."""
-        parts = self._worth(self.distance), self.fall, self._worth(self.iterates)
-        # the fall counts so that drift takes few frames, the iterates so that the last, small steps get some
-        shares = [_share(part, self.iterates) for part in parts]
-        return np.asarray(np.average(shares, axis=0, weights=[0.55, 0.3, 0.15]))
-
-    def _worth(self, passed: FloatArray) -> FloatArray:
-        """A running total, with less weight where the energy hardly falls any more: drift."""
+        # a way has less weight where the energy hardly falls any more: drift
         above = np.expm1(np.minimum(self.fall[-1] - self.fall, 50.0))  # bits of energy above the end
         near, drift = 0.03, 0.1  # which bits are few, and what a way is worth along which there are none
         worth = (above + drift * near) / (above + near)
-        return np.concatenate([[0.0], np.cumsum(0.5 * (worth[1:] + worth[:-1]) * np.diff(passed))])
+        # the fall counts so that drift takes few frames, the iterates so that the last, small steps get some
+        parts = _passed(self.distance, worth), self.fall, _passed(self.iterates, worth)
+        return np.asarray(np.average([self._share(part) for part in parts], axis=0, weights=[0.55, 0.3, 0.15]))
+
+    def _share(self, passed: FloatArray) -> FloatArray:
+        """A running total scaled to go from 0 to 1, or the number of iterates if the total does not change."""
+        for each in (passed, self.iterates):
+            if np.ptp(each) > 0:
+                return np.asarray((each - each[0]) / np.ptp(each))
+        return np.zeros(len(passed))
 
 
-def _share(passed: FloatArray, otherwise: FloatArray) -> FloatArray:
-    """A running total scaled to go from 0 to 1, or another one if the first does not change."""
-    for each in (passed, otherwise):
-        if np.ptp(each) > 0:
-            return np.asarray((each - each[0]) / np.ptp(each))
-    return np.zeros(len(passed))
+def _passed(along: FloatArray, speed: FloatArray) -> FloatArray:
+    """The integral of a speed from the first to each place."""
+    return np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(along))])
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from itertools import pairwise
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
@@ -82,6 +82,24 @@ def frames_of(link: Link, iterate: Iterate) -> list[Frame]:
     return [link.to_stored(iterate.curve.mesh, end).astype(np.float32) for end in ends]
 
 
+class _Shape(NamedTuple):
+    """What was recorded: a key on the mesh that there was."""
+
+    key: Key
+    stage: int  # number of its mesh
+    way: float  # to it from the shape before, in sizes of the curve
+
+
+class _Passed(NamedTuple):
+    """An iterate among the shapes; the others are inner ends of legs."""
+
+    place: int  # its number among the shapes
+    curve: Curve  # in its own size
+    like: int | None  # number of the iterate that it is shown like, as a hand has pinned something
+    step: float  # size of the step that led to it
+    energy: float
+
+
 class Recording:
     """The frames of a relaxation in the numbers that Blender will store, collected as they come.
 
@@ -100,20 +118,13 @@ class Recording:
         in_points: bool = False,
     ) -> None:
         self._link, self._first, self._measure, self._in_points = link, first, measure, in_points
-        self._first_size = size
-        self._start: Curve | None = None
+        self._first_size = size or Similarity()
         self.last: Iterate | None = None
         self.natural = [0]  # numbers of iterates that are shown in their own size, which changes evenly in between
-        self._shapes: list[Key] = []  # what was recorded, each on the mesh that there was:
-        self._stages: list[int] = []  # its number
+        self._shapes: list[_Shape] = []
+        self._passed: list[_Passed] = []
         self._meshes: list[Mesh] = []
         self._markers: list[Markers] = []  # of each component
-        self._ways: list[float] = []  # from each to the next, in sizes of the curve
-        self._ends: list[int] = []  # positions of the iterates among the shapes; the others are inner ends of legs
-        self._curves: list[Curve] = []  # the iterates in their own size
-        self._like: list[int | None] = []  # numbers of others that they are shown like, as a hand has pinned something
-        self._steps: list[float] = []  # sizes of the steps that led to the iterates
-        self._energies: list[float] = []
 
     def add(self, iterate: Iterate) -> None:
         """Append an iterate with its legs; raises MobiusFlowError if none lead to it, and it is not the last one.
@@ -121,84 +132,52 @@ class Recording:
         An iterate of the same number is replaced, and those after it are dropped: a drag was taken back.
         """
         index, curve, frames = iterate.index, iterate.curve, frames_of(self._link, iterate)
-        if 0 < index < len(self._ends):  # forget those from there on, and the meshes that came with them
-            del self._ends[index:], self._steps[index:], self._energies[index:], self._curves[index:]
-            del self._like[index:]
-            del self._shapes[self._ends[-1] + 1 :], self._stages[self._ends[-1] + 1 :], self._ways[self._ends[-1] :]
-            del self._meshes[self._stages[-1] + 1 :]
+        if 0 < index < len(self._passed):  # forget those from there on, and the meshes that came with them
+            place = self._passed[index - 1].place
+            stage = self._shapes[place].stage
+            del self._passed[index:], self._shapes[place + 1 :], self._meshes[stage + 1 :]
             for markers, size in zip(self._markers, self._meshes[-1].component_sizes, strict=True):
-                markers.back(self._stages[-1], size)
-            self._mesh = Mesh(tuple(map(len, self._markers)), self._meshes[-1].closed)
-        kind, like, ways = Kind.STEP, None, list[float]()
-        if not self._curves:
-            self._start, self._mesh = curve, curve.mesh
-            self._meshes.append(self._mesh)
-            self._markers = list(map(Markers, self._mesh.component_sizes, self._mesh.closed))
+                markers.back(stage, size)
+        kind, like, ways = Kind.STEP, None, [0.0]
+        if not self._passed:
+            self._meshes.append(curve.mesh)
+            self._markers = list(map(Markers, curve.mesh.component_sizes, curve.mesh.closed))
             frames = frames if self._first is None else [self._first]
         elif iterate.path:
             kind = Kind.STEP if iterate.strand_moves is None or iterate.strand_moves.done else Kind.MOVE
-            held, mesh = list(iterate.pins), self._meshes[-1]
+            held, mesh, before = list(iterate.pins), self._meshes[-1], self._shapes[-1].key.points
             for frame in frames:
-                frame[held] = self._shapes[-1].points[held]  # rounding them anew might move them
-            seen = [self._link.to_common(mesh, frame) for frame in (self._shapes[-1].points, *frames)]
+                frame[held] = before[held]  # rounding them anew might move them
+            seen = [self._link.to_common(mesh, frame) for frame in (before, *frames)]
             if self._measure is not Measure.LENGTH:  # in some size of its own: its growth is no motion
                 seen = [Similarity.giving(self._measure, 1.0, Curve(each, mesh)).of(each) for each in seen]
-            for a, b in pairwise(seen):  # what the eye follows: the fastest vertex, in sizes of the curve
-                size = max(np.ptp(a, axis=0).max(), np.ptp(b, axis=0).max())  # the larger one: it may just be scaled
-                ways.append(float(np.linalg.norm(b - a, axis=1).max() / size))
+            # what the eye follows: the fastest vertex, in sizes of the curve, the larger one, as it may just be scaled
+            sizes = [np.ptp(each, axis=0).max() for each in seen]
+            moved = [np.linalg.norm(b - a, axis=1).max() for a, b in pairwise(seen)]
+            ways = [float(way / max(pair)) for way, pair in zip(moved, pairwise(sizes), strict=True)]
         else:  # another mesh, on which vertices that stay keep their stored coordinates
-            kind, ways = Kind.MESH, [0.0]
-            old = self._curves[-1]
+            kind, old, before = Kind.MESH, self._passed[-1].curve, self._shapes[-1].key.points
             for markers, was, now in zip(self._markers, old.mesh.slices, curve.mesh.slices, strict=True):
+                corners = [list(map(tuple, each.tolist())) for each in (old.vertices[was], curve.vertices[now])]
                 try:
-                    first, second = (
-                        [*map(tuple, points.tolist())] for points in (old.vertices[was], curve.vertices[now])
-                    )
-                    here, there = kept_vertices(first, second, markers.closed)
+                    here, there = kept_vertices(*corners, markers.closed)
                 except RefusedError as error:
                     raise MobiusFlowError(f"keyframes cannot follow a change to another curve: {error}") from error
                 markers.change(here, there, now.stop - now.start)
-                frames[0][now][there] = self._shapes[-1].points[was][here]
+                frames[0][now][there] = before[was][here]
             self._meshes.append(curve.mesh)
-            sizes = tuple(map(len, self._markers))
-            self._mesh = self._mesh if sizes == self._mesh.component_sizes else Mesh(sizes, curve.mesh.closed)
-        if iterate.pins and self._curves:
-            like = len(self._curves) - 1 if self._like[-1] is None else self._like[-1]
+        if iterate.pins and self._passed:
+            like = len(self._passed) - 1 if self._passed[-1].like is None else self._passed[-1].like
         times = [float(index)]
         if len(ways) > 1:  # the fastest vertex keeps its speed from leg to leg
-            passed = np.cumsum(np.maximum(ways, 1e-3 * (max(ways) or 1.0)))
-            times = [*(index - 1 + passed[:-1] / passed[-1]).tolist(), *times]
-        self.last = iterate
-        self._curves.append(curve)
-        self._like.append(like)
-        self._shapes += map(Key, times, frames, [Kind.ADDED] * (len(times) - 1) + [kind])
-        self._ways += ways
-        self._stages += len(frames) * [len(self._meshes) - 1]
-        self._ends.append(len(self._shapes) - 1)
-        self._steps.append(iterate.step_size if index and kind is not Kind.MOVE else 0.0)
-        self._energies.append(iterate.energy)
-
-    @property
-    def size(self) -> Similarity:
-        """How the last iterate is shown."""
-        return self._size(len(self._curves) - 1)
-
-    def _size(self, time: float, points: Frame | None = None) -> Similarity:
-        """How an iterate is shown, or stored points in between."""
-        number = int(np.ceil(time))
-        if (like := self._like[number]) is not None:
-            return self._size(like)
-        first = self._first_size or Similarity()
-        if self._measure is Measure.LENGTH:
-            return first
-        natural = [self._measure.of(self._curves[k]) for k in self.natural]
-        wanted = first.factor * np.exp(np.interp(time, self.natural, np.log(natural)))
-        curve = self._curves[number]
-        if points is not None:
-            pieces = zip(self._link.placements, self._link.slices(self._mesh), strict=True)
-            world = [each.to_world(points[piece].astype(np.float64)) for each, piece in pieces]
-            curve = Curve(np.concatenate(world), self._mesh)
-        return Similarity.giving(self._measure, float(wanted), curve)
+            along = np.cumsum(np.maximum(ways, 1e-3 * (max(ways) or 1.0)))
+            times = [*(index - 1 + along[:-1] / along[-1]).tolist(), *times]
+        for time, frame, way in zip(times, frames, ways, strict=True):
+            key = Key(time, frame, kind if time == index else Kind.ADDED)
+            self._shapes.append(_Shape(key, len(self._meshes) - 1, way))
+        step = iterate.step_size if index and kind is not Kind.MOVE else 0.0
+        self._passed.append(_Passed(len(self._shapes) - 1, curve, like, step, iterate.energy))
+        self._mesh, self.last = Mesh(tuple(map(len, self._markers)), curve.mesh.closed), iterate
 
     def keys(self, free: Proof, limit: int | None = None, timing: Timing | None = None) -> Keys:
         """Choose the keys of an animation from the start to the last iterate.
@@ -209,41 +188,42 @@ class Recording:
         ``timing`` leaves room: on interpolating curves through the iterates, where that can be proved. By default they
         are no more than half of all, but for short runs.
         """
-        most = len(self._ends) if timing is None else timing.most_keys
-        if len(self._ends) > most:
+        places = [each.place for each in self._passed]
+        most = len(places) if timing is None else timing.most_keys
+        if len(places) > most:
             limit = int(most) if limit is None else min(limit, int(most))
-        chosen = self._ends
-        if limit is not None and limit < len(chosen):  # as evenly spread over an even motion as can be
-            passed = self._course.evenly[self._ends]
-            places = np.interp(np.linspace(0, 1, max(limit, 2)), passed, np.arange(len(passed))).round().astype(int)
-            places[0], places[-1] = 0, len(passed) - 1
-            number = np.arange(len(places))
-            later = np.maximum.accumulate(places - number) + number
-            chosen = [self._ends[k] for k in np.minimum(later, len(passed) - len(places) + number)]
-        ends = [self._key(position) for position in chosen]
-        start = self._link.to_stored(self._mesh, self.start.vertices)
-        unproved = int(not self._proved(start, ends[0].points, free))  # rounding may push something through another
-        keys, between = [self._stored(ends[0])], dict[int, list[Key]]()
-        if timing is not None and len(ends) > 1:
+        every = limit is None or limit >= len(places)
+        if limit is not None and not every:  # as evenly spread over an even motion as can be
+            evenly = self._course.evenly[places]
+            chosen = np.interp(np.linspace(0, 1, max(limit, 2)), evenly, np.arange(len(evenly))).round().astype(int)
+            chosen[0], chosen[-1] = 0, len(evenly) - 1
+            number = np.arange(len(chosen))
+            later = np.maximum.accumulate(chosen - number) + number
+            places = [places[k] for k in np.minimum(later, len(evenly) - len(chosen) + number)]
+        ends = [self._key(place) for place in places]
+        between = [list[Key]() for _ in ends[1:]]
+        if timing is not None and every and len(ends) > 1:  # keys on smooth curves, no nearer than a frame
             steps = sum(key.kind is Kind.STEP for key in ends)
             # with 120 keys a motion looks smooth
-            room = (max(120, 2 * steps) if limit is None else limit) - len(ends)
-            room = max(room, 0) if len(ends) == len(self._ends) else 0
+            room = max((max(120, 2 * steps) if limit is None else limit) - len(ends), 0)
             frames = timing.frames(self.course(Keys(tuple(ends), 0)))
-            gaps, spacing = np.diff(frames), 1.0  # no nearer than a frame
+            gaps, spacing = np.diff(frames), 1.0
             while (pieces := np.ceil(gaps / spacing - 1e-3)).sum() - len(gaps) > room:
                 spacing *= 1.05
             for k in np.flatnonzero(pieces > 1).tolist():
                 near = slice(max(k - 1, 0), k + 3)  # the slopes at both ends need one more key on either side
-                shares = np.arange(1, int(pieces[k])) / pieces[k]
                 shapes = np.stack([key.points for key in ends[near]]).astype(np.float64)
+                shares = np.arange(1, int(pieces[k])) / pieces[k]
                 # curves that overshoot in no coordinate
                 points = PchipInterpolator(frames[near], shapes)(frames[k] + shares * gaps[k]).astype(np.float32)
-                times = ends[k].time + shares * (ends[k + 1].time - ends[k].time)
-                between[k] = [Key(float(time), shape) for time, shape in zip(times, points, strict=True)]
-        for k, (a, b) in enumerate(pairwise(chosen)):
-            added = (replace(key, size=self._size(key.time, key.points)) for key in between.get(k, ()))
-            smooth = [*map(self._stored, (*added, ends[k + 1]))]
+                times = (ends[k].time + shares * (ends[k + 1].time - ends[k].time)).tolist()
+                added = (Key(t, x, size=self._size(t, x)) for t, x in zip(times, points, strict=True))
+                between[k] = list(map(self._stored, added))
+        start, ends = self._link.to_stored(self._mesh, self.start.vertices), list(map(self._stored, ends))
+        unproved = int(not self._proved(start, ends[0].points, free))  # rounding may push something through another
+        keys = ends[:1]
+        for a, b, added, end in zip(places, places[1:], between, ends[1:], strict=False):
+            smooth = [*added, end]
             if all(self._proved(one.points, other.points, free) for one, other in pairwise([keys[-1], *smooth])):
                 keys += smooth
                 continue
@@ -252,26 +232,43 @@ class Recording:
                 unproved += not proved
         return Keys(tuple(keys), unproved)
 
-    def _stored(self, key: Key) -> Key:
-        """A key as it is stored: where nothing but points can be keyed, they are those shown."""
-        if not self._in_points or key.size.is_identity:
-            return key
-        return replace(key, points=self._shown(key.points, key.size).astype(np.float32), size=Similarity())
+    def _way(self, a: int, b: int, free: Proof) -> Iterator[tuple[Key, bool]]:
+        """Yield the keys after shape ``a`` up to ``b``, each with whether the motion to it was proved.
 
-    def _shown(self, points: Frame | FloatArray, size: Similarity) -> FloatArray:
-        """Points as stored, (n, 3), in the size in which they are shown."""
-        pieces = zip(self._link.placements, self._link.slices(self._mesh), strict=True)
-        shown = [each.similarity(size).of(points[piece].astype(np.float64)) for each, piece in pieces]
-        return np.concatenate(shown)
+        Where one straight motion is not, others lead over shapes in between, and along a single leg in shorter pieces.
+        """
+
+        def along(start: Key, end: Key, depth: int) -> list[Key]:
+            """Keys along one leg, the motions to all of them proved; none if that fails."""
+            if self._proved(start.points, end.points, free):
+                return [end]
+            if not depth:
+                return []
+            points = (0.5 * (start.points.astype(np.float64) + end.points.astype(np.float64))).astype(np.float32)
+            time = 0.5 * (start.time + end.time)
+            middle = Key(time, points, size=Similarity() if self._in_points else self._size(time, points))
+            first = along(start, middle, depth - 1)
+            second = first and along(middle, end, depth - 1)
+            return first + second if second else []
+
+        start, end = self._stored(self._key(a)), self._stored(self._key(b))
+        found = along(start, end, 5 if b - a == 1 else 0)  # pieces still apart in time for Blender
+        if found or b - a == 1:
+            yield from ((key, bool(found)) for key in found or [end])
+            return
+        # an iterate makes a better key than the inner end of a leg
+        inside = [each.place for each in self._passed if a < each.place < b] or range(a + 1, b)
+        middle = inside[len(inside) // 2]
+        yield from self._way(a, middle, free)
+        yield from self._way(middle, b, free)
 
     def result(self, free: Proof) -> Keys:
         """Return the last iterate alone; it counts as proved if the way there and its rounding were."""
-        last = self._stored(key := self._key(-1))
-        assert self.last is not None, "a relaxation yields at least its start"
-        exact = self._link.to_stored(self._mesh, self._marked(self.last.curve.vertices, -1))
-        exact = self._shown(exact, key.size) if self._in_points else exact
-        proved = self.last.certified and self._proved(exact, last.points, free)
-        return Keys((last,), int(not proved))
+        key, last = self._key(-1), self.last
+        assert last is not None, "a relaxation yields at least its start"
+        exact = self._link.to_stored(self._mesh, self._marked(last.curve.vertices, -1))
+        exact, stored = self._shown(exact, key.size) if self._in_points else exact, self._stored(key)
+        return Keys((stored,), int(not (last.certified and self._proved(exact, stored.points, free))))
 
     def course(self, keys: Keys) -> Course:
         """How far the relaxation has come at each of some keys.
@@ -295,30 +292,14 @@ class Recording:
         return float(self._course.distance[-1])
 
     @property
-    def _course(self) -> Course:
-        """How far the relaxation has come at each of the recorded frames."""
-        times = np.array([shape.time for shape in self._shapes])
-        reached = times[self._ends]
-        flow_time = np.interp(times, reached, np.cumsum(self._steps))
-        ways = np.array([0.0, *self._ways])
-        moves = np.repeat([self._shapes[k].kind is Kind.MOVE for k in self._ends], np.diff(self._ends, prepend=-1))
-        # by how much the logarithm of the energy above its least, and a bit (less is not visible), has fallen or risen:
-        # it rises on the way from one curve to another; that a finer mesh has more does not count
-        energies = np.array(self._energies)
-        least = int(energies.argmin())
-        falling = np.minimum.accumulate(energies[: least + 1])
-        rising = np.minimum.accumulate(energies[:least:-1])[::-1]
-        above = np.log(np.concatenate([falling, rising]) - energies[least] + 0.01 * max(abs(energies[least]), 1e-300))
-        changes = np.abs(np.diff(above))
-        changes[least : least + 1] = 0.0
-        fall = np.interp(times, reached, np.concatenate([[0.0], np.cumsum(changes)]))
-        return Course(times, np.cumsum(ways), flow_time, fall, np.cumsum(moves * ways))
+    def size(self) -> Similarity:
+        """How the last iterate is shown."""
+        return self._size(len(self._passed) - 1)
 
     @property
     def start(self) -> Curve:
         """The curve that the relaxation started from, with all points that keys have."""
-        assert self._start is not None, "a relaxation yields at least its start"
-        return Curve(self._marked(self._start.vertices, 0), self._mesh)
+        return Curve(self._marked(self._passed[0].curve.vertices, 0), self._mesh)
 
     @property
     def frame(self) -> Frame:
@@ -326,46 +307,62 @@ class Recording:
         key = self._key(-1)
         return self._shown(key.points, key.size).astype(np.float32)
 
-    def _key(self, position: int) -> Key:
-        shape, stage = self._shapes[position], self._stages[position]
-        points = self._marked(shape.points, stage).astype(np.float32)
-        return replace(shape, points=points, size=self._size(shape.time, points if shape.time % 1.0 else None))
+    @property
+    def _course(self) -> Course:
+        """How far the relaxation has come at each of the recorded shapes."""
+        times = np.array([shape.key.time for shape in self._shapes])
+        places = [each.place for each in self._passed]
+        flow_time = np.interp(times, times[places], np.cumsum([each.step for each in self._passed]))
+        ways = np.array([shape.way for shape in self._shapes])
+        moves = np.repeat([self._shapes[k].key.kind is Kind.MOVE for k in places], np.diff(places, prepend=-1))
+        # by how much the logarithm of the energy above its least, and a bit (less is not visible), has fallen or risen:
+        # it rises on the way from one curve to another; that a finer mesh has more does not count
+        energies = np.array([each.energy for each in self._passed])
+        least = int(energies.argmin())
+        falling = np.minimum.accumulate(energies[: least + 1])
+        rising = np.minimum.accumulate(energies[:least:-1])[::-1]
+        above = np.log(np.concatenate([falling, rising]) - energies[least] + 0.01 * max(abs(energies[least]), 1e-300))
+        changes = np.abs(np.diff(above))
+        changes[least : least + 1] = 0.0
+        fall = np.interp(times, times[places], np.concatenate([[0.0], np.cumsum(changes)]))
+        return Course(times, np.cumsum(ways), flow_time, fall, np.cumsum(moves * ways))
+
+    def _key(self, place: int) -> Key:
+        """A shape with all points that keys have."""
+        key, stage, _ = self._shapes[place]
+        points = self._marked(key.points, stage).astype(np.float32)
+        return replace(key, points=points, size=self._size(key.time, points if key.time % 1.0 else None))
 
     def _marked(self, points: Frame | FloatArray, stage: int) -> FloatArray:
         """All markers of a polygon on the mesh of a stage."""
-        mesh = self._meshes[stage]
-        pieces = zip(self._markers, mesh.slices, strict=True)
+        pieces = zip(self._markers, self._meshes[stage].slices, strict=True)
         return np.concatenate([each.on(points[piece].astype(np.float64), stage) for each, piece in pieces])
 
-    def _way(self, a: int, b: int, free: Proof) -> Iterator[tuple[Key, bool]]:
-        """Yield the keys after position ``a`` up to ``b``, each with whether the motion to it was proved."""
-        start, end = self._stored(self._key(a)), self._stored(self._key(b))
-        if self._proved(start.points, end.points, free):
-            yield end, True
-        elif b - a == 1:
-            halves = self._halves(start, end, free, 5)  # still apart in time for Blender
-            yield from ((key, True) for key in halves) if halves else ((end, False),)
-        else:
-            # An iterate makes a better key than the inner end of a leg.
-            inside = [k for k in self._ends if a < k < b] or range(a + 1, b)
-            middle = inside[len(inside) // 2]
-            yield from self._way(a, middle, free)
-            yield from self._way(middle, b, free)
+    def _size(self, time: float, points: Frame | None = None) -> Similarity:
+        """How an iterate is shown, or stored points in between."""
+        if self._measure is Measure.LENGTH:
+            return self._first_size
+        number = int(np.ceil(time))
+        if (like := self._passed[number].like) is not None:
+            time, number, points = like, like, None
+        natural = [self._measure.of(self._passed[k].curve) for k in self.natural]
+        wanted = self._first_size.factor * np.exp(np.interp(time, self.natural, np.log(natural)))
+        curve = (
+            self._passed[number].curve if points is None else Curve(self._link.to_world(self._mesh, points), self._mesh)
+        )
+        return Similarity.giving(self._measure, float(wanted), curve)
 
-    def _halves(self, start: Key, end: Key, free: Proof, depth: int) -> list[Key]:
-        """Keys that lead along one leg in shorter pieces, each proved; empty if that fails."""
-        if depth == 0:
-            return []
-        middle = 0.5 * (start.points.astype(np.float64) + end.points.astype(np.float64))
-        time, points = 0.5 * (start.time + end.time), middle.astype(np.float32)
-        middle_key = Key(time, points, size=Similarity() if self._in_points else self._size(time, points))
-        keys: list[Key] = []
-        for a, b in ((start, middle_key), (middle_key, end)):
-            part = [b] if self._proved(a.points, b.points, free) else self._halves(a, b, free, depth - 1)
-            if not part:
-                return []
-            keys += part
-        return keys
+    def _shown(self, points: Frame | FloatArray, size: Similarity) -> FloatArray:
+        """Points as stored, (n, 3), in the size in which they are shown."""
+        pieces = zip(self._link.placements, self._link.slices(self._mesh), strict=True)
+        shown = [each.similarity(size).of(points[piece].astype(np.float64)) for each, piece in pieces]
+        return np.concatenate(shown)
+
+    def _stored(self, key: Key) -> Key:
+        """A key as it is stored: where nothing but points can be keyed, they are those shown."""
+        if not self._in_points or key.size.is_identity:
+            return key
+        return replace(key, points=self._shown(key.points, key.size).astype(np.float32), size=Similarity())
 
     def _proved(self, start: Frame | FloatArray, end: Frame, free: Proof) -> bool:
         """Whether the straight motion between stored points is free of contact."""
@@ -392,11 +389,6 @@ class Playing:
         return replace(self, timing=Timing(length=length, hold_start=before, hold_end=after, loop=self.loop))
 
 
-def spatial(vertices: FloatArray) -> FloatArray:
-    """Vertices of a curve in the plane or in space, shape (n, 3)."""
-    return np.pad(vertices, ((0, 0), (0, 3 - vertices.shape[1])))
-
-
 def check_dimension(curve: Curve) -> None:
     """Raise a MobiusFlowError if a curve is not in the plane or in space."""
     if curve.dimension > 3:
@@ -410,7 +402,7 @@ def recorded(iterates: Sequence[Iterate], measure: Measure = Measure.LENGTH) -> 
     """
     start = iterates[0].curve
     check_dimension(start)
-    origin = Origin.of(spatial(start.vertices))
+    origin = Origin.of(start)
     motion = Recording(origin.link(start.mesh), measure=measure, in_points=True)
     for iterate in iterates:
         motion.add(iterate)

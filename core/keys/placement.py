@@ -174,11 +174,14 @@ class Link:
         pieces = zip(self.placements, self.slices(mesh), strict=True)
         return np.concatenate([placement.to_local(points[s]) for placement, s in pieces])
 
+    def to_world(self, mesh: Mesh, stored: FloatArray | Frame) -> FloatArray:
+        """From each object's own coordinates to the world; shape (n, 3)."""
+        pieces = zip(self.placements, self.slices(mesh), strict=True)
+        return np.concatenate([placement.to_world(stored[s].astype(np.float64)) for placement, s in pieces])
+
     def to_common(self, mesh: Mesh, stored: FloatArray | Frame) -> FloatArray:
         """From each object's own coordinates to the common space; shape (n, 3)."""
-        points = stored.astype(np.float64)
-        pieces = zip(self._to_first, self.slices(mesh), strict=True)
-        return np.concatenate([placement.to_world(points[s]) for placement, s in pieces])
+        return Link(self._to_first, self.counts).to_world(mesh, stored)
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,14 +192,14 @@ class Origin:
     scale: float
 
     @classmethod
-    def of(cls, vertices: FloatArray) -> "Origin":
+    def of(cls, curve: Curve) -> "Origin":
         """The origin for a curve: neither moved nor scaled if it has everyday size and is near the origin."""
-        low, high = vertices.min(axis=0), vertices.max(axis=0)
-        size = float((high - low).max())
-        near = np.abs(0.5 * (low + high)).max() <= 8.0 * size  # further away 32 bits are few
+        size = float(np.ptp(curve.vertices, axis=0).max())
+        middle = np.zeros(3)
+        middle[: curve.dimension] = 0.5 * (curve.vertices.min(axis=0) + curve.vertices.max(axis=0))
         scale = 1.0 if 1e-3 <= size <= 1e3 else float(2.0 ** np.round(np.log2(size)))
-        location = np.zeros(3) if near and scale == 1.0 else (0.5 * (low + high)).astype(np.float32).astype(float)
-        return cls(location, scale)
+        near = np.abs(middle).max() <= 8.0 * size  # further away 32 bits are few
+        return cls(np.zeros(3) if near and scale == 1.0 else middle.astype(np.float32).astype(float), scale)
 
     def link(self, mesh: Mesh) -> Link:
         return Link((Placement(self.scale * np.eye(3), self.location),), (len(mesh.component_sizes),))
