@@ -3,7 +3,7 @@
 from ..io.trajectory import Iterate, Trajectory
 from .hand import Hand
 from .options import RelaxOptions
-from .outcome import Outcome, Status
-from .relax import Result, finish, minimize, relax
-from .run import Relaxation, WithOutcome
+from .outcome import Outcome, Result, Status
+from .relax import WithOutcome, finish, minimize, relax
+from .run import Relaxation
 from .words import TimeLeft

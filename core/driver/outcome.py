@@ -1,14 +1,19 @@
 """How a relaxation ends, what increased its energy on the way, and the sentences that say so."""
 
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from enum import Enum
+from functools import cached_property
 from itertools import pairwise
+from typing import Any
 
 from ..base.arguments import checked_fields
-from ..base.errors import Place
+from ..base.errors import Place, counted
 from ..base.messages import Message, joined
+from ..curve import Curve
+from ..curve.refine import halved
+from ..descent.task import Task, centred
 from ..energies.components import energy_scale
-from ..energies.hierarchy import SampledErrors
+from ..energies.hierarchy import SampledErrors, moebius_energy
 from ..io.trajectory import Iterate
 
 RAISED = "changes of mesh or shape raised the energy: {rises}"
@@ -98,6 +103,134 @@ def degenerate(error: Exception) -> Message:
 _KEPT = Message("the curve reached so far is kept")
 INTERRUPTED = Outcome(Status.INTERRUPTED, (Message("interrupted: {kept}", kept=_KEPT),))
 OUT_OF_MEMORY = stalled(Message("memory ran out")).adding(_KEPT)
+
+
+@checked_fields
+@dataclass(frozen=True)
+class Phase:
+    """The cost of a relaxation on one mesh, including the change to the next one; wall-clock seconds."""
+
+    vertices: int
+    iterations: int
+    seconds: float
+
+
+@checked_fields
+@dataclass(frozen=True, eq=False)
+class Result:
+    """How a relaxation ended, and where.
+
+    - ``outcome``: why it ended.
+    - ``last``: the last iterate.
+    - ``energies``: the objective at every iterate, the start first.
+    - ``fallback_steps``: iterates reached by the fallback method.
+    - ``seconds``: wall-clock time.
+    - ``method``: name of the requested method.
+    - ``task``: the task that was to be relaxed.
+    - ``phases``: the relaxation on each mesh, in order.
+    """
+
+    outcome: Outcome
+    last: Iterate
+    energies: tuple[float, ...]
+    fallback_steps: tuple[int, ...]
+    seconds: float
+    method: str
+    task: Task
+    phases: tuple[Phase, ...] = ()
+
+    def __repr__(self) -> str:
+        after = counted(self.iterations, "iteration")
+        proved = "certified" if self.certified else "not certified"
+        return f"<Result: {self.status.value} after {after}, objective {self.energies[-1]:.9g}, {proved}, {self.curve}>"
+
+    @property
+    def curve(self) -> Curve:
+        """The last curve, in the user's units."""
+        return self.last.curve
+
+    @property
+    def status(self) -> Status:
+        """Why it ended."""
+        return self.outcome.status
+
+    @property
+    def message(self) -> str:
+        """The same in a sentence."""
+        return self.outcome.message
+
+    @property
+    def certified(self) -> bool:
+        """Whether every motion from the (refined) start to the result was proved free of contact."""
+        return self.last.certified
+
+    @property
+    def iterations(self) -> int:
+        """The number of iterates after the start, without those of strand moves."""
+        moves = self.last.strand_moves
+        return len(self.energies) - 1 - (moves.iterates if moves else 0)
+
+    @property
+    def final_energy(self) -> float:
+        """The Möbius energy of the last curve, without the objective's other terms: as in ``mobius-flow energy``."""
+        return self._final_energy[0]
+
+    @property
+    def final_energy_error(self) -> float:
+        """A bound on its relative error, from a sample: 0 up to 30,000 vertices, where the energy is exact."""
+        return self._final_energy[1]
+
+    @cached_property
+    def _final_energy(self) -> tuple[float, float]:
+        return moebius_energy(centred(self.curve))
+
+    @cached_property
+    def mesh_error(self) -> float | None:
+        """About how much the final energy differs from that of the smooth curve through the vertices, in its units.
+
+        Halving all edges along splines removes three quarters of it.  None for open and for large curves.
+        """
+        # more vertices take more than a second
+        if not self.curve.mesh.all_closed or len(self.curve) > 3000:
+            return None
+        return abs(self.final_energy - moebius_energy(centred(halved(self.curve)))[0]) / 0.75
+
+    def show(self) -> Any:
+        """The result as a figure that can be turned, with the objective beside it; notebooks display it.
+
+        Raises MobiusFlowError if Plotly is not installed, CurveError if the curve is not in the plane or in space.
+        """
+        from ..keys.view import figure, still  # pictures are made of results, not the other way round
+
+        return figure(still(self.curve, self.energies), title=f"Möbius energy {self.final_energy:.6g}")
+
+    def report(self) -> dict[str, object]:
+        """The result as the plain values that ``--report`` writes."""
+        errors = self.outcome.sampled_errors
+        return {
+            "status": self.status.value,
+            "message": self.message,
+            "iterations": self.iterations,
+            "seconds": self.seconds,
+            "phases": [asdict(phase) for phase in self.phases],
+            "energy": list(self.energies),
+            "final_energy": self.final_energy,
+            "final_energy_error": self.final_energy_error,
+            "vertices": len(self.curve),
+            "components": len(self.curve.mesh.component_sizes),
+            "pins": list(self.last.pins),
+            "symmetry": self.last.symmetry or None,
+            "obstacles": len(self.task.obstacles),
+            "grown": self.last.grown,
+            "max_edge_length_error": self.last.edge_length_error,
+            "certified": self.certified,
+            "method": self.method,
+            "fallback_steps": list(self.fallback_steps),
+            "negative_eigenvalues": self.outcome.negative_eigenvalues,
+            "symmetric_negative_eigenvalues": self.outcome.symmetric_negative_eigenvalues,
+            "sampled_errors": None if errors is None else asdict(errors),
+            "strand_moves": self.last.strand_moves and self.last.strand_moves.report(),
+        }
 
 
 class Rises:

@@ -1,159 +1,56 @@
 """The one driver: `relax` yields the iterates of a relaxation, `minimize` runs it to its end."""
 
 import time
-from collections.abc import Callable
-from dataclasses import asdict, dataclass, replace
-from functools import cached_property
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
-from ..base.arguments import checked, checked_fields
-from ..base.deadline import TimeLimit
-from ..base.errors import CurveError, OptionError, counted
+from ..base.arguments import checked
+from ..base.deadline import TimeIsUp, TimeLimit
+from ..base.errors import CurveError, OptionError
 from ..base.messages import COMPONENT, VERTEX_COUNT, Message
 from ..base.threads import BLAS
 from ..curve import Curve
-from ..curve.refine import halved
-from ..descent.task import Task, centred
-from ..energies.hierarchy import moebius_energy
+from ..descent.task import Task
 from ..io.trajectory import Iterate
 from . import moves
 from .hand import Hand
 from .options import RelaxOptions
-from .outcome import INTERRUPTED, OUT_OF_MEMORY, Outcome, Status
+from .outcome import INTERRUPTED, OUT_OF_MEMORY, Outcome, Phase, Result, Status
 from .prepare import Symmetrised, start_problem
-from .run import Relaxation, Run, WithOutcome, iterates, within
+from .run import Relaxation, Run, iterates
 from .solver import Solver
 
 
-@checked_fields
-@dataclass(frozen=True)
-class Phase:
-    """The cost of a relaxation on one mesh, including the change to the next one; wall-clock seconds."""
+class WithOutcome:
+    """The iterates of a relaxation, with the ``outcome`` that a ``for`` loop would lose: None until the end."""
 
-    vertices: int
-    iterations: int
-    seconds: float
+    @checked
+    def __init__(self, relaxation: Relaxation) -> None:
+        self._relaxation = relaxation
+        self.outcome: Outcome | None = None
+
+    def __iter__(self) -> Iterator[Iterate]:
+        self.outcome = yield from self._relaxation
 
 
-@checked_fields
-@dataclass(frozen=True, eq=False)
-class Result:
-    """How a relaxation ended, and where.
-
-    - ``outcome``: why it ended.
-    - ``last``: the last iterate.
-    - ``energies``: the objective at every iterate, the start first.
-    - ``fallback_steps``: iterates reached by the fallback method.
-    - ``seconds``: wall-clock time.
-    - ``method``: name of the requested method.
-    - ``task``: the task that was to be relaxed.
-    - ``phases``: the relaxation on each mesh, in order.
-    """
-
-    outcome: Outcome
-    last: Iterate
-    energies: tuple[float, ...]
-    fallback_steps: tuple[int, ...]
-    seconds: float
-    method: str
-    task: Task
-    phases: tuple[Phase, ...] = ()
-
-    def __repr__(self) -> str:
-        after = counted(self.iterations, "iteration")
-        proved = "certified" if self.certified else "not certified"
-        return f"<Result: {self.status.value} after {after}, objective {self.energies[-1]:.9g}, {proved}, {self.curve}>"
-
-    @property
-    def curve(self) -> Curve:
-        """The last curve, in the user's units."""
-        return self.last.curve
-
-    @property
-    def status(self) -> Status:
-        """Why it ended."""
-        return self.outcome.status
-
-    @property
-    def message(self) -> str:
-        """The same in a sentence."""
-        return self.outcome.message
-
-    @property
-    def certified(self) -> bool:
-        """Whether every motion from the (refined) start to the result was proved free of contact."""
-        return self.last.certified
-
-    @property
-    def iterations(self) -> int:
-        """The number of iterates after the start, without those of strand moves."""
-        moves = self.last.strand_moves
-        return len(self.energies) - 1 - (moves.iterates if moves else 0)
-
-    @property
-    def final_energy(self) -> float:
-        """The Möbius energy of the last curve, without the objective's other terms: as in ``mobius-flow energy``."""
-        return self._final_energy[0]
-
-    @property
-    def final_energy_error(self) -> float:
-        """A bound on its relative error, from a sample: 0 up to 30,000 vertices, where the energy is exact."""
-        return self._final_energy[1]
-
-    @cached_property
-    def _final_energy(self) -> tuple[float, float]:
-        return moebius_energy(centred(self.curve))
-
-    @cached_property
-    def mesh_error(self) -> float | None:
-        """About how much the final energy differs from that of the smooth curve through the vertices, in its units.
-
-        Halving all edges along splines removes three quarters of it.  None for open and for large curves.
-        """
-        # more vertices take more than a second
-        if not self.curve.mesh.all_closed or len(self.curve) > 3000:
-            return None
-        return abs(self.final_energy - moebius_energy(centred(halved(self.curve)))[0]) / 0.75
-
-    def show(self) -> Any:
-        """The result as a figure that can be turned, with the objective beside it; notebooks display it.
-
-        Raises MobiusFlowError if Plotly is not installed, CurveError if the curve is not in the plane or in space.
-        """
-        from ..keys.view import figure, still  # pictures are made of results, not the other way round
-
-        return figure(still(self.curve, self.energies), title=f"Möbius energy {self.final_energy:.6g}")
-
-    def report(self) -> dict[str, object]:
-        """The result as the plain values that ``--report`` writes."""
-        errors = self.outcome.sampled_errors
-        return {
-            "status": self.status.value,
-            "message": self.message,
-            "iterations": self.iterations,
-            "seconds": self.seconds,
-            "phases": [asdict(phase) for phase in self.phases],
-            "energy": list(self.energies),
-            "final_energy": self.final_energy,
-            "final_energy_error": self.final_energy_error,
-            "vertices": len(self.curve),
-            "components": len(self.curve.mesh.component_sizes),
-            "pins": list(self.last.pins),
-            "symmetry": self.last.symmetry or None,
-            "obstacles": len(self.task.obstacles),
-            "grown": self.last.grown,
-            "max_edge_length_error": self.last.edge_length_error,
-            "certified": self.certified,
-            "method": self.method,
-            "fallback_steps": list(self.fallback_steps),
-            "negative_eigenvalues": self.outcome.negative_eigenvalues,
-            "symmetric_negative_eigenvalues": self.outcome.symmetric_negative_eigenvalues,
-            "sampled_errors": None if errors is None else asdict(errors),
-            "strand_moves": self.last.strand_moves and self.last.strand_moves.report(),
-        }
+def within(limit: TimeLimit, relaxation: Relaxation) -> Relaxation:
+    """The same until the time is up, even in the middle of a step; time between iterates does not count."""
+    while True:
+        try:
+            with limit:
+                iterate = next(relaxation)
+        except StopIteration as end:
+            outcome: Outcome = end.value
+            return outcome
+        except TimeIsUp as up:
+            if up.limit is not limit:
+                raise
+            reached = Message("stopped at the time limit ({seconds:g} s)", seconds=limit.seconds)
+            return Outcome(Status.TIME_LIMIT, (reached,)).noting(up)
+        yield iterate
 
 
 @checked

@@ -6,8 +6,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.arguments import checked
-from ..base.deadline import TimeIsUp, TimeLimit
 from ..base.messages import Message
 from ..base.types import FloatArray
 from ..curve import Curve, Mesh, at_edges
@@ -18,7 +16,6 @@ from ..energies.components import energy_scale
 from ..energies.hierarchy import SampledErrors
 from ..energies.pull import Pull, share_of
 from ..io.trajectory import Iterate, StrandMoves
-from ..untangle import Stage
 from .hand import Hand
 from .options import RelaxOptions
 from .outcome import Outcome, Rises, Status, converged, degenerate, stalled
@@ -73,13 +70,13 @@ class Run:
         self.method = METHODS[options.method]
         self.sampled_errors: SampledErrors | None = None
         self.rises = Rises()
-        self.point = problem.at_curve(start).anchored
-        self._memory = SearchState()
+        self.memory = SearchState()
         self.charged = 0  # iterations of trials, less iterates of strand moves
         self.strand_moves: StrandMoves | None = None
-        self._energies: deque[float] = deque(maxlen=LOOKING_BACK + 1)  # of the last iterates
+        self.energies: deque[float] = deque(maxlen=LOOKING_BACK + 1)  # of the last iterates
+        self.point = problem.at_curve(start).anchored
         self._certified = problem.certifiable  # an embedded start, and so far no motion
-        self.iterate = self._described(0)
+        self.iterate = self.described(0)
 
     @property
     def problem(self) -> Problem:
@@ -91,13 +88,44 @@ class Run:
         return len(self.iterate.pins) == self.problem.mesh.size
 
     @property
+    def iterations(self) -> int:
+        """Iterations so far, including those of rejected trials."""
+        return self.iterate.index + self.charged
+
+    @property
     def iterations_left(self) -> int:
         return self.max_iterations - self.iterations
 
     @property
-    def iterations(self) -> int:
-        """Iterations so far, including those of rejected trials."""
-        return self.iterate.index + self.charged
+    def feasible(self) -> bool:
+        """Whether lengths are those prescribed, if any are."""
+        # max |log ℓ/ℓ⁰| that a converged curve may have
+        return not self.problem.geometry.prescribes or self.iterate.edge_length_error <= 1e-6
+
+    @property
+    def makes_headway(self) -> bool:
+        """Whether the last hundred iterations have lowered the energy by a hundredth; so do fewer, until shown."""
+        energies = self.energies
+        return len(energies) <= LOOKING_BACK or energies[-1] < (1.0 - HEADWAY) * energies[0]
+
+    def described(self, index: int, step_size: float = 0.0, path: tuple[FloatArray, ...] = ()) -> Iterate:
+        """The point as an iterate with a number."""
+        point, constraints, pull = self.point, self.problem.constraints, self.problem.objective.pull
+        return Iterate(
+            index=index,
+            curve=Curve(point.placed, point.problem.mesh),
+            energy=point.energy_as_placed - (0.0 if pull is None else pull.value(point.curve)),
+            gradient_norm=point.gradient_norm,
+            step_size=step_size,
+            path=path,
+            certified=self._certified,
+            edge_length_error=constraints.length_error(point.curve),
+            grown=constraints.grown,
+            method=self.method.name,
+            pins=tuple(constraints.pins.vertices.tolist()),
+            strand_moves=self.strand_moves,
+            symmetry=constraints.symmetry.name,
+        )
 
     def step(self) -> Step | NoStep:
         """The present method's next step, ending at a point of the present problem."""
@@ -108,7 +136,7 @@ class Run:
         if self.method.name != self.options.method:
             point = point.changing(metric=self.problem.solver.of_metric(self.method.metric))
         try:
-            step, self._memory = rule.step(point, self._memory)
+            step, self.memory = rule.step(point, self.memory)
             if isinstance(step, Step):
                 step = step.within(self.problem)
                 step.point.gradient_norm  # noqa: B018 (computed here, where its failure can be reported)
@@ -116,108 +144,74 @@ class Run:
             return NoStep(degenerate(error))
         return step
 
+    def go(
+        self, point: Point, path: tuple[FloatArray, ...] = (), certified: bool = True, step_size: float = 0.0
+    ) -> Iterate:
+        """The next iterate: at a point, after straight motions whose ends are given, or none onto another mesh."""
+        self.point = point.anchored
+        self._certified &= certified
+        self.iterate = self.described(self.iterate.index + 1, step_size, path)
+        return self.iterate
+
+    def take(self, step: Step) -> Iterate:
+        """The next iterate, at the end of a step of whatever kind."""
+        return self.go(step.point, tuple(leg.end.placed for leg in step.legs), step.certified, step.size)
+
     def accept(self, step: Step) -> Iterate:
+        """The next iterate, by a step of the method."""
         before = self.iterate
-        self._go(step)
-        self._energies.append(self.iterate.energy)
+        self.energies.append(self.take(step).energy)
         if self.problem.geometry.prescribes and self.problem.objective.pull is None:
             self.rises.step(before, self.iterate)
         return self.iterate
 
-    def pull(self, pull: Pull | None) -> None:
-        """Go on from the same curve with another pull of a hand, or none."""
-        held = self.problem.objective.pull is not None
-        self.start_from(self.point.pulled(pull))
-        self.look_for_headway()
-        if held != (pull is not None):
-            self._memory = SearchState()
+    def view(self, point: Point) -> None:
+        """Go on from another view of the same curve, of which the method remembers nothing."""
+        self.point, self.memory = point.anchored, SearchState(None, self.memory.last_step)
 
     def go_back(self, point: Point, iterate: Iterate) -> None:
         """Go on from an earlier point, and the iterate there, as if nothing after it had happened."""
         self.iterate, self._certified = iterate, iterate.certified
-        self.start_from(point)
+        self.view(point)
 
-    @property
-    def makes_headway(self) -> bool:
-        """Whether the last hundred iterations have lowered the energy by a hundredth; so do fewer, until shown."""
-        energies = self._energies
-        return len(energies) <= LOOKING_BACK or energies[-1] < (1.0 - HEADWAY) * energies[0]
-
-    def look_for_headway(self) -> None:
-        """Judge headway from here on."""
-        self._energies.clear()
-
-    def renew(self) -> None:
-        """Restart the count of iterations."""
-        self.charged = -self.iterate.index
-
-    def start_from(self, point: Point) -> None:
-        """Go on from another view of the same curve, of which the method remembers nothing."""
-        self.point, self._memory = point.anchored, SearchState(None, self._memory.last_step)
-
-    def hop(self, end: Point, path: tuple[FloatArray, ...], certified: bool) -> Iterate:
-        """Go in one iterate to a point on the same mesh, along a path found elsewhere."""
-        self.point, self.method, self._memory = end, METHODS[self.options.method], SearchState()
-        self._certified &= certified
-        self.iterate = self._described(self.iterate.index + 1, path=path)
-        return self.iterate
-
-    def moved(self, stages: Sequence[Stage], end: Point, strand_moves: StrandMoves) -> Iterator[Iterate]:
-        """Go along the proved stages of strand moves to their end, a point of the problem there; nothing is charged."""
-        meshes = [self.iterate.curve.mesh, *(stage.start.mesh for stage in stages)]
-        frames: list[tuple[Curve, tuple[FloatArray, ...]]] = []
-        for before, stage in zip(meshes, stages, strict=False):
-            frames += [(stage.start, ())] * (stage.start.mesh is not before)
-            frames += [(stage.end, stage.path)] * bool(stage.path)
-        self.point, pins = end, end.problem.constraints.pins
-        there = self._described(self.iterate.index)
-        for made, (curve, path) in enumerate(frames, strand_moves.iterates + 1):
-            self.charged -= 1
-            self.strand_moves = strand_moves._replace(iterates=made)  # so far, for the run may be interrupted here
-            held = tuple(pins.on(curve).vertices.tolist())
-            now = replace(there, curve=curve, path=path, pins=held, strand_moves=self.strand_moves)
-            self.iterate = replace(now, index=self.iterate.index + 1)
-            yield self.iterate
-
-    def restarted(self, point: Point) -> Iterate:
-        """Go on after strand moves from a point of the problem on another mesh, as at the start; the curve stays."""
-        self.point, self.method, self._memory = point.anchored, METHODS[self.options.method], SearchState()
-        self.charged -= 1
-        if self.strand_moves:
-            self.strand_moves = self.strand_moves._replace(iterates=self.strand_moves.iterates + 1, done=True)
-        self.iterate = self._described(self.iterate.index + 1)
-        return self.iterate
-
-    def allows(self, change: Change) -> bool:
-        """Whether the budget suffices for a change: each step is an iteration, and so is another mesh."""
-        return len(change.steps) + self._remeshes(change) <= self.iterations_left
+    def restart(self) -> None:
+        """Go on with the requested method, which remembers nothing."""
+        self.method, self.memory = METHODS[self.options.method], SearchState()
 
     def change(self, change: Change) -> Iterator[Iterate]:
         """Make a change; yield the iterates it leads to, one for each step and one for a new mesh."""
         yield from change.iterates
         for step in change.steps:
             before = self.iterate
-            self._go(step)
-            yield self.iterate
+            yield self.take(step)
             if not step.size:  # others have been found by a search, and lower the energy
                 self.rises.change(before, self.iterate)
         self.resolution = change.resolution or self.resolution
         if change.method is not None:
-            self.method, self._memory = change.method, SearchState()
+            self.method, self.memory = change.method, SearchState()
         if change.point is None:
             return
-        before, remeshed = self.iterate, self._remeshes(change)
-        point, pull = change.point, self.problem.objective.pull
-        if remeshed and pull is not None:  # by the hand at the same place, to the same target
+        before, point, pull = self.iterate, change.point, self.problem.objective.pull
+        if not self._remeshes(change):
+            self.view(point)
+            self.iterate = self.described(before.index)
+            return
+        if pull is not None:  # by the hand at the same place, to the same target
             old, new, component = self.problem.units, point.problem.units, int(self.problem.mesh.component[pull.vertex])
             place, target = (new.from_user(old.to_user(x)) for x in (self.point.vertices[pull.vertex], pull.target))
             pull = Pull.at(point.curve, component, share_of(point.curve, component, place), pull.strength)
             point = point.changing(objective=point.problem.objective.pulled(replace(pull, target=target)))
-        self.start_from(point)
-        self.iterate = self._described(self.iterate.index + remeshed)
-        if remeshed:
-            self.rises.change(before, self.iterate)
-            yield self.iterate
+        self.memory = SearchState(None, self.memory.last_step)
+        self.rises.change(before, self.go(point))
+        yield self.iterate
+
+    def allows(self, change: Change) -> bool:
+        """Whether the budget suffices for a change: each step is an iteration, and so is another mesh."""
+        return len(change.steps) + self._remeshes(change) <= self.iterations_left
+
+    def _remeshes(self, change: Change) -> bool:
+        """Whether a change is to another mesh, perhaps with as many vertices."""
+        return change.point is not None and change.point.problem.mesh is not self.problem.mesh
 
     def stopping(self, event: Event | Change | None = None) -> Outcome | None:
         """How the run ends here, or after an event that no move knows an answer to; None if it goes on.
@@ -248,40 +242,6 @@ class Run:
             return outcome
         uneven = "lengths are still up to {percent:.2g} % off target"
         return outcome.adding(uneven, percent=100 * self.iterate.edge_length_error)
-
-    @property
-    def feasible(self) -> bool:
-        """Whether lengths are those prescribed, if any are."""
-        # max |log ℓ/ℓ⁰| that a converged curve may have
-        return not self.problem.geometry.prescribes or self.iterate.edge_length_error <= 1e-6
-
-    def _go(self, step: Step) -> None:
-        self.point = step.point.anchored
-        self._certified &= step.certified
-        path = tuple(leg.end.placed for leg in step.legs)
-        self.iterate = self._described(self.iterate.index + 1, step.size, path)
-
-    def _remeshes(self, change: Change) -> bool:
-        """Whether a change is to another mesh, perhaps with as many vertices."""
-        return change.point is not None and change.point.problem.mesh is not self.problem.mesh
-
-    def _described(self, index: int, step_size: float = 0.0, path: tuple[FloatArray, ...] = ()) -> Iterate:
-        point, constraints, pull = self.point, self.problem.constraints, self.problem.objective.pull
-        return Iterate(
-            index=index,
-            curve=Curve(point.placed, point.problem.mesh),
-            energy=point.energy_as_placed - (0.0 if pull is None else pull.value(point.curve)),
-            gradient_norm=point.gradient_norm,
-            step_size=step_size,
-            path=path,
-            certified=self._certified,
-            edge_length_error=constraints.length_error(point.curve),
-            grown=constraints.grown,
-            method=self.method.name,
-            pins=tuple(constraints.pins.vertices.tolist()),
-            strand_moves=self.strand_moves,
-            symmetry=constraints.symmetry.name,
-        )
 
 
 def gradient_bound(options: RelaxOptions, mesh: Mesh, energy: float) -> float:
@@ -382,32 +342,3 @@ def iterates(run: Run, moves: Sequence[Callable[[Run], Move]]) -> Relaxation:
     for move in made:
         outcome = move.summarised(outcome)
     return outcome
-
-
-class WithOutcome:
-    """The iterates of a relaxation, with the ``outcome`` that a ``for`` loop would lose: None until the end."""
-
-    @checked
-    def __init__(self, relaxation: Relaxation) -> None:
-        self._relaxation = relaxation
-        self.outcome: Outcome | None = None
-
-    def __iter__(self) -> Iterator[Iterate]:
-        self.outcome = yield from self._relaxation
-
-
-def within(limit: TimeLimit, relaxation: Relaxation) -> Relaxation:
-    """The same until the time is up, even in the middle of a step; time between iterates does not count."""
-    while True:
-        try:
-            with limit:
-                iterate = next(relaxation)
-        except StopIteration as end:
-            outcome: Outcome = end.value
-            return outcome
-        except TimeIsUp as up:
-            if up.limit is not limit:
-                raise
-            reached = Message("stopped at the time limit ({seconds:g} s)", seconds=limit.seconds)
-            return Outcome(Status.TIME_LIMIT, (reached,)).noting(up)
-        yield iterate

@@ -15,7 +15,7 @@ from ..curve import Curve
 from ..curve.alignment import Alignment
 from ..descent.task import Task
 from ..driver import Outcome, Relaxation, RelaxOptions, Result, Status, WithOutcome, finish, relax
-from ..driver.run import within
+from ..driver.relax import within
 from ..io.trajectory import Iterate
 from .evidence import NoMotionError, compare
 from .meeting import change_mesh, images, meeting, rename, run_back

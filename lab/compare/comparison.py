@@ -17,8 +17,8 @@ from ...core.descent.task import Task
 from ...core.driver.moves import ON_A_FIXED_MESH
 from ...core.driver.options import RelaxOptions
 from ...core.driver.prepare import start_problem
-from ...core.driver.relax import begin
-from ...core.driver.run import WithOutcome, iterates, within
+from ...core.driver.relax import WithOutcome, begin, within
+from ...core.driver.run import iterates
 from ...core.driver.solver import Solver
 from ...core.solve.metrics import METRICS
 

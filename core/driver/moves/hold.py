@@ -7,7 +7,7 @@ import numpy as np
 from ...base.errors import MobiusFlowError
 from ...base.types import FloatArray
 from ...curve.pins import Pins
-from ...descent import NoStep, Point, Step
+from ...descent import NoStep, Point, SearchState, Step
 from ...descent.line_searches import on_target
 from ...descent.step import leg
 from ...energies.components import energy_scale
@@ -32,7 +32,7 @@ class Hold(Move):
         for each in said:
             each(self)
         if self._pull is not None:
-            self.run.renew()
+            self._recount()
         if self.run.problem.mesh is not mesh:
             return Change()  # the event was about another mesh
         if isinstance(event, NoStep | Outcome):
@@ -45,10 +45,6 @@ class Hold(Move):
         """The same: what was grabbed before can still be undone."""
         return self
 
-    @property
-    def _pull(self) -> Pull | None:
-        return self.run.problem.objective.pull
-
     def grab(self, component: int, share: float) -> None:
         run, curve = self.run, self.run.point.curve
         if not 0 <= component < len(curve.mesh.component_sizes):
@@ -57,7 +53,7 @@ class Hold(Move):
         self.release(pin=False)
         self._before.append((Point(run.problem, run.point.vertices, run.point.placed), run.iterate))
         # of the spring, in units of the energy scale over the program's unit of length squared
-        run.pull(Pull.at(curve, component, share, 5.0 * energy_scale(curve.mesh, run.point.energy)))
+        self._take_hold(Pull.at(curve, component, share, 5.0 * energy_scale(curve.mesh, run.point.energy)))
 
     def move(self, target: FloatArray) -> None:
         pull, units = self._pull, self.run.problem.units
@@ -69,26 +65,42 @@ class Hold(Move):
         way = units.from_user(target) - held
         size = float(np.abs(way).max())
         # beyond a hundred of the program's units only the target's direction counts
-        self.run.pull(replace(pull, target=held + way * min(1.0, 100.0 / max(size, 100.0))))
+        self._take_hold(replace(pull, target=held + way * min(1.0, 100.0 / max(size, 100.0))))
 
     def release(self, pin: bool) -> None:
         pull, run = self._pull, self.run
         if pull is None:
             return
-        run.pull(None)
-        run.renew()
+        self._take_hold(None)
+        self._recount()
         if pin:
             constraints = run.problem.constraints
             pins = Pins.of(run.iterate.curve, np.union1d(constraints.pins.vertices, [pull.vertex]))
             held = constraints.replacing(Barycenters.of(run.point.curve, pins, constraints.block(Barycenters).parts))
             # targets that are not reached yet might be too short: they give way to present lengths
             lengths = constraints.lengths if on_target(run.point) else run.point.curve.edge_lengths
-            run.start_from(run.point.changing(constraints=replace(held, pins=pins, lengths=lengths)))
+            run.view(run.point.changing(constraints=replace(held, pins=pins, lengths=lengths)))
 
     def undo(self) -> None:
         if self._before:
             self.run.go_back(*self._before.pop())
-            self.run.renew()
+            self._recount()
+
+    @property
+    def _pull(self) -> Pull | None:
+        return self.run.problem.objective.pull
+
+    def _take_hold(self, pull: Pull | None) -> None:
+        """Go on from the same curve with another pull, or none."""
+        run, held = self.run, self._pull is not None
+        run.view(run.point.pulled(pull))
+        run.energies.clear()
+        if held != (pull is not None):
+            run.memory = SearchState()
+
+    def _recount(self) -> None:
+        """Count iterations from here on."""
+        self.run.charged = -self.run.iterate.index
 
 
 @dataclass(eq=False)

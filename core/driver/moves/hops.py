@@ -192,15 +192,32 @@ class Hops(Move):
             motion = motions[self._tried % len(motions)]
             self._tried += 1
             try:
-                found = trial(run, motion, self._rng, below)
-            except np.linalg.LinAlgError:
+                change = self.hop(motion, below)
+            except np.linalg.LinAlgError:  # a curve on the way is too degenerate to be computed with
                 continue
-            lower = found.run.iterate.energy < below
-            run.charged += found.iterations - lower  # the hop itself is one iterate
-            if lower:
+            if change is not None:
                 self._taken += 1
-                return Change(iterates=(run.hop(found.run.point, found.path, found.certified),), anew=True)
+                return change
         return None
+
+    def hop(self, motion: RandomMotion, below: float) -> Change | None:
+        """Move, and relax on the same mesh until the objective is ``below`` a value; None if the trial ends before."""
+        run = self.run
+        steps = list(islice(motion(run.point, self._rng), run.iterations_left))
+        path = [leg.end.placed for step in steps for leg in step.legs]
+        start = run.iterate.curve.with_vertices(path[-1]) if path else run.iterate.curve
+        trial = Run(run.problem, start, run.options, run.iterations_left - len(steps))
+        for iterate in iterates(trial, ON_A_FIXED_MESH):
+            path += iterate.path
+            if iterate.energy < below:
+                break
+        run.charged += len(steps) + trial.iterate.index
+        if not trial.iterate.energy < below:
+            return None
+        run.charged -= 1  # the hop itself is an iterate
+        run.restart()
+        certified = trial.iterate.certified and all(step.certified for step in steps)
+        return Change(iterates=(run.go(trial.point, tuple(path), certified),), anew=True)
 
     def summarised(self, outcome: Outcome) -> Outcome:
         """The outcome with clauses on what hops achieved, or might achieve."""
@@ -214,34 +231,6 @@ class Hops(Move):
             return outcome
         more = "{unknot}: more hops may reach it" if run.options.hops else "{unknot}: hops may reach it"
         return outcome.adding(more, unknot=unknot)
-
-
-@dataclass(frozen=True, eq=False)
-class Trial:
-    """A motion out of a minimum, and the relaxation from where it ends."""
-
-    run: Run  # the relaxation at its end, on the mesh and in the problem of the minimum that was left
-    path: tuple[FloatArray, ...]  # ends of the straight legs of both, each (n, m), in the user's units
-    certified: bool  # whether all of them were proved
-    iterations: int  # steps of both
-
-
-def trial(run: Run, motion: RandomMotion, rng: np.random.Generator, below: float) -> Trial:
-    """Leave the point that a run has reached, and relax on the same mesh until the objective is ``below`` a value.
-
-    It ends earlier where the relaxation does, or where no iterations are left.  Raises LinAlgError where a curve on the
-    way is too degenerate to be computed with.
-    """
-    steps = list(islice(motion(run.point, rng), run.iterations_left))
-    path = [leg.end.placed for step in steps for leg in step.legs]
-    start = run.iterate.curve.with_vertices(path[-1]) if path else run.iterate.curve
-    relaxing = Run(run.problem, start, run.options, run.iterations_left - len(steps))
-    for iterate in iterates(relaxing, ON_A_FIXED_MESH):
-        path += iterate.path
-        if iterate.energy < below:
-            break
-    certified = relaxing.iterate.certified and all(step.certified for step in steps)
-    return Trial(relaxing, tuple(path), certified, len(steps) + relaxing.iterate.index)
 
 
 def is_circle(curve: Curve) -> bool:

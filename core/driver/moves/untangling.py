@@ -84,7 +84,7 @@ class Untangling(Move):
         run, curve = self.run, self.run.iterate.curve
         if len(curve) < self._given:
             return None  # the coarse start is over first
-        run.look_for_headway()
+        run.energies.clear()  # headway is judged from here on
         wanted = run.options.untangle != "never" and run.options.may_untangle and run.options.grow == 1.0
         held = run.frozen or run.problem.objective.pull is not None or not run.problem.geometry.prescribes
         if not wanted or held or not self._ends_are_pinned or run.iterations_left < self.room:
@@ -128,7 +128,11 @@ class Untangling(Move):
             check_refined(coarse, fine, run.problem.obstacles)
             pins = run.problem.constraints.pins.on(fine).vertices
             point = lengths.point(fine, target_lengths(fine, pins, run.problem.obstacles, run.options))
-        yield run.restarted(point)
+        run.restart()
+        run.charged -= 1
+        if run.strand_moves:
+            run.strand_moves = run.strand_moves._replace(iterates=run.strand_moves.iterates + 1, done=True)
+        yield run.go(point)
         run.rises.change(first, run.iterate)
         yield from self._restored()
 
@@ -167,7 +171,21 @@ class Untangling(Move):
             point, least, so_far = lengths.point(end), seen.crossings, run.strand_moves or earlier
             spent = so_far.seconds + time.perf_counter() - began
             now = so_far._replace(left=least, moves=earlier.moves + seen.moves, seconds=spent, done=False)
-            yield from run.moved(stages, point, now)
+            # along the stages, to a point of the problem at their end; what comes before is described as that end is
+            mesh, run.point = run.iterate.curve.mesh, point
+            there = run.described(run.iterate.index)
+            frames: list[tuple[Curve, tuple[FloatArray, ...]]] = []
+            for stage in stages:
+                frames += [(stage.start, ())] * (stage.start.mesh is not mesh)
+                frames += [(stage.end, stage.path)] * bool(stage.path)
+                mesh = stage.start.mesh
+            for made, (curve, path) in enumerate(frames, now.iterates + 1):
+                run.charged -= 1
+                run.strand_moves = now._replace(iterates=made)  # so far, for the run may be interrupted here
+                pinned = tuple(point.problem.constraints.pins.on(curve).vertices.tolist())
+                each = replace(there, curve=curve, path=path, pins=pinned, strand_moves=run.strand_moves)
+                run.iterate = replace(each, index=run.iterate.index + 1)
+                yield run.iterate
             stages, began = [], time.perf_counter()
 
     def _restored(self) -> Iterator[Iterate]:

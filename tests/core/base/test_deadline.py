@@ -8,7 +8,7 @@ from contextlib import suppress
 import pytest
 from mobius_flow.core import RelaxOptions, Status, WithOutcome, minimize, relax
 from mobius_flow.core.base.deadline import TimeIsUp, TimeLimit, check_time, signals_wait
-from mobius_flow.core.driver.run import within
+from mobius_flow.core.driver.relax import within
 from shapes import torus_trefoil
 
 TREFOIL = torus_trefoil(40)

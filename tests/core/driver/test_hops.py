@@ -17,13 +17,14 @@ from mobius_flow.core.driver.moves.hops import (
     IS_UNKNOT,
     MAY_BE_UNKNOT,
     MOTIONS,
+    Hops,
     RandomMotion,
     is_circle,
-    trial,
     unknot_message,
 )
 from mobius_flow.core.driver.prepare import start_problem
-from mobius_flow.core.driver.run import Run, WithOutcome, iterates
+from mobius_flow.core.driver.relax import WithOutcome
+from mobius_flow.core.driver.run import Run, iterates
 from mobius_flow.core.knots import double, knot, torus_knot
 from mobius_flow.core.proof import verify
 from shapes import hopf_link, regular_polygon, torus_trefoil
@@ -158,9 +159,10 @@ def test_a_way_is_certified_only_if_all_its_steps_are() -> None:
         yield replace(step, legs=tuple(leg._replace(proof=FreeMotion(1.0, limit=Limit.UNTESTED)) for leg in step.legs))
 
     options = replace(OPTIONS, max_iterations=2)
-    run = Run(start_problem(saddle(), options), saddle(), options)
     for motion, certified in ((MOTIONS[0], True), (unproved, False)):
-        assert trial(run, motion, np.random.default_rng(1), np.inf).certified == certified
+        run = Run(start_problem(saddle(), options), saddle(), options)
+        Hops(run).hop(motion, np.inf)
+        assert run.iterate.certified == certified
 
 
 @pytest.mark.parametrize("left", family([0, 1, 10], every=2))

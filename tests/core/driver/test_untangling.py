@@ -81,10 +81,10 @@ def test_headway_is_a_hundredth_of_the_energy_in_a_hundred_iterations() -> None:
     curve = Task.of(knot("0_1")).refined(None).curve
     run = Run(start_problem(Task.of(curve), RelaxOptions()), curve, RelaxOptions())
     for fall, headway in ((0.0, False), (0.009, False), (0.011, True)):
-        run.look_for_headway()
-        run._energies.extend(np.linspace(100.0, 100.0 * (1.0 - fall), 100))
+        run.energies.clear()
+        run.energies.extend(np.linspace(100.0, 100.0 * (1.0 - fall), 100))
         assert run.makes_headway, "not judged yet"
-        run._energies.append(100.0 * (1.0 - fall))
+        run.energies.append(100.0 * (1.0 - fall))
         assert run.makes_headway == headway
 
 
