@@ -13,13 +13,12 @@ from ...core.curve.tube import places_between
 from ...core.driver.words import named
 from ...core.keys.colours import COLOURINGS, COMPONENT, DISTANCE, ENERGY, vertex_values
 from ...core.keys.smooth_fit import FEWEST
-from ..curves import bevel, frame_values, outputs
-from ..curves.frame_values import CLOSED, RING
+from ..curves import bevel, outputs
 from ..curves.outputs import put_beside, smooth_objects
 from ..curves.recorded import Recorded, in_world
 from ..curves.splines import length, stretch
 from ..live.requirements import READABLE, selected_curves
-from ..pictures.materials import vertex_colours
+from ..pictures.materials import compute_values, vertex_colours
 from ..translations import rpt_
 from .adding import check_length
 from .button import Button
@@ -110,9 +109,7 @@ FBX does with NLA Strips and All Actions off, one frame later"""
             part = slice(first, first := first + each.mesh.size)
             outputs.write_values(tube.data, {name: array[part] for name, array in values.items()})
             if self.every_frame:
-                closed = np.array(each.mesh.closed, dtype=np.float64)[each.mesh.component]
-                outputs.write_values(tube.data, {RING: np.arange(each.mesh.size, dtype=np.float64), CLOSED: closed})
-                frame_values.add(tube)
+                compute_values(tube, each.mesh)
             if colours is not None:
                 outputs.write_colours(tube.data, colours[part], vertex_colours(outputs.COLOUR))
             made.append(tube)

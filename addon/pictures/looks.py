@@ -1,4 +1,4 @@
-"""Looks: the colours and settings of each; what it is made of is in assets/looks.blend, for artists to change."""
+"""Looks: the colours and settings of each; what it is made of is in assets/assets.blend, for artists to change."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ Tint = tuple[float, float, float]  # linear RGB
 
 @dataclass(frozen=True)
 class Look:
-    """What a look is called, its colours, and how it is rendered; tools/make_looks.py makes the rest."""
+    """What a look is called, its colours, and how it is rendered."""
 
     label: str  # and the name of what it has in the file
     description: str

@@ -1,4 +1,9 @@
-"""The materials of looks, which are in a bundled file, and one that shows the colours of a mesh's vertices."""
+"""The materials of looks, one that shows the colours of a mesh's vertices, and nodes that compute numbers of a curve.
+
+They are made of what is in assets/assets.blend; it is changed in Blender 4.2, whose files all later ones load.  In a
+tube's material the nodes that are set here have names: "tint", the colour of a component, or "gradient" in its place;
+"share", "lay", "fine" and "bump", what depends on a curve's length and thickness.
+"""
 
 from pathlib import Path
 from typing import Any
@@ -7,10 +12,12 @@ import bpy
 import numpy as np
 
 from ...core.base.types import FloatArray
+from ...core.curve import Mesh
 from ...core.keys.colours import flatly_lit
+from ..curves.outputs import write_values
 from .looks import DEFAULT, LOOKS
 
-_ASSETS = Path(__file__).parents[1] / "assets" / "looks.blend"  # made by tools/make_looks.py
+_ASSETS = Path(__file__).parents[1] / "assets" / "assets.blend"
 _PIXELS = 1024  # of what changes along a component
 
 
@@ -91,8 +98,22 @@ def vertex_colours(attribute: str) -> bpy.types.Material:
     return made
 
 
+def compute_values(tube: bpy.types.Object, curve: Mesh) -> None:
+    """Let Blender's nodes compute numbers of a tube's curve at any frame, also between keys and without the extension.
+
+    ``tube``: a mesh object with the attribute `COMPONENT`, whose rings, of as many vertices each, are those of a curve.
+    At the middles of the rings as shown they store the arc length from the start of a component; the curvature, the
+    angle by which the polygon turns over half the length of both edges, and 0 at open ends; and the distance to the
+    nearest other strand, as `core.keys.colours.strand_distances`, but to its edges.
+    """
+    name, closed = "Möbius Flow Attributes", np.array(curve.closed, dtype=np.float64)[curve.component]
+    write_values(tube.data, {"ring": np.arange(curve.size, dtype=np.float64), "closed": closed})
+    tree = bpy.data.node_groups.get(name) or bundled("node_groups", name)
+    tube.modifiers.new(name, "NODES").node_group = tree
+
+
 def bundled(kind: str, name: str) -> Any:
-    """A new copy of what assets/looks.blend has of a kind, such as "worlds", under a look's name.
+    """A new copy of what assets/assets.blend has of a kind, such as "worlds", under a name.
 
     Raises OSError if the file is missing.
     """

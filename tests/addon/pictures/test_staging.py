@@ -179,7 +179,7 @@ def test_workbench_has_its_light_from_where_the_key_light_is():
     staging.set_up(scene, [obj])
     bpy.context.view_layer.update()
     ground = stage.Stage.around(WorldMotion.of(scene, [obj]).points, np.array([0.0, 0.0, 1.0]))
-    wanted = np.array([-1.6, 0.4, 2.6]) @ ground.axes  # as tools/make_looks.py puts it
+    wanted = np.array([-1.6, 0.4, 2.6]) @ ground.axes  # as assets.blend has it
     wanted /= np.linalg.norm(wanted)
     assert np.dot(staging.key_direction(scene), wanted) > 0.98
 
