@@ -30,8 +30,8 @@ def around(angle):
     return Curve.from_components([still, moving])
 
 
-def followed(iterates, link=None):
-    motion = Recording(link or at_rest(1))
+def followed(iterates, link=None, **shown):
+    motion = Recording(link or at_rest(1), **shown)
     for each in iterates:
         motion.add(each)
     return motion

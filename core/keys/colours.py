@@ -23,11 +23,6 @@ COMPONENT, DISTANCE, ENERGY = "component", "strand_distance", "energy_density"  
 _BLOCK = 2_000_000  # pairs processed together
 
 
-def of_components(components: FloatArray) -> FloatArray:
-    """Colours of components by their numbers; (n,) to (n, 3)."""
-    return np.asarray(np.array(PALETTE)[components.astype(np.intp) % len(PALETTE)])
-
-
 def ramp(values: FloatArray) -> FloatArray:
     """Colours from violet for low values to yellow for high ones; (n,) to (n, 3)."""
     low, high = np.percentile(values, [2.0, 98.0])  # a few corners must not flatten the rest
@@ -40,7 +35,7 @@ def ramp(values: FloatArray) -> FloatArray:
 
 # the numbers that colour vertices, and how: near strands and high energies are bright
 COLOURINGS: dict[str, Callable[[FloatArray], FloatArray]] = {
-    COMPONENT: of_components,
+    COMPONENT: lambda numbers: np.asarray(np.array(PALETTE)[numbers.astype(np.intp) % len(PALETTE)]),
     DISTANCE: lambda distances: ramp(-distances),
     ENERGY: ramp,
 }
@@ -61,15 +56,11 @@ def flatly_lit(tint: FloatArray) -> FloatArray:
     return np.asarray(tint**0.65)  # as bright without a sky as in Cycles' light
 
 
-def luminance(colour: Colour) -> float:
-    """Relative luminance, from 0 for black to 1 for white (WCAG 2.1)."""
-    return float(linear(np.asarray(colour[:3], dtype=np.float64)) @ [0.2126, 0.7152, 0.0722])
-
-
 def contrast(one: Colour, other: Colour) -> float:
     """Contrast of two colours, from 1 to 21 (WCAG 2.1)."""
-    dark, light = sorted([luminance(one), luminance(other)])
-    return (light + 0.05) / (dark + 0.05)
+    # by their relative luminance, from 0 for black to 1 for white
+    dark, light = np.sort(linear(np.array([one[:3], other[:3]], dtype=np.float64)) @ [0.2126, 0.7152, 0.0722])
+    return float((light + 0.05) / (dark + 0.05))
 
 
 def legible(wanted: Colour, ground: Colour) -> Colour:

@@ -158,9 +158,9 @@ class Recording:
         else:  # another mesh, on which vertices that stay keep their stored coordinates
             kind, old, before = Kind.MESH, self._passed[-1].curve, self._shapes[-1].key.points
             for markers, was, now in zip(self._markers, old.mesh.slices, curve.mesh.slices, strict=True):
-                corners = [list(map(tuple, each.tolist())) for each in (old.vertices[was], curve.vertices[now])]
+                first, second = (list(map(tuple, x.tolist())) for x in (old.vertices[was], curve.vertices[now]))
                 try:
-                    here, there = kept_vertices(*corners, markers.closed)
+                    here, there = kept_vertices(first, second, markers.closed)
                 except RefusedError as error:
                     raise MobiusFlowError(f"keyframes cannot follow a change to another curve: {error}") from error
                 markers.change(here, there, now.stop - now.start)
@@ -217,8 +217,8 @@ class Recording:
                 # curves that overshoot in no coordinate
                 points = PchipInterpolator(frames[near], shapes)(frames[k] + shares * gaps[k]).astype(np.float32)
                 times = (ends[k].time + shares * (ends[k + 1].time - ends[k].time)).tolist()
-                added = (Key(t, x, size=self._size(t, x)) for t, x in zip(times, points, strict=True))
-                between[k] = list(map(self._stored, added))
+                pairs = zip(times, points, strict=True)
+                between[k] = [self._stored(Key(t, shape, size=self._size(t, shape))) for t, shape in pairs]
         start, ends = self._link.to_stored(self._mesh, self.start.vertices), list(map(self._stored, ends))
         unproved = int(not self._proved(start, ends[0].points, free))  # rounding may push something through another
         keys = ends[:1]

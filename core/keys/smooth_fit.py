@@ -109,39 +109,35 @@ def fitted(curve: Curve, points: int | None = None) -> SmoothFit:
     ``points``: number of control points of each, 4 or more; None takes as few as are close, at most half the vertices.
     """
     if points is not None:
-        return SmoothFit(curve, _control_points(curve, points))
-    radius, fits = free_radius(curve, thickest_radius(curve)), []
+        return _fit(curve, points)
+    radius, fits = free_radius(curve, thickest_radius(curve)), list[SmoothFit]()
     count, most = 8.0, max(8, max(curve.mesh.component_sizes) // 2)
-    while True:
-        fits.append(SmoothFit(curve, _control_points(curve, min(int(count), most))))
-        if count >= most or fits[-1].error <= 0.05 * radius:  # which the eye does not see
-            break
+    while not fits or (count < most * 2**0.25 and fits[-1].error > 0.05 * radius):  # less is not seen
+        fits.append(_fit(curve, min(int(count), most)))
         count *= 2**0.25
     return min(fits, key=lambda fit: fit.error)
 
 
-def _control_points(curve: Curve, count: int) -> tuple[FloatArray, ...]:
-    """Control points of splines nearest to the vertices of each component, and a little to points on edges.
+def _fit(curve: Curve, count: int) -> SmoothFit:
+    """The splines nearest to the vertices of each component, and a little to points on edges.
 
-    Without the latter those beside long edges would be arbitrary. The first and the last control point of a clamped
+    Without the latter control points beside long edges would be arbitrary. The first and the last one of a clamped
     spline are its ends, and those of the polygon.
     """
     even = np.arange(2 * count) / (2 * count)
     on_edges = np.split(_on_polygon(curve, [even] * len(curve.components)), len(curve.components))
-    found = []
-    for closed, t, own, inner in zip(
-        curve.mesh.closed, _shares_of_length(curve), curve.components, on_edges, strict=True
-    ):
+    found, shares = list[FloatArray](), _shares_of_length(curve)
+    for closed, t, own, inner in zip(curve.mesh.closed, shares, curve.components, on_edges, strict=True):
         a, b = _basis(t, count, closed), _basis(even, count, closed)
         matrix = sp.csc_matrix(a.T @ a + 1e-2 * (b.T @ b))
         right = a.T @ own + 1e-2 * (b.T @ inner)
         if closed:
             found.append(np.asarray(splu(matrix).solve(right)))
-            continue
-        ends = own[[0, -1]]
-        middle = splu(matrix[1:-1, 1:-1]).solve(right[1:-1] - matrix[1:-1][:, [0, -1]] @ ends)
-        found.append(np.concatenate([ends[:1], middle, ends[1:]]))
-    return tuple(found)
+        else:
+            ends = own[[0, -1]]
+            middle = splu(matrix[1:-1, 1:-1]).solve(right[1:-1] - matrix[1:-1][:, [0, -1]] @ ends)
+            found.append(np.concatenate([ends[:1], middle, ends[1:]]))
+    return SmoothFit(curve, tuple(found))
 
 
 def _shares_of_length(curve: Curve) -> list[FloatArray]:

@@ -15,11 +15,10 @@ from ..base.errors import CurveError, MobiusFlowError
 from ..collision.gap import thickness
 from ..curve import Curve
 from ..curve.tube import Tube, tubes
+from .colours import linear
 from .view import COLOURS, Motion
 
-SECONDS = 6.0  # that a motion takes
-_FLOAT, _INDEX = 5126, 5125  # as glTF numbers types, and what data are for
-_VERTICES, _FACES = 34962, 34963
+_VERTICES, _FACES = 34962, 34963  # what data are for, as glTF numbers it
 
 
 @checked
@@ -72,23 +71,20 @@ def animation(shown: Motion, radius: float | None = None) -> bytes:
                 for each in others
             ]
         meshes.append({"primitives": [made]})
-    materials = list[dict[str, Any]]()
-    for colour in COLOURS:
-        light = [*(((int(colour[k : k + 2], 16) / 255) ** 2.2) for k in (1, 3, 5)), 1]
-        look = {"baseColorFactor": light, "metallicFactor": 0, "roughnessFactor": 0.5}
-        materials.append({"pbrMetallicRoughness": look})
+    light = [[*linear(np.array(list(bytes.fromhex(colour[1:]))) / 255.0).tolist(), 1] for colour in COLOURS]
+    looks = [{"baseColorFactor": each, "metallicFactor": 0, "roughnessFactor": 0.5} for each in light]
     document: dict[str, Any] = {
         "asset": {"version": "2.0", "generator": "Möbius Flow"},
         "scene": 0,
         "scenes": [{"nodes": list(parts)}],
         "nodes": [{"mesh": k, "name": f"component {k + 1}", "rotation": upright} for k in parts],
         "meshes": meshes,
-        "materials": materials,
+        "materials": [{"pbrMetallicRoughness": look} for look in looks],
     }
     if len(shown.curves) > 1:
         # at its time each target has weight 1 and the others 0; at the first time all have
         keys = len(shown.curves)
-        times, weights = np.linspace(0.0, SECONDS, keys), np.eye(keys)[:, 1:]
+        times, weights = np.linspace(0.0, 6.0, keys), np.eye(keys)[:, 1:]  # in seconds
         sampler = {"input": data.add(times), "output": data.add(weights.ravel()), "interpolation": "LINEAR"}
         channels = [{"sampler": 0, "target": {"node": k, "path": "weights"}} for k in range(len(parts))]
         document["animations"] = [{"samplers": [sampler], "channels": channels}]
@@ -109,27 +105,20 @@ class _Data:
         columns = array.reshape(len(array), -1)
         view = {"buffer": 0, "byteOffset": len(self._bytes), "byteLength": array.nbytes}
         self._views.append(view | ({} if target is None else {"target": target}))
-        self._accessors.append(
-            {
-                "bufferView": len(self._views) - 1,
-                "componentType": _INDEX if target == _FACES else _FLOAT,
-                "count": len(columns),
-                "type": {1: "SCALAR", 3: "VEC3"}[columns.shape[1]],
-                "min": columns.min(axis=0).tolist(),
-                "max": columns.max(axis=0).tolist(),
-            }
-        )
+        bounds = {"min": columns.min(axis=0).tolist(), "max": columns.max(axis=0).tolist()}
+        kind = {"componentType": 5125 if target == _FACES else 5126, "type": {1: "SCALAR", 3: "VEC3"}[columns.shape[1]]}
+        self._accessors.append({"bufferView": len(self._views) - 1, "count": len(columns)} | kind | bounds)
         self._bytes += array.tobytes()
         return len(self._accessors) - 1
 
     def joined(self, document: dict[str, Any]) -> bytes:
         """The file: its header, the document and the numbers, each a chunk of a multiple of four bytes."""
-        whole = document | {
+        whole = {
             "buffers": [{"byteLength": len(self._bytes)}],
             "bufferViews": self._views,
             "accessors": self._accessors,
         }
-        text = json.dumps(whole).encode()
+        text = json.dumps(document | whole).encode()
         text += b" " * (-len(text) % 4)
         chunks = struct.pack("<I4s", len(text), b"JSON") + text
         chunks += struct.pack("<I4s", len(self._bytes), b"BIN\0") + self._bytes

@@ -1,12 +1,16 @@
-"""How thick a tube may be."""
+"""Tubes: as thick as there is room, smooth in films, and proved."""
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, Obstacle
+from mobius_flow.core import Curve, Mesh, Obstacle
+from mobius_flow.core.collision import is_free
 from mobius_flow.core.curve.distances import nearest_strands
-from mobius_flow.core.keys.tube import free_radius, radius_beside, strand_gap, thickest_radius
+from mobius_flow.core.keys.motion import Key, Keys
+from mobius_flow.core.keys.tube import free_radius, radius_beside, rounded, strand_gap, thickest_radius, tube_radii
 from mobius_flow.core.knots import smooth_knot
-from shapes import regular_polygon
+from shapes import lattice_knot, regular_polygon
+
+RING = regular_polygon(60).vertices
 
 
 @pytest.mark.parametrize("n", [150, 600])
@@ -21,36 +25,22 @@ def test_a_tube_is_thinner_where_the_curve_bends_on_its_scale(n):
     assert free_radius(large, thickest_radius(large)) == pytest.approx(3.0 * radius, rel=0.01)
 
 
-def test_corners_make_no_tube_thinner():
-    square = regular_polygon(4)
-    assert free_radius(square, thickest_radius(square)) == thickest_radius(square)
+@pytest.mark.parametrize("n", [4, 100])
+def test_where_there_is_room_the_tube_is_as_thick_as_looks_right_and_corners_make_none_thinner(n):
+    curve = regular_polygon(n)
+    assert free_radius(curve, thickest_radius(curve)) == thickest_radius(curve)
 
 
-def test_where_there_is_room_the_tube_is_as_thick_as_looks_right():
-    circle = regular_polygon(100)
-    thickest = thickest_radius(circle)
-    assert free_radius(circle, thickest) == thickest
-
-
-def floor(depth):
-    """A square below a circle around the origin."""
-    corners = np.array([(-9, -9, -depth), (9, -9, -depth), (9, 9, -depth), (-9, 9, -depth)])
-    return Obstacle(corners, [(0, 1, 2), (0, 2, 3)])
-
-
-@pytest.mark.parametrize("depth", [0.09, 0.03, 0.004])
-def test_obstacles_leave_as_much_room_as_there_is(depth):
-    radius = radius_beside(regular_polygon(100), 0.1, [floor(depth)])
-    assert 0.97 * 0.94 * depth <= radius <= 0.94 * depth
-
-
-def test_obstacles_far_away_and_none_leave_all_room():
-    assert radius_beside(regular_polygon(100), 0.1, [floor(0.2)]) == 0.1
-    assert radius_beside(regular_polygon(100), 0.1, []) == 0.1
-
-
-def test_a_tube_can_always_be_drawn():
-    assert radius_beside(regular_polygon(100), 0.1, [floor(1e-9)]) == pytest.approx(1e-4, rel=0.03)
+@pytest.mark.parametrize(
+    ("depth", "least", "most"),
+    [(0.2, 0.1, 0.1), (None, 0.1, 0.1), (1e-9, 0.97e-4, 1.03e-4)]
+    + [(depth, 0.97 * 0.94 * depth, 0.94 * depth) for depth in (0.09, 0.03, 0.004)],
+)
+def test_obstacles_leave_as_much_room_as_there_is_and_a_tube_can_always_be_drawn(depth, least, most):
+    """A square below a circle."""
+    corners = [(-9, -9), (9, -9), (9, 9), (-9, 9)]
+    floor = [Obstacle([(*each, -depth) for each in corners], [(0, 1, 2), (0, 2, 3)])] if depth else []
+    assert least <= radius_beside(regular_polygon(100), 0.1, floor) <= most
 
 
 @pytest.mark.parametrize("pieces", [2, 10, 100])
@@ -63,8 +53,7 @@ def test_strands_side_by_side_have_a_gap_however_long_their_edges_are(pieces):
     assert gap <= 0.1
 
 
-@pytest.mark.parametrize("name", ["3_1", "10_165", "L6a4"])
-@pytest.mark.parametrize("flat", [1.0, 0.3, 0.02])
+@pytest.mark.parametrize(("name", "flat"), [("3_1", 1.0), ("10_165", 0.3), ("L6a4", 0.02), ("10_165", 0.02)])
 def test_some_of_the_vertices_tell_gaps_as_all_do(name, flat):
     knot = smooth_knot(name, 3000)
     knot = knot.with_vertices(knot.vertices * [1.0, 1.0, flat])
@@ -79,3 +68,91 @@ def test_open_ends_count_however_few_vertices_do():
     crossing = np.stack([1.0 + 0 * x, x - 0.5, 0 * x + 0.01], axis=1)
     gap = strand_gap(Curve.from_components([strand, crossing], (False, False)), 0.4)
     assert gap == pytest.approx(0.01, rel=0.01)
+
+
+def sharpest(vertices):
+    """Largest angle by which a closed polygon turns at a vertex, in degrees."""
+    edges = np.roll(vertices, -1, axis=0) - vertices
+    edges /= np.linalg.norm(edges, axis=1, keepdims=True)
+    cosines = np.einsum("ij,ij->i", edges, np.roll(edges, -1, axis=0))
+    return np.degrees(np.arccos(cosines.clip(-1, 1))).max()
+
+
+def moving(vertices, keys, unproved=0):
+    shapes = (vertices * (1.0 + 0.1 * k) for k in range(keys))
+    return Keys(tuple(Key(float(k), shape.astype(np.float32)) for k, shape in enumerate(shapes)), unproved)
+
+
+@pytest.mark.parametrize("unproved", [0, 1])
+def test_corners_are_rounded_and_the_motion_is_proved_anew(unproved):
+    """What was not proved stays so."""
+    knot = lattice_knot("4_1")
+    _, keys = rounded(knot.mesh, moving(knot.vertices, 3, unproved), is_free)
+    assert keys.unproved == unproved
+    assert sharpest(knot.vertices) == pytest.approx(90)
+    assert max(sharpest(key.points.astype(float)) for key in keys.keys) < 60
+    assert [key.time for key in keys.keys] == [0.0, 1.0, 2.0]
+
+
+def test_where_a_round_motion_is_not_proved_keys_keep_their_corners():
+    knot = lattice_knot("4_1")
+    keys = moving(knot.vertices, 6)
+    _, exact = rounded(knot.mesh, keys, lambda *_: False)
+    corners = [key.points.tobytes() for key in exact.keys]
+    assert exact.unproved == 5
+    refused = np.ptp(knot.vertices, axis=0).max() * 1.45
+
+    def free(_mesh, _start, end):
+        return np.ptp(end, axis=0).max() < refused or end.astype(np.float32).tobytes() in corners
+
+    _, made = rounded(knot.mesh, keys, free)
+    assert made.certified
+    same = [key.points.tobytes() == corner for key, corner in zip(made.keys, corners, strict=True)]
+    assert same == 4 * [False] + 2 * [True]
+
+
+def test_a_fine_curve_and_an_open_one_keep_their_ends_and_their_places():
+    arc = regular_polygon(1000).vertices[:600]
+    made, keys = rounded(Mesh((600,), (False,)), moving(arc, 1), is_free)
+    assert made.closed == (False,)
+    assert np.linalg.norm(keys.keys[0].points[[0, -1]] - arc[[0, -1]], axis=1).max() < 0.05
+
+
+def radii_of(curves, frames):
+    return tube_radii(curves[0].mesh, [curve.vertices for curve in curves], np.array(frames, dtype=float))
+
+
+def test_tubes_are_thin_only_where_others_are_near():
+    """Two rings one above the other, one of them bent down to the other at one place."""
+    ring = regular_polygon(400).vertices
+    bent = ring + np.array([0.0, 0.0, 1.0])
+    bent[:, 2] -= 0.96 * np.exp(-((ring[:, 0] - ring[:, 0].max()) ** 2) / 0.02)
+    curve = Curve.from_components([ring, bent])
+    (radii,) = radii_of([curve], [0])
+    assert radii[ring[:, 0].argmax()] < 0.022
+    assert radii[ring[:, 0].argmin()] == pytest.approx(thickest_radius(curve))
+    assert np.abs(np.diff(radii[:400])).max() <= 0.0801 * curve.edge_lengths.max()
+
+
+def test_tubes_become_thin_before_and_thick_after_a_narrow_place_at_the_same_pace():
+    apart = (1.0, 1.0, 1.0, 0.06, 1.0, 1.0, 1.0)
+    curves = [Curve.from_components([RING, RING + np.array([0.0, 0.0, d])]) for d in apart]
+    radii = radii_of(curves, 2.0 * np.arange(7)).max(axis=1)
+    assert 0.0 < radii.min() == radii[3] < 0.031
+    np.testing.assert_allclose(radii, radii[::-1], rtol=1e-6)
+    steps = np.abs(np.diff(np.log(radii)))
+    assert steps.min() > 0
+    assert steps.max() <= np.log(1.0 + 2.0 * 0.15) + 1e-9
+
+
+def test_tubes_are_never_too_thin_to_see():
+    curve = Curve.from_components([RING, RING + np.array([0.0, 0.0, 1e-6])])
+    assert radii_of([curve], [0]).max() == pytest.approx(4e-3 * np.ptp(RING, axis=0).max(), rel=1e-5)
+
+
+def test_tubes_are_not_much_thicker_elsewhere_where_many_strands_are_close():
+    """A long ring, and a stack of rings inside that are close to each other."""
+    stack = [0.2 * RING + np.array([0.0, 0.0, 0.02 * k]) for k in range(4)]
+    curve = Curve.from_components([3.0 * RING, *stack])
+    (radii,) = radii_of([curve], [0])
+    assert radii[:60].max() <= 2.2 * np.quantile(radii[60:], 0.5) < thickest_radius(curve)
