@@ -41,7 +41,6 @@ class Barrier:
     left_out: bool = False
 
     name: ClassVar[str] = "barrier"
-    description: ClassVar[str] = "exact minus midpoint energy of near pairs of edges"
 
     def value(self, curve: Curve) -> float:
         """B; 0 when strands are further apart than edges are long."""

@@ -37,8 +37,6 @@ class ComponentShares:
 
     def derivative(self) -> FloatArray:
         """Its derivative with respect to the vertices; shape (n, m)."""
-        if self.curve.mesh.all_closed:  # as in most curves: not worth a dozen operations
-            return np.zeros_like(self.curve.vertices)
         return self._derivative(self.curve.vertices)
 
     def second_derivative(self, v: FloatArray) -> FloatArray:
@@ -55,12 +53,13 @@ class ComponentShares:
         return columns, self.second_derivative(units.reshape(n, m, -1)).reshape(n * m, -1)
 
     def _derivative(self, p: FloatArray) -> FloatArray:
-        """The derivative at vertices, shape (n, m), or (n, m, k) for several positions, that may be after complex
-        steps.
+        """The derivative at vertices, (n, m) or (n, m, k) for several positions, that may be after complex steps.
 
         By an edge vector e that of ½ log L is e/(2 ℓ L), by the chord d that of −½ log |d| is −d/(2 d²).
         """
-        mesh, edges = self.curve.mesh, self.curve.mesh.arc_edges
+        mesh, edges, total = self.curve.mesh, self.curve.mesh.arc_edges, np.zeros_like(p)
+        if mesh.all_closed:  # as in most curves: not worth a dozen operations
+            return total
         tails, heads, (first, last) = mesh.tails[edges], mesh.heads[edges], mesh.ends.T
         e, chord = p[heads] - p[tails], p[last] - p[first]
         lengths, squares = (np.einsum("ij...,ij...->i...", x, x) for x in (e, chord))
@@ -69,7 +68,6 @@ class ComponentShares:
         whole = np.zeros((len(mesh.ends), *lengths.shape[1:]), p.dtype)
         np.add.at(whole, arc, lengths)
         by_edge, by_chord = 0.5 * e / (lengths * whole[arc])[:, None], 0.5 * chord / squares[:, None]
-        total = np.zeros_like(p)
         total[tails] -= by_edge
         total[heads] += by_edge
         total[first] += by_chord

@@ -129,14 +129,6 @@ class Tile(NamedTuple):
     excluded: BoolArray  # pairs that do not count: edges with a common vertex, and those in another tile or place
 
 
-class RowTile(NamedTuple):
-    """The same for rows that do not follow each other, and all columns."""
-
-    rows: IntArray
-    columns: slice
-    excluded: BoolArray
-
-
 EdgePairIndices = tuple[IntArray, IntArray]
 """Unordered pairs of edges (i, j), each of shape (pairs,)."""
 
@@ -157,20 +149,6 @@ def pair_tiles(mesh: Mesh, without: EdgePairIndices | None = None, size: int = R
         excluded[row, column] = True
         yield Tile(slice(first, last), slice(first, n), excluded)
         first = last
-
-
-def row_tiles(mesh: Mesh, rows: IntArray, without: EdgePairIndices | None = None) -> Iterator[RowTile]:
-    """Cover the pairs of some edges with all others, each edge's in one row, except pairs that are left out."""
-    height = max(1, ROWS_TIMES_COLUMNS // mesh.edges)
-    for first in range(0, len(rows), height):
-        own = rows[first : first + height]
-        excluded = np.zeros((len(own), mesh.edges), dtype=np.bool_)
-        for neighbour in (own, mesh.next[own], mesh.previous[own]):
-            excluded[np.arange(len(own)), neighbour] = True
-        for i, j in () if without is None else (without, without[::-1]):
-            row, pair = np.nonzero(own[:, None] == i)
-            excluded[row, j[pair]] = True
-        yield RowTile(own, slice(None), excluded)
 
 
 class SteppedCurve(Curve):

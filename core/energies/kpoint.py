@@ -77,10 +77,45 @@ class KPointEnergy:
 
     def _sum_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
         """The sum over unordered pairs, and the energy's derivative, also after a complex step."""
-        sums, total = _Sums(curve, self.arc_derivative), 0.0
+        ell, tau = curve.edge_lengths, curve.edge_vectors / curve.edge_lengths[:, None]
+        # without its derivative ϱ is a constant, which no complex step changes
+        arcs = Arcs(curve if self.arc_derivative else curve.with_vertices(curve.vertices.real))
+        by_tail, by_head, by_tau = (np.zeros_like(tau) for _ in range(3))
+        by_length, by_arc, total = np.zeros_like(ell), ArcDerivative(arcs), 0.0
         for tile, x, y, area in self._pairs(curve):
-            total += sums.add(tile, x, y, area, self.density)
-        return total, 2.0 * sums.at_vertices() + self.density.constant * ComponentShares(curve).derivative()
+            rows, columns, pairs = tile.rows, tile.columns, PointPairs(x, y, arcs, tile)
+            weighted = area * self.density.value(pairs)
+            total += float(weighted.sum().real)
+            by_length[rows] += weighted.sum(axis=1) / ell[rows]
+            by_length[columns] += weighted.sum(axis=0) / ell[columns]
+            # with d = x − y, ∂F/∂d is 2 F_{r²} d + F_a τ_x + F_b τ_y, ∂F/∂τ_x is F_a d + F_c τ_y, likewise ∂F/∂τ_y
+            partials = self.density.derivative(pairs)
+            here, there, tau_x, tau_y = x.x[rows], y.x[columns], tau[rows], tau[columns]
+            force_x, force_y = _differences((2.0 * area) * partials.r2, here, there)  # Σ_J and Σ_I of ∂F/∂d
+            if partials.a is not None:
+                weights = area * partials.a
+                by_tau[rows] += _differences(weights, here, there)[0]
+                force_x += weights.sum(axis=1)[:, None] * tau_x
+                force_y += weights.T @ tau_x
+            if partials.b is not None:
+                weights = area * partials.b
+                by_tau[columns] += _differences(weights, here, there)[1]
+                force_x += weights @ tau_y
+                force_y += weights.sum(axis=0)[:, None] * tau_y
+            if partials.c is not None:
+                weights = area * partials.c
+                by_tau[rows] += weights @ tau_y
+                by_tau[columns] += weights.T @ tau_x
+            if partials.rho is not None and self.arc_derivative:
+                by_arc.add(tile, x.t, y.t, area * partials.rho)
+            for edges, t, force in ((rows, x.t, force_x), (columns, y.t, -force_y)):
+                by_tail[edges] += (1.0 - t) * force
+                by_head[edges] += t * force
+        # ∂τ/∂e = (1 − τ τᵀ)/ℓ
+        across = by_tau - np.einsum("ij,ij->i", by_tau, tau)[:, None] * tau
+        by_edge = (by_length + by_arc.by_length())[:, None] * tau + across / ell[:, None]
+        derivative = 2.0 * curve.mesh.scatter(by_tail - by_edge, by_head + by_edge)
+        return total, derivative + self.density.constant * ComponentShares(curve).derivative()
 
     def _energy(self, curve: Curve, total: float) -> float:
         """The energy from the sum over unordered pairs."""
@@ -97,60 +132,6 @@ class KPointEnergy:
             for x, omega_x in weighted:
                 for y, omega_y in weighted:
                     yield tile, x, y, area * (omega_x * omega_y)
-
-
-class _Sums:
-    """Derivatives of Σ ω_i ω_j ℓ_I ℓ_J F by tails, heads, unit tangents and lengths, over unordered pairs of edges.
-
-    Without those of ϱ, that is a constant, which no complex step changes.
-    """
-
-    def __init__(self, curve: Curve, arc_derivative: bool) -> None:
-        self._mesh, self._ell, self._arc_derivative = curve.mesh, curve.edge_lengths, arc_derivative
-        self._arcs = Arcs(curve if arc_derivative else curve.with_vertices(curve.vertices.real))
-        self._by_tail, self._by_head, self._by_tau = (np.zeros_like(curve.edge_vectors) for _ in range(3))
-        self._by_length, self._by_arc = np.zeros_like(curve.edge_lengths), ArcDerivative(self._arcs)
-        self._tau = curve.edge_vectors / curve.edge_lengths[:, None]
-
-    def add(self, tile: Tile, x: PointSet, y: PointSet, area: FloatArray, density: Density) -> float:
-        """Add pairs of points with weights ``area``, 0 for pairs that do not count; returns their part of the sum."""
-        pairs = PointPairs(x, y, self._arcs, tile)
-        weighted = area * density.value(pairs)
-        self._by_length[tile.rows] += weighted.sum(axis=1) / self._ell[tile.rows]
-        self._by_length[tile.columns] += weighted.sum(axis=0) / self._ell[tile.columns]
-        # with d = x − y, ∂F/∂d is 2 F_{r²} d + F_a τ_x + F_b τ_y, ∂F/∂τ_x is F_a d + F_c τ_y, likewise ∂F/∂τ_y
-        partials = density.derivative(pairs)
-        rows, columns = tile.rows, tile.columns
-        tau_x, tau_y = self._tau[rows], self._tau[columns]
-        force_x, force_y = _differences((2.0 * area) * partials.r2, x.x[rows], y.x[columns])  # Σ_J and Σ_I of ∂F/∂d
-        if partials.a is not None:
-            weights = area * partials.a
-            self._by_tau[rows] += _differences(weights, x.x[rows], y.x[columns])[0]
-            force_x += weights.sum(axis=1)[:, None] * tau_x
-            force_y += weights.T @ tau_x
-        if partials.b is not None:
-            weights = area * partials.b
-            self._by_tau[columns] += _differences(weights, x.x[rows], y.x[columns])[1]
-            force_x += weights @ tau_y
-            force_y += weights.sum(axis=0)[:, None] * tau_y
-        if partials.c is not None:
-            weights = area * partials.c
-            self._by_tau[rows] += weights @ tau_y
-            self._by_tau[columns] += weights.T @ tau_x
-        if partials.rho is not None and self._arc_derivative:
-            self._by_arc.add(tile, x.t, y.t, area * partials.rho)
-        for edges, t, force in ((rows, x.t, force_x), (columns, y.t, -force_y)):
-            self._by_tail[edges] += (1.0 - t) * force
-            self._by_head[edges] += t * force
-        return float(weighted.sum().real)
-
-    def at_vertices(self) -> FloatArray:
-        """The derivative with respect to the vertices, shape (n, m)."""
-        tau, by_length = self._tau, self._by_length + self._by_arc.by_length()
-        # ∂τ/∂e = (1 − τ τᵀ)/ℓ
-        across = self._by_tau - np.einsum("ij,ij->i", self._by_tau, tau)[:, None] * tau
-        by_edge = by_length[:, None] * tau + across / self._ell[:, None]
-        return self._mesh.scatter(self._by_tail - by_edge, self._by_head + by_edge)
 
 
 def _differences(weights: FloatArray, x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:

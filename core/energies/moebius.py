@@ -29,7 +29,7 @@ from ..base.arguments import checked_fields
 from ..base.types import FloatArray, IntArray
 from ..curve import Curve, Mesh
 from .components import ComponentShares
-from .edge_pairs import ROWS_TIMES_COLUMNS, EdgePairIndices, SteppedCurve, Tile, change, pair_tiles, row_tiles
+from .edge_pairs import ROWS_TIMES_COLUMNS, EdgePairIndices, SteppedCurve, change, pair_tiles
 from .moebius_pairs import Edges, Pairs, PartnerSums
 from .quadrature import MIDPOINT
 
@@ -57,42 +57,50 @@ class MoebiusEnergy:
         """Energy E of the curve; 4 for a regular polygon."""
         edges = Edges.of(curve)
         tiles = pair_tiles(curve.mesh, self.without)
-        return energy_of_pairs(curve, sum(Pairs.of(edges, tile).energy() for tile in tiles))
+        return energy_of_pairs(curve, sum(Pairs.of(edges, *tile).energy() for tile in tiles))
 
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
         """Energy and its derivative with respect to the vertices, shape (n, m)."""
         edges = Edges.of(curve)
-        total, sums = 0.0, PartnerSums.zeros(edges.vectors)
+        total, sums = 0.0, PartnerSums.zeros(edges)
         for tile in pair_tiles(curve.mesh, self.without):
-            pairs = Pairs.of(edges, tile)
+            pairs = Pairs.of(edges, *tile)
             total += pairs.energy()
-            sums.add(tile.rows, tile.columns, pairs.coefficients(), edges.vectors)
-        at_vertices = sums.derivatives(edges.vectors).at_vertices(curve.mesh, edges.tau)
-        derivative = 2.0 * at_vertices + CONSTANT * ComponentShares(curve).derivative()
-        return energy_of_pairs(curve, total), derivative
+            sums.add(tile.rows, tile.columns, pairs.coefficients(), edges)
+        derivative = 2.0 * sums.derivatives(edges).at_vertices(curve.mesh, edges.tau)
+        return energy_of_pairs(curve, total), derivative + CONSTANT * ComponentShares(curve).derivative()
 
     def row_energies(self, curve: Curve, rows: IntArray) -> FloatArray:
         """Σ_J W_IJ for some edges I, shape (rows,): over all edges these add up to E without the components' shares."""
-        edges = Edges.of(curve)
-        return np.concatenate(
-            [Pairs.of(edges, tile).row_energies() for tile in row_tiles(curve.mesh, rows, self.without)]
-        )
+        mesh, edges, found = curve.mesh, Edges.of(curve), []
+        height = max(1, ROWS_TIMES_COLUMNS // mesh.edges)
+        for first in range(0, len(rows), height):
+            own = rows[first : first + height]
+            excluded = np.zeros((len(own), mesh.edges), dtype=np.bool_)
+            for neighbour in (own, mesh.next[own], mesh.previous[own]):
+                excluded[np.arange(len(own)), neighbour] = True
+            for i, j in () if self.without is None else (self.without, self.without[::-1]):
+                row, pair = np.nonzero(own[:, None] == i)
+                excluded[row, j[pair]] = True
+            g, p, q, s = Pairs.of(edges, own, slice(None), excluded)
+            found.append(np.einsum("ij,ij->i", g, s) - 2.0 * np.einsum("ij,ij->i", p, q))
+        return np.concatenate(found)
+
+    def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
+        """D²E v for ``v`` of shape (n, m), by a complex step of the derivative; shape (n, m)."""
+        edges = Edges.of(SteppedCurve(curve, v))
+        sums = PartnerSums.zeros(edges)
+        for tile in pair_tiles(curve.mesh, self.without, ROWS_TIMES_COLUMNS // 2):
+            sums.add(tile.rows, tile.columns, Pairs.of(edges, *tile).coefficients(), edges)
+        at_vertices = sums.derivatives(edges).at_vertices(curve.mesh, edges.tau)
+        return 2.0 * change(at_vertices) + CONSTANT * ComponentShares(curve).second_derivative(v)
 
     def hessian(self, curve: Curve) -> FloatArray:
         """Second derivative D²E, symmetric, shape (n·m, n·m), in the order of ``vertices.ravel()``."""
-        matrix = hessian(curve, self.without)
+        matrix = _hessian_of_pairs(curve, self.without)
         columns, shares = ComponentShares(curve).hessian_columns()
         matrix[:, columns] += CONSTANT * shares
         return matrix
-
-    def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
-        """D²E v for ``v`` of shape (n, m), without forming the matrix; shape (n, m)."""
-        edges = Edges.of(SteppedCurve(curve, v))
-        sums = PartnerSums.zeros(edges.vectors)
-        for tile in pair_tiles(curve.mesh, self.without, ROWS_TIMES_COLUMNS // 2):
-            sums.add(tile.rows, tile.columns, Pairs.of(edges, tile).coefficients(), edges.vectors)
-        at_vertices = sums.derivatives(edges.vectors).at_vertices(curve.mesh, edges.tau)
-        return 2.0 * change(at_vertices) + CONSTANT * ComponentShares(curve).second_derivative(v)
 
 
 def energy_of_pairs(curve: Curve, pairs: float) -> float:
@@ -129,92 +137,36 @@ class OwnBlocks(NamedTuple):
         matrix[t, :, h, :] += other - odd
 
 
-class CouplingPlanes:
-    """Blocks that couple two edges I ≠ J, collected as one (n, n) plane for each two coordinates.
-
-    Pairs are given once; `symmetric_matrix` adds the transposed blocks.  In the planes the tail of edge I has the
-    number I, and vertices where arcs end come last, so that blocks of edges are blocks of the planes.
-    """
-
-    def __init__(self, curve: Curve) -> None:
-        n, m = curve.vertices.shape
-        self.mesh = curve.mesh
-        self.planes = np.zeros((m, m, n, n))
-        self._numbers = np.empty(n, dtype=np.intp)
-        self._numbers[np.concatenate([curve.mesh.tails, curve.mesh.ends[:, 1]])] = np.arange(n)
-        self._heads = self._numbers[curve.mesh.heads]
-
-    def add(self, k: int, j: int, tile: Tile, ee: FloatArray, ec: FloatArray, fc: FloatArray, cc: FloatArray) -> None:
-        """Add the entries for coordinate k of edge I (rows) and coordinate j of edge J (columns) of a tile.
-
-        For a function of e_I, e_J and Δ = (c_I − c_J)/2 they are, all of shape (rows, columns), the derivatives
-        ∂e_I ∂e_J, ∂e_I ∂Δ/2, ∂Δ/2 ∂e_J and ∂Δ/2 ∂Δ/2.  They are overwritten.
-        """
-        rows = tile.rows
-        even, odd = ee - cc, ec - fc
-        ee += cc
-        ec += fc
-        self._add_rows(self.planes[k, j], rows, tile, even + odd, ec - ee)
-        even -= odd
-        ee += ec
-        self._add_rows(self.planes[k, j], self._heads[rows], tile, np.negative(ee, out=ee), even)
-
-    def _add_rows(
-        self, plane: FloatArray, rows: slice | IntArray, tile: Tile, at_tails: FloatArray, at_heads: FloatArray
-    ) -> None:
-        """Add entries for the tails and for the heads of the tile's columns to rows of a plane."""
-        first = tile.columns.start
-        for last in self.mesh.edge_offsets[1:] - 1:
-            # the head of a component's last edge is not the tail of the next one
-            if last >= first:
-                plane[rows, self._heads[last]] += at_heads[:, last - first]
-                at_heads[:, last - first] = 0.0
-        at_tails[:, 1:] += at_heads[:, :-1]
-        plane[rows, tile.columns] += at_tails
-
-    def symmetric_matrix(self, own: OwnBlocks, factor: float) -> FloatArray:
-        """``factor`` times the sum of all blocks, with the transposed ones; shape (n·m, n·m)."""
-        m, _, n, _ = self.planes.shape
-        matrix = np.empty((n, m, n, m))
-        for k in range(m):
-            for j in range(m):
-                np.add(self.planes[k, j], self.planes[j, k].T, out=matrix[:, k, :, j])
-        matrix *= factor
-        if not self.mesh.all_closed:  # else this would be a copy
-            matrix = matrix[self._numbers][:, :, self._numbers]
-        own.add_to(matrix, self.mesh, factor)
-        return matrix.reshape(n * m, n * m)
-
-
-def hessian(curve: Curve, without: EdgePairIndices | None = None) -> FloatArray:
-    """D² of Σ W_IJ without some pairs, shape (n·m, n·m), in the order of ``vertices.ravel()``."""
-    edges = Edges.of(curve)
-    coupling = CouplingPlanes(curve)
-    own = OwnBlocks.zeros(*curve.edge_vectors.shape)
-    lengths = np.zeros(curve.mesh.edges)  # Σ_J s_IJ ℓ_J
-    for tile in pair_tiles(curve.mesh, without):
-        pairs = Pairs.of(edges, tile)
-        lengths[tile.rows] += pairs.s @ edges.vectors.ell[tile.columns]
-        lengths[tile.columns] += edges.vectors.ell[tile.rows] @ pairs.s
-        rows, columns = tile.rows, tile.columns
-        e, tau = _column(edges.vectors.e[rows]), _column(edges.tau[rows])
-        f, sigma = _row(edges.vectors.e[columns]), _row(edges.tau[columns])
-        g, p, q, s = pairs
-        n = _column(edges.vectors.m[rows]) - _row(edges.vectors.m[columns])
-        n *= s
-        # α, β and η, shapes (m, rows, columns), and a, shape (rows, columns)
-        ell_i, ell_j = edges.vectors.ell[rows, None], edges.vectors.ell[columns]
-        alpha = (4.0 * q) * n - s * (ell_j * tau + f)
-        beta = (4.0 * p) * n - s * (ell_i * sigma + e)
-        gs, pq = g * s, p * q
-        eta = (gs - 6.0 * pq) * n + (2.0 * s * q) * e + (2.0 * s * p) * f
+def _hessian_of_pairs(curve: Curve, without: EdgePairIndices | None) -> FloatArray:
+    """D² of 2 Σ W_IJ over unordered pairs, shape (n·m, n·m)."""
+    edges, mesh, (n, m) = Edges.of(curve), curve.mesh, curve.vertices.shape
+    own, lengths = OwnBlocks.zeros(mesh.edges, m), np.zeros(mesh.edges)
+    # What couples two edges is collected in one plane for each two coordinates.  There the tail of edge I has the
+    # number I, and vertices where arcs end come last, so that blocks of edges are blocks of planes.
+    planes, number = np.zeros((m, m, n, n)), np.empty(n, dtype=np.intp)
+    number[np.concatenate([mesh.tails, mesh.ends[:, 1]])] = np.arange(n)
+    head = number[mesh.heads]
+    for tile in pair_tiles(mesh, without):
+        rows, columns, first = tile.rows, tile.columns, tile.columns.start
+        g, p, q, s = Pairs.of(edges, *tile)
+        ell_i, ell_j = edges.ell[rows, None], edges.ell[columns]
+        lengths[rows] += s @ ell_j
+        lengths[columns] += edges.ell[rows] @ s
+        # vectors of the rows' edges have shape (m, rows, 1), those of the columns' (m, 1, columns)
+        e, tau, mid = (x[rows].T[:, :, None] for x in (edges.e, edges.tau, edges.m))
+        f, sigma, other_mid = (x[columns].T[:, None, :] for x in (edges.e, edges.tau, edges.m))
+        nu = mid - other_mid
+        nu *= s
+        gs, pq, sn, ps, qs, s2 = g * s, p * q, s * nu, p * s, q * s, 0.5 * s * s
+        alpha = (4.0 * q) * nu - s * (ell_j * tau + f)
+        beta = (4.0 * p) * nu - s * (ell_i * sigma + e)
+        eta = (gs - 6.0 * pq) * nu + (2.0 * qs) * e + (2.0 * ps) * f
         a = s * (2.0 * pq - 0.5 * gs)
-        sn, ps, qs, s2 = s * n, p * s, q * s, 0.5 * s * s
-        for k, j in product(range(len(n)), repeat=2):
-            ee = s * (tau[k] * sigma[j]) - 2.0 * n[k] * n[j]
-            ec = alpha[k] * n[j] - sn[k] * f[j]  # ∂e_I ∂Δ/2, coordinates k of e_I and j of Δ
-            fc = beta[j] * n[k] - sn[j] * e[k]  # ∂e_J ∂Δ/2, coordinates j of e_J and k of Δ
-            cc = eta[k] * n[j] + n[k] * eta[j] - s2 * (e[k] * f[j] + f[k] * e[j])
+        for k, j in product(range(m), repeat=2):
+            ee = s * (tau[k] * sigma[j]) - 2.0 * nu[k] * nu[j]  # ∂e_I ∂e_J, coordinates k of e_I and j of e_J
+            ec = alpha[k] * nu[j] - sn[k] * f[j]  # ∂e_I ∂Δ/2
+            fc = beta[j] * nu[k] - sn[j] * e[k]  # ∂Δ/2 ∂e_J
+            cc = eta[k] * nu[j] + nu[k] * eta[j] - s2 * (e[k] * f[j] + f[k] * e[j])  # ∂Δ/2 ∂Δ/2
             if k == j:
                 ee += s
                 ec -= qs
@@ -224,17 +176,28 @@ def hessian(curve: Curve, without: EdgePairIndices | None = None) -> FloatArray:
             own.ec[columns, j, k] -= fc.sum(axis=0)
             own.cc[rows, k, j] += cc.sum(axis=1)
             own.cc[columns, k, j] += cc.sum(axis=0)
-            coupling.add(k, j, tile, ee, ec, fc, cc)
-    normal = np.eye(curve.dimension) - edges.tau[:, :, None] * edges.tau[:, None, :]
-    own.ee[...] = (lengths / edges.vectors.ell)[:, None, None] * normal
-    return coupling.symmetric_matrix(own, 2.0)  # the energy counts ordered pairs
-
-
-def _column(vectors: FloatArray) -> FloatArray:
-    """Coordinates of the tile's rows, (m, rows, 1)."""
-    return vectors.T[:, :, None]
-
-
-def _row(vectors: FloatArray) -> FloatArray:
-    """Coordinates of the tile's columns, (m, 1, columns)."""
-    return vectors.T[:, None, :]
+            # by ends of edges, signs σ = 1 for heads and −1 for tails: σ_I σ_J ee − σ_I ec + σ_J fc − cc
+            even, odd = ee - cc, ec - fc
+            ee += cc
+            ec += fc
+            of_tails = rows, even + odd, ec - ee
+            even -= odd
+            ee += ec
+            for places, at_tails, at_heads in (of_tails, (head[rows], np.negative(ee, out=ee), even)):
+                # the heads of edges are the tails of the next ones, but for a component's last one
+                for last in mesh.edge_offsets[1:] - 1:
+                    if last >= first:
+                        planes[k, j, places, head[last]] += at_heads[:, last - first]
+                        at_heads[:, last - first] = 0.0
+                at_tails[:, 1:] += at_heads[:, :-1]
+                planes[k, j, places, columns] += at_tails
+    normal = np.eye(m) - edges.tau[:, :, None] * edges.tau[:, None, :]
+    own.ee[...] = (lengths / edges.ell)[:, None, None] * normal
+    matrix = np.empty((n, m, n, m))
+    for k, j in product(range(m), repeat=2):
+        np.add(planes[k, j], planes[j, k].T, out=matrix[:, k, :, j])
+    matrix *= 2.0  # the energy counts ordered pairs
+    if not mesh.all_closed:  # else this would be a copy
+        matrix = matrix[number][:, :, number]
+    own.add_to(matrix, mesh, 2.0)
+    return matrix.reshape(n * m, n * m)

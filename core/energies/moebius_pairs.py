@@ -5,44 +5,40 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial.distance import cdist
 
-from ..base.types import FloatArray
+from ..base.types import BoolArray, FloatArray, IntArray
 from ..curve import Curve, Mesh
-from .edge_pairs import RowTile, Tile, half_changes
+from .edge_pairs import half_changes
+
+Coefficients = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
+"""s, a, b and c of pairs: ∂W/∂e_I = s (ℓ_J τ_I + e_J) − 2 b Δ and ∂W/∂Δ = 2 (a Δ − b e_I − c e_J)."""
 
 
-class Vectors(NamedTuple):
-    """The vectors in which the derivative is linear: edges e with lengths ℓ, midpoints m from their mean with ones."""
+class Edges(NamedTuple):
+    """The edges of a curve; the derivative is linear in edges e, lengths ℓ and midpoints m."""
 
-    e_ell: FloatArray  # (edges, m + 1), like the other
-    m_one: FloatArray
+    e_ell: FloatArray  # e and ℓ; (edges, m + 1)
+    m_one: FloatArray  # midpoints, from their mean, and ones; (edges, m + 1)
+    tau: FloatArray  # unit tangents; (edges, m)
+    foot: FloatArray  # (−e, ⟨m, e⟩), (edges, m + 1): times (m_J, 1) it is ⟨m_I − m_J, e_I⟩
+
+    @classmethod
+    def of(cls, curve: Curve) -> "Edges":
+        # products of coordinates lose digits far from the origin, so the curve is moved to the origin
+        e, ell, m = curve.edge_vectors, curve.edge_lengths, curve.midpoints - curve.midpoints.mean(axis=0)
+        foot = np.column_stack([-e, np.einsum("ij,ij->i", m, e)])
+        return cls(np.column_stack([e, ell]), np.column_stack([m, np.ones(len(m))]), e / ell[:, None], foot)
 
     @property
     def e(self) -> FloatArray:
         return self.e_ell[:, :-1]
 
     @property
-    def m(self) -> FloatArray:
-        return self.m_one[:, :-1]
-
-    @property
     def ell(self) -> FloatArray:
         return self.e_ell[:, -1]
 
-
-class Edges(NamedTuple):
-    """The edges of a curve."""
-
-    vectors: Vectors
-    tau: FloatArray  # unit tangents, (edges, m)
-    foot: FloatArray  # (−e, ⟨m, e⟩), (edges, m + 1): times (m_J, 1) it is ⟨m_I − m_J, e_I⟩
-
-    @classmethod
-    def of(cls, curve: Curve) -> "Edges":
-        e, ell, m = curve.edge_vectors, curve.edge_lengths, curve.midpoints
-        # products of coordinates lose digits far from the origin, so the curve is moved to the origin
-        vectors = Vectors(np.column_stack([e, ell]), np.column_stack([m - m.mean(axis=0), np.ones(len(m))]))
-        foot = np.column_stack([-e, np.einsum("ij,ij->i", vectors.m, e)])
-        return cls(vectors, e / ell[:, None], foot)
+    @property
+    def m(self) -> FloatArray:
+        return self.m_one[:, :-1]
 
 
 class Pairs(NamedTuple):
@@ -54,31 +50,25 @@ class Pairs(NamedTuple):
     s: FloatArray  # 1/|Δ|²
 
     @classmethod
-    def of(cls, edges: Edges, tile: Tile | RowTile) -> "Pairs":
-        (e_ell, m_one), foot = edges.vectors, edges.foot
-        rows, columns = tile.rows, tile.columns
+    def of(cls, edges: Edges, rows: slice | IntArray, columns: slice, excluded: BoolArray) -> "Pairs":
         # distances are computed from differences: strands may be close
-        r2 = cdist(edges.vectors.m[rows].real, edges.vectors.m[columns].real, "sqeuclidean")
-        r2[tile.excluded] = np.inf
+        r2 = cdist(edges.m[rows].real, edges.m[columns].real, "sqeuclidean")
+        r2[excluded] = np.inf
         s = np.divide(1.0, r2, out=r2)
-        if np.iscomplexobj(m_one):
-            s = s - 2j * s * s * half_changes(edges.vectors.m[rows], edges.vectors.m[columns])
-        p = foot[rows] @ m_one[columns].T
-        q = m_one[rows] @ -foot[columns].T
+        if np.iscomplexobj(edges.m):
+            s = s - 2j * s * s * half_changes(edges.m[rows], edges.m[columns])
+        p = edges.foot[rows] @ edges.m_one[columns].T
+        q = edges.m_one[rows] @ -edges.foot[columns].T
         p *= s
         q *= s
-        return cls(e_ell[rows] @ e_ell[columns].T, p, q, s)
+        return cls(edges.e_ell[rows] @ edges.e_ell[columns].T, p, q, s)
 
     def energy(self) -> float:
         """Σ W_IJ over the tile, W_IJ = g s − 2 p q."""
         return float(np.vdot(self.g, self.s) - 2.0 * np.vdot(self.p, self.q))
 
-    def row_energies(self) -> FloatArray:
-        """Σ_J W_IJ for each row I; shape (rows,)."""
-        return np.asarray(np.einsum("ij,ij->i", self.g, self.s) - 2.0 * np.einsum("ij,ij->i", self.p, self.q))
-
-    def coefficients(self) -> "Coefficients":
-        """The derivative's coefficients, in place of all but s: fresh arrays would drive others out of the cache."""
+    def coefficients(self) -> Coefficients:
+        """a = 4 p q s − g s², b = q s and c = p s, in place of the others: fresh arrays would crowd the cache."""
         g, p, q, s = self
         a = p * q
         a *= 4.0
@@ -86,19 +76,7 @@ class Pairs(NamedTuple):
         a -= g
         for each in (a, p, q):
             each *= s
-        return Coefficients(s, a, q, p)
-
-
-class Coefficients(NamedTuple):
-    """Coefficients of a tile's derivative, each of shape (rows, columns).
-
-    ∂W/∂e_I = s (ℓ_J τ_I + e_J) − 2 b Δ,   ∂W/∂Δ = 2 (a Δ − b e_I − c e_J).
-    """
-
-    s: FloatArray
-    a: FloatArray  # 4 p q s − g s²
-    b: FloatArray  # q s
-    c: FloatArray  # p s
+        return s, a, q, p
 
 
 class PartnerSums(NamedTuple):
@@ -110,12 +88,12 @@ class PartnerSums(NamedTuple):
     s: FloatArray  # Σ s (e_J, ℓ_J), shape (edges, m + 1)
 
     @classmethod
-    def zeros(cls, vectors: Vectors) -> "PartnerSums":
-        return cls(*map(np.zeros_like, (vectors.m_one, vectors.m_one, vectors.e, vectors.e_ell)))
+    def zeros(cls, edges: Edges) -> "PartnerSums":
+        return cls(*map(np.zeros_like, (edges.m_one, edges.m_one, edges.e, edges.e_ell)))
 
-    def add(self, rows: slice, columns: slice, coefficients: Coefficients, vectors: Vectors) -> None:
+    def add(self, rows: slice, columns: slice, coefficients: Coefficients, edges: Edges) -> None:
         """Add the pairs of some rows and columns, seen from I and seen from J."""
-        (s, a, b, c), (e_ell, m_one), e = coefficients, vectors, vectors.e
+        (s, a, b, c), (e_ell, m_one), e = coefficients, edges[:2], edges.e
         self.a[rows] += a @ m_one[columns]
         self.b[rows] += b @ m_one[columns]
         self.c[rows] += c @ e[columns]
@@ -125,27 +103,23 @@ class PartnerSums(NamedTuple):
         self.c[columns] -= b.T @ e[rows]
         self.s[columns] += s.T @ e_ell[rows]
 
-    def derivatives(self, vectors: Vectors) -> "DerivativeSums":
+    def derivatives(self, edges: Edges) -> "EdgeDerivatives":
         """Σ_J a_IJ Δ = (Σ_J a_IJ) m_I − Σ_J a_IJ m_J, and so on."""
-        e, m = vectors.e, vectors.m
-        a, b = (each[:, -1:] * m - each[:, :-1] for each in (self.a, self.b))
-        return DerivativeSums(self.s[:, :-1] - 2.0 * b, 2.0 * (a - self.b[:, -1:] * e - self.c), self.s[:, -1])
+        a, b = (each[:, -1:] * edges.m - each[:, :-1] for each in (self.a, self.b))
+        by_midpoint = 2.0 * (a - self.b[:, -1:] * edges.e - self.c)
+        return EdgeDerivatives(self.s[:, :-1] - 2.0 * b, by_midpoint, self.s[:, -1])
 
 
-class DerivativeSums(NamedTuple):
+class EdgeDerivatives(NamedTuple):
     """Sums over the partners of each edge: ∂E/∂e without the terms along τ, ∂E/∂m, and ∂E/∂ℓ, which is along τ."""
 
     by_edge: FloatArray
     by_midpoint: FloatArray
     by_length: FloatArray
 
-    @classmethod
-    def zeros(cls, shape: tuple[int, ...]) -> "DerivativeSums":
-        return cls(np.zeros(shape), np.zeros(shape), np.zeros(shape[0]))
-
-    def row_energies(self, vectors: Vectors) -> FloatArray:
+    def row_energies(self, edges: Edges) -> FloatArray:
         """Σ_J W_IJ for each edge I, shape (edges,): it follows from the derivative, W_IJ being linear in (e_I, ℓ_I)."""
-        return np.asarray(np.einsum("ij,ij->i", self.by_edge, vectors.e) + self.by_length * vectors.ell)
+        return np.asarray(np.einsum("ij,ij->i", self.by_edge, edges.e) + self.by_length * edges.ell)
 
     def at_vertices(self, mesh: Mesh, tau: FloatArray) -> FloatArray:
         """The derivative with respect to the vertices, shape (n, m)."""

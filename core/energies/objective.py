@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple, TypeVar, cast
+from typing import NamedTuple, cast
 
 import numpy as np
 import scipy.sparse as sp
@@ -27,8 +27,6 @@ from .energy import (
 from .moebius import MoebiusEnergy
 from .pull import Pull
 from .repulsion import Repulsion
-
-_Term = TypeVar("_Term", bound=Term)
 
 
 class Weighted(NamedTuple):
@@ -62,7 +60,6 @@ class Objective:
     further: tuple[Weighted, ...] = ()
 
     name = "objective"
-    description = "moebius + barrier + repulsion of obstacles + weighted terms, what relax descends on"
 
     @classmethod
     def of(
@@ -110,12 +107,11 @@ class Objective:
 
     def frozen_at(self, curve: Curve) -> "Objective":
         """The objective for a search from a curve: approximations stay the same for everything near it."""
-        if not any(isinstance(term, Approximate) for term in self.terms):
+        energy, *others = (term.frozen_at(curve) if isinstance(term, Approximate) else term for term in self.terms)
+        if all(a is b for a, b in zip((energy, *others), self.terms, strict=True)):
             return self
-        energy = _frozen(self.energy, curve)
-        further = tuple(each._replace(term=_frozen(each.term, curve)) for each in self.further)
-        frozen = replace(self, energy=energy, further=further)
-        return self if all(a is b for a, b in zip(frozen.terms, self.terms, strict=True)) else frozen
+        further = tuple(each._replace(term=term) for each, term in zip(self.further, others, strict=True))
+        return replace(self, energy=cast(Energy, energy), further=further)
 
     def value(self, curve: Curve) -> float:
         """The objective at the curve."""
@@ -160,18 +156,12 @@ class Objective:
     def _summands(self, curve: Curve) -> tuple[Weighted, ...]:
         """The terms, energy first; energy that the barrier takes away is never added: rounding would grow like 1/g²."""
         energy, barrier = self.energy, self.barrier
-        if barrier is None:
-            return (Weighted(energy), *self.further)
-        if barrier.replaces_midpoint:
+        if barrier is not None and barrier.replaces_midpoint:
             energy = cast(WithMidpointPairs, energy).leaving_out(replaced_pairs(curve))
             barrier = replace(barrier, left_out=True)
-        return (Weighted(energy), Weighted(barrier), *self.further)
+        return (Weighted(energy), *(() if barrier is None else [Weighted(barrier)]), *self.further)
 
     def _check_hessian(self) -> None:
         lacking = self.without_hessian
         if lacking is not None:
             raise OptionError(f"{lacking.name!r} has no second derivative; choose another energy, term or method")
-
-
-def _frozen(term: _Term, curve: Curve) -> _Term:
-    return cast(_Term, term.frozen_at(curve)) if isinstance(term, Approximate) else term

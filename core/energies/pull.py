@@ -27,7 +27,6 @@ class Pull:
     strength: float  # k
 
     name = "hand"
-    description = "spring from a stretch of the curve to a point"
 
     @classmethod
     def at(cls, curve: Curve, component: int, share: float, strength: float) -> "Pull":

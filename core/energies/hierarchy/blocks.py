@@ -37,8 +37,29 @@ class BlockList:
     def of(cls, curve: Curve, theta: float, leaf: int) -> "BlockList":
         """The block list of a curve, for a separation parameter 0 < θ < 1 and a largest number of edges in a leaf."""
         tree = edge_clusters(curve, leaf)
-        blocks, near = _traverse(tree, *balls(tree, curve), theta)
-        return cls(curve.mesh, tree, *blocks, near)
+        center, radius = balls(tree, curve)
+        blocks, near = list[ClusterPairs](), list[ClusterPairs]()
+        first = second = np.zeros(1, dtype=np.intp)
+        while first.size:
+            admissible = _admissible(center, radius, first, second, theta)
+            blocks.append((first[admissible], second[admissible]))
+            first, second = first[~admissible], second[~admissible]
+            done = tree.is_leaf[first] & tree.is_leaf[second]
+            near.append((first[done], second[done]))
+            # children replace one of the two clusters, the larger one if it has any
+            first, second = first[~done], second[~done]
+            same = first == second
+            diagonal = tree.child[first[same]]
+            first, second = first[~same], second[~same]
+            swap = tree.is_leaf[first] | (~tree.is_leaf[second] & (radius[first] < radius[second]))
+            first, second = np.where(swap, second, first), np.where(swap, first, second)
+            child = tree.child[first]
+            first, second = (
+                np.concatenate([child, child + 1, diagonal, diagonal + 1, diagonal]),
+                np.concatenate([second, second, diagonal, diagonal + 1, diagonal + 1]),
+            )
+        first, second, *leaves = (np.concatenate(side) for each in (blocks, near) for side in zip(*each, strict=True))
+        return cls(curve.mesh, tree, first, second, (leaves[0], leaves[1]))
 
     def is_separated(self, curve: Curve, theta: float) -> bool:
         """Whether another curve has the same mesh, and all blocks are admissible there with such a parameter."""
@@ -55,25 +76,18 @@ class BlockList:
             count = size[first] * size[second]
             pair = np.repeat(np.arange(len(first)), count)
             row, column = np.divmod(ranges(np.zeros_like(count), count), size[second][pair])
-            i, j = (
-                self.tree.order[self.tree.start[first][pair] + row],
-                self.tree.order[self.tree.start[second][pair] + column],
-            )
+            i = self.tree.order[self.tree.start[first][pair] + row]
+            j = self.tree.order[self.tree.start[second][pair] + column]
             kept = self.mesh.disjoint(i, j) & ((first != second)[pair] | (i < j))
             codes.append(_code(i[kept], j[kept], self.mesh.edges))
         return np.divmod(np.sort(np.concatenate(codes)), self.mesh.edges)
 
     @property
-    def near_share(self) -> float:
-        """The share of near pairs, neighbours among them, in all pairs of edges; computed without listing them."""
-        first, second = ((self.tree.stop - self.tree.start)[side] for side in self.leaves)
-        count = float(np.where(self.leaves[0] == self.leaves[1], 0.5, 1.0) @ (first * second))
-        return count / (0.5 * self.mesh.edges**2)
-
-    @property
     def mostly_near(self) -> bool:
         """Whether all pairs are summed one by one, because that is faster than near ones from a list."""
-        return self.near_share > MOSTLY_NEAR
+        first, second = ((self.tree.stop - self.tree.start)[side] for side in self.leaves)
+        count = float(np.where(self.leaves[0] == self.leaves[1], 0.5, 1.0) @ (first * second))  # none is listed yet
+        return count > MOSTLY_NEAR * 0.5 * self.mesh.edges**2
 
     def near_pairs(self, without: EdgePairIndices | None = None) -> EdgePairIndices:
         """The near pairs except some that are left out; OptionError if one of these is not a near pair."""
@@ -99,33 +113,6 @@ class BlockList:
         return np.stack([start[self.first], stop[self.first], start[self.second], stop[self.second]])
 
 
-def _traverse(
-    tree: ClusterTree, center: FloatArray, radius: FloatArray, theta: float
-) -> tuple[ClusterPairs, ClusterPairs]:
-    """Admissible pairs of clusters, and the pairs of leaves that remain (a leaf and itself among them)."""
-    blocks, near = list[ClusterPairs](), list[ClusterPairs]()
-    first = second = np.zeros(1, dtype=np.intp)
-    while first.size:
-        admissible = _admissible(center, radius, first, second, theta)
-        blocks.append((first[admissible], second[admissible]))
-        first, second = first[~admissible], second[~admissible]
-        done = tree.is_leaf[first] & tree.is_leaf[second]
-        near.append((first[done], second[done]))
-        # children replace one of the two clusters, the larger one if it has any
-        first, second = first[~done], second[~done]
-        same = first == second
-        diagonal = tree.child[first[same]]
-        first, second = first[~same], second[~same]
-        swap = tree.is_leaf[first] | (~tree.is_leaf[second] & (radius[first] < radius[second]))
-        first, second = np.where(swap, second, first), np.where(swap, first, second)
-        child = tree.child[first]
-        first, second = (
-            np.concatenate([child, child + 1, diagonal, diagonal + 1, diagonal]),
-            np.concatenate([second, second, diagonal, diagonal + 1, diagonal + 1]),
-        )
-    return _joined(blocks), _joined(near)
-
-
 def _admissible(center: FloatArray, radius: FloatArray, first: IntArray, second: IntArray, theta: float) -> BoolArray:
     d = center[first] - center[second]
     bound = radius[first] + radius[second]
@@ -137,10 +124,6 @@ def _code(i: IntArray, j: IntArray, n: int) -> IntArray:
     return np.asarray(np.minimum(i, j) * n + np.maximum(i, j))
 
 
-def _joined(parts: list[ClusterPairs]) -> ClusterPairs:
-    return np.concatenate([first for first, _ in parts]), np.concatenate([second for _, second in parts])
-
-
 def edge_clusters(curve: Curve, leaf: int) -> ClusterTree:
     """The tree of a curve's edges whose leaves have at most ``leaf`` of them; leaf ≥ 1.
 
@@ -150,7 +133,17 @@ def edge_clusters(curve: Curve, leaf: int) -> ClusterTree:
     """
     order = component_order(curve.mesh, curve.vertices.T)
     ends = np.append(np.flatnonzero(np.diff(curve.mesh.edge_component[order])) + 1, curve.mesh.edges)
-    return ClusterTree.halved(order, leaf, lambda start, stop: _middle(start, stop, ends))
+
+    def cut(start: IntArray, stop: IntArray) -> IntArray:
+        """Between two components if ranges hold more than one, else in the middle."""
+        middle = (start + stop) // 2
+        after = np.searchsorted(ends, middle)
+        before = ends[np.maximum(after - 1, 0)]
+        nearer = (ends[after] >= stop) | (2 * middle < before + ends[after])
+        between = np.where((before > start) & nearer, before, ends[after])
+        return np.where((between > start) & (between < stop), between, middle)
+
+    return ClusterTree.halved(order, leaf, cut)
 
 
 def balls(tree: ClusterTree, curve: Curve) -> tuple[FloatArray, FloatArray]:
@@ -160,13 +153,3 @@ def balls(tree: ClusterTree, curve: Curve) -> tuple[FloatArray, FloatArray]:
     high = tree.reduced(np.maximum, np.maximum(*ends))
     diagonal = high - low
     return 0.5 * (low + high), 0.5 * np.sqrt(np.einsum("ij,ij->i", diagonal, diagonal))
-
-
-def _middle(start: IntArray, stop: IntArray, ends: IntArray) -> IntArray:
-    """Where to cut ranges: between two components if they hold more than one, else in the middle."""
-    middle = (start + stop) // 2
-    after = np.searchsorted(ends, middle)
-    before = ends[np.maximum(after - 1, 0)]
-    nearer = (ends[after] >= stop) | (2 * middle < before + ends[after])
-    cut = np.where((before > start) & nearer, before, ends[after])
-    return np.where((cut > start) & (cut < stop), cut, middle)

@@ -16,7 +16,7 @@ from ..components import ComponentShares
 from ..edge_pairs import EdgePairIndices
 from ..energy import Energy
 from ..moebius import CONSTANT, MoebiusEnergy, energy_of_pairs
-from ..moebius_pairs import DerivativeSums, Edges
+from ..moebius_pairs import EdgeDerivatives, Edges
 from ..quadrature import MIDPOINT
 from .blocks import BlockList
 from .fields import FarField, NearField
@@ -95,9 +95,8 @@ class HierarchicalMoebiusEnergy:
         if blocks.mostly_near:
             return self.exact.value_and_derivative(curve)
         unit, exponent = _unit_sized(curve)
-        near, far = self._fields(blocks, unit)
-        value, sums = _value_and_sums(near, far)
-        derivative = 2.0 * sums.at_vertices(curve.mesh, near.edges.tau) + CONSTANT * ComponentShares(unit).derivative()
+        value, sums, edges = self._value_and_sums(blocks, unit)
+        derivative = 2.0 * sums.at_vertices(curve.mesh, edges.tau) + CONSTANT * ComponentShares(unit).derivative()
         return energy_of_pairs(curve, value), np.ldexp(derivative, -exponent)
 
     def hessian(self, curve: Curve) -> FloatArray:
@@ -118,12 +117,20 @@ class HierarchicalMoebiusEnergy:
         blocks = self.block_list(curve)
         if blocks.mostly_near:
             return self.exact.row_energies(curve, np.arange(curve.mesh.edges))
-        near, far = self._fields(blocks, _unit_sized(curve)[0])
-        return _value_and_sums(near, far)[1].row_energies(near.edges.vectors)
+        _, sums, edges = self._value_and_sums(blocks, _unit_sized(curve)[0])
+        return sums.row_energies(edges)
 
     def _fields(self, blocks: BlockList, unit: Curve) -> tuple[NearField, FarField]:
         edges = Edges.of(unit)
-        return NearField(edges, blocks.near_pairs(self.without)), FarField(blocks, edges.vectors, self.order)
+        return NearField(edges, blocks.near_pairs(self.without)), FarField(blocks, edges, self.order)
+
+    def _value_and_sums(self, blocks: BlockList, unit: Curve) -> tuple[float, EdgeDerivatives, Edges]:
+        near, far = self._fields(blocks, unit)
+        value, sums = near.value_and_derivative()
+        more, further = far.value_and_derivative()
+        for part, other in zip(sums, further, strict=True):
+            part += other
+        return value + more, sums, near.edges
 
     def block_list(self, curve: Curve) -> BlockList:
         """The list in use at a curve: this energy's own, or the curve's."""
@@ -136,14 +143,6 @@ class HierarchicalMoebiusEnergy:
 def _block_list(curve: Curve, theta: float, leaf: int) -> BlockList:
     """The list of a curve; the last one is kept, for value and derivative alike."""
     return BlockList.of(curve, theta, leaf)
-
-
-def _value_and_sums(near: NearField, far: FarField) -> tuple[float, DerivativeSums]:
-    value, sums = near.value_and_derivative()
-    far_value, far_sums = far.value_and_derivative()
-    for part, far_part in zip(sums, far_sums, strict=True):
-        part += far_part
-    return value + far_value, sums
 
 
 def _unit_sized(curve: Curve) -> tuple[Curve, int]:

@@ -5,9 +5,7 @@ products of two moments applied to two kernels, both up to the same order, so th
 The derivative is exactly that of the value.
 """
 
-from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -15,141 +13,192 @@ import scipy.sparse as sp
 
 from ...base.types import FloatArray, IntArray
 from ..edge_pairs import EdgePairIndices
-from ..moebius_pairs import Coefficients, DerivativeSums, Edges, Pairs, PartnerSums, Vectors
+from ..moebius_pairs import EdgeDerivatives, Edges, Pairs, PartnerSums
 from .blocks import BlockList
-from .moments import Expansion, MomentTree, polynomial_rows
-from .polynomials import kernel_derivatives
+from .polynomials import kernel_derivatives, polynomials
 
-BLOCKS, PAIRS = 1024, 8192  # processed together, for the processor's cache
+CHUNK, PAIRS = 1024, 8192  # blocks, clusters or edges, and near pairs, processed together, for the processor's cache
 
 
-@dataclass(frozen=True, eq=False)
-class NearField:
+class NearField(NamedTuple):
     """Σ W_IJ over listed pairs."""
 
     edges: Edges  # the curve's edges
     pairs: EdgePairIndices  # pairs i, j, sorted by i
 
     def value(self) -> float:
-        return sum(self._scalars(part).energy() for part in self._parts())
+        return sum(scalars.energy() for _, scalars in self._parts())
 
-    def value_and_derivative(self) -> tuple[float, DerivativeSums]:
-        value, coefficients = 0.0, Coefficients(*(np.empty(len(self.pairs[0])) for _ in Coefficients._fields))
-        for part in self._parts():
-            scalars = self._scalars(part)
+    def value_and_derivative(self) -> tuple[float, EdgeDerivatives]:
+        value, n, coefficients = 0.0, len(self.edges.tau), [np.empty(len(self.pairs[0])) for _ in range(4)]
+        for part, scalars in self._parts():
             value += scalars.energy()
             for whole, values in zip(coefficients, scalars.coefficients(), strict=True):
                 whole[part] = values
-        sums = PartnerSums.zeros(self.edges.vectors)
-        sums.add(slice(None), slice(None), Coefficients(*map(self._matrix, coefficients)), self.edges.vectors)
-        return value, sums.derivatives(self.edges.vectors)
-
-    def _parts(self) -> Iterator[slice]:
-        return (slice(first, first + PAIRS) for first in range(0, len(self.pairs[0]), PAIRS))
-
-    def _scalars(self, part: slice) -> Pairs:
-        """The scalars of some pairs, each of shape (pairs,)."""
-        dimension = self.edges.tau.shape[1]
-        i, j = (np.take(self._columns, side[part], axis=1) for side in self.pairs)
-        (m, e_ell), (n, f_ell) = np.split(i, [dimension]), np.split(j, [dimension])
-        d = m - n
-        s = 1.0 / _inner(d, d)
-        return Pairs(_inner(e_ell, f_ell), _inner(d, e_ell[:-1]) * s, _inner(d, f_ell[:-1]) * s, s)
-
-    @cached_property
-    def _columns(self) -> FloatArray:
-        """Midpoint, edge vector and length of each edge, one below the other; shape (2m + 1, edges)."""
-        return np.ascontiguousarray(np.column_stack([self.edges.vectors.m, self.edges.vectors.e_ell]).T)
-
-    def _matrix(self, entries: FloatArray) -> sp.csr_array:
-        """Numbers of the pairs as a sparse matrix; shape (edges, edges)."""
-        n = len(self.edges.tau)
         row_ends = np.searchsorted(self.pairs[0], np.arange(n + 1))
-        return sp.csr_array((entries, self.pairs[1], row_ends), shape=(n, n))
+        s, a, b, c = (sp.csr_array((entries, self.pairs[1], row_ends), shape=(n, n)) for entries in coefficients)
+        sums = PartnerSums.zeros(self.edges)
+        sums.add(slice(None), slice(None), (s, a, b, c), self.edges)
+        return value, sums.derivatives(self.edges)
+
+    def _parts(self) -> Iterator[tuple[slice, Pairs]]:
+        """Some pairs at a time, and their scalars, each of shape (pairs,)."""
+        m = self.edges.tau.shape[1]
+        # midpoint, edge vector and length of each edge, one below the other; shape (2m + 1, edges)
+        columns = np.ascontiguousarray(np.column_stack([self.edges.m, self.edges.e_ell]).T)
+        for first in range(0, len(self.pairs[0]), PAIRS):
+            part = slice(first, first + PAIRS)
+            i, j = (np.take(columns, side[part], axis=1) for side in self.pairs)
+            d, e_ell, f_ell = i[:m] - j[:m], i[m:], j[m:]
+            s = 1.0 / _inner(d, d)
+            yield part, Pairs(_inner(e_ell, f_ell), _inner(d, e_ell[:-1]) * s, _inner(d, f_ell[:-1]) * s, s)
 
 
-class _Kernel(NamedTuple):
-    """One of the two kernels φ: its derivatives at some blocks (M2L), and the moments M, N of both clusters.
+class FarField:
+    """Σ W_IJ over all blocks of a list, unordered pairs, by expansions of order p about the centers of clusters.
 
-    Its part of the energy is Σ_αβ M_α N_β ∂^{α+β} φ, |α|, |β| ≥ ``lowest`` and |α + β| ≤ 2 ``lowest`` + p.
+    A cluster has two moments, one below the other in one array.  With u_I = m_I − center they are Σ_I ℓ_I exp⟨u_I, ξ⟩
+    up to degree p, for the kernel 1/|Δ|², and Σ_I ⟨e_I, ξ⟩ exp⟨u_I, ξ⟩ up to degree p + 1, for log|Δ|.  A kernel's part
+    of a block is Σ_αβ M_α N_β ∂^{α+β} φ, over |α|, |β| ≥ k and |α + β| ≤ 2k + p with k = 0 and k = 1.
+
+    The list may be that of a curve nearby; edges are of size 1, because high powers of lengths occur.
     """
 
-    expansion: Expansion
-    lowest: int
-    derivatives: FloatArray
-    first: FloatArray
-    second: FloatArray
-
-    def by_moments(self, other: FloatArray) -> FloatArray:
-        """Its derivatives with respect to one cluster's moments, from the other's; shape (monomials, k)."""
-        highest = self.lowest + self.expansion.order
-        totals = range(2 * self.lowest, self.lowest + highest + 1)
-        return self.expansion.table.contract(self.derivatives, other, range(self.lowest, highest + 1), totals)
-
-    def by_center(self) -> FloatArray:
-        """Its derivative with respect to the first center, the edges at rest; minus the second's; shape (m, k).
-
-        Only terms of the highest order remain: any other change of d is undone by that of the moments.
-        """
-        degrees = range(self.lowest + 1, self.lowest + self.expansion.order + 2)
-        totals = range(self.lowest + degrees[-1], self.lowest + degrees[-1] + 1)
-        raised = self.expansion.table.contract(self.derivatives, self.second, degrees, totals)
-        return self.expansion.table.contract(raised, self.first, range(1, 2), degrees)[1:]
-
-
-@dataclass(frozen=True, eq=False)
-class FarField:
-    """Σ W_IJ over all blocks of a list, unordered pairs."""
-
-    blocks: BlockList  # the list, made at this curve or at one nearby
-    vectors: Vectors  # the curve's edges; of size 1, because high powers of lengths occur
-    order: int  # p, the order of the expansions in distances from the centers
-
-    @cached_property
-    def _expansion(self) -> Expansion:
-        return Expansion.of(self.vectors.m.shape[1], self.order)
-
-    @cached_property
-    def _clusters(self) -> MomentTree:
-        return MomentTree(self.blocks.tree, self._expansion, self.vectors)
+    def __init__(self, blocks: BlockList, edges: Edges, order: int) -> None:
+        m = edges.tau.shape[1]
+        self._blocks, self._tree, self._edges, self._order = blocks, blocks.tree, edges, order
+        # of all degrees needed, including those of the kernels' derivatives
+        self._table = table = polynomials(m, order + 3)
+        a, b = table.size(order), table.size(order) + table.size(order + 1)
+        self._rows = slice(0, a), slice(a, b)  # of the two moments,
+        self._by_center = slice(b, b + m)  # and in arrays of derivatives by them also those by the center
+        # of the second cluster of a block relative to the first, since d becomes −d; shape (rows,)
+        signs = table.signs[:, 0]
+        self._signs = np.concatenate([signs[:a], -signs[: b - a], np.full(m, -1.0)])
+        self._counts = self._tree.stop - self._tree.start
+        self._centers = self._tree.reduced(np.add, edges.m[self._tree.order]) / self._counts[:, None]
 
     def value(self) -> float:
-        kernels = (kernel for _, _, *both in self._chunks() for kernel in both)
-        return sum(float(np.vdot(kernel.first, kernel.by_moments(kernel.second))) for kernel in kernels)
+        total = 0.0
+        for _, _, kernels, own, other in self._chunks():
+            for k, kernel in enumerate(kernels):
+                total += float(np.vdot(own[k], self._by_moments(k, kernel, other[k])))
+        return total
 
-    def value_and_derivative(self) -> tuple[float, DerivativeSums]:
-        value, by_first = 0.0, np.zeros((self.blocks.tree.size, self._expansion.by_center.stop))
-        by_second = np.zeros_like(by_first)
-        for first, second, square, log in self._chunks():
-            by_center = square.by_center() + log.by_center()
-            own = [kernel.by_moments(kernel.second) for kernel in (square, log)]
-            other = [kernel.by_moments(kernel.first) for kernel in (square, log)]
-            value += float(np.vdot(square.first, own[0]) + np.vdot(log.first, own[1]))
-            _add_rows(by_first, first, np.concatenate([*own, by_center]))
-            _add_rows(by_second, second, np.concatenate([*other, by_center]))
-        by_second *= self._expansion.signs
+    def value_and_derivative(self) -> tuple[float, EdgeDerivatives]:
+        value, by_first = 0.0, np.zeros((self._tree.size, self._by_center.stop))
+        by_second, contract = np.zeros_like(by_first), self._table.contract
+        for first, second, kernels, own, other in self._chunks():
+            by_own, by_other, by_center = [], [], np.zeros((len(self._edges.tau[0]), len(first)))
+            for k, kernel in enumerate(kernels):
+                by_own.append(self._by_moments(k, kernel, other[k]))
+                by_other.append(self._by_moments(k, kernel, own[k]))
+                value += float(np.vdot(own[k], by_own[k]))
+                # by the first center, the edges at rest, only terms of the highest order remain: any other change of d
+                # is undone by that of the moments
+                degrees, highest = range(k + 1, k + self._order + 2), 2 * k + self._order + 1
+                raised = contract(kernel, other[k], degrees, range(highest, highest + 1))
+                by_center += contract(raised, own[k], range(1, 2), degrees)[1:]
+            for total, clusters, parts in ((by_first, first, by_own), (by_second, second, by_other)):
+                # clusters, a few of which occur several times
+                order = np.argsort(clusters, kind="stable")
+                starts = np.flatnonzero(np.diff(clusters[order], prepend=-1))
+                values = np.take(np.concatenate([*parts, by_center]), order, axis=1).T
+                total[clusters[order[starts]]] += np.add.reduceat(values, starts)
+        by_second *= self._signs
         by_second += by_first
-        return value, self._clusters.derivative_sums(by_second)
+        return value, self._downward(by_second)
 
-    def _chunks(self) -> Iterator[tuple[IntArray, IntArray, _Kernel, _Kernel]]:
-        """The two clusters, and the kernels 1/|Δ|² and log|Δ|, of some blocks at a time."""
-        moments, centers, x = self._clusters.moments(), self._clusters.centers, self._expansion
-        signed = moments * x.signs[: x.edges.stop]
-        for start in range(0, len(self.blocks.first), BLOCKS):
-            first, second = (side[start : start + BLOCKS] for side in (self.blocks.first, self.blocks.second))
-            d = np.ascontiguousarray((centers[first] - centers[second]).T)
-            square, log = kernel_derivatives(x.table, d, self.order + 1)
-            own, other = polynomial_rows(moments, first), polynomial_rows(signed, second)
-            kernel = _Kernel(x, 0, square, own[x.lengths], other[x.lengths])
-            yield first, second, kernel, _Kernel(x, 1, log, own[x.edges], other[x.edges])
+    def _chunks(
+        self,
+    ) -> Iterator[tuple[IntArray, IntArray, tuple[FloatArray, FloatArray], list[FloatArray], list[FloatArray]]]:
+        """Some blocks' two clusters, both kernels' derivatives there, and both moments of both clusters (M2L)."""
+        moments = self._upward()
+        signed = moments * self._signs[: self._by_center.start]
+        for start in range(0, len(self._blocks.first), CHUNK):
+            first, second = (side[start : start + CHUNK] for side in (self._blocks.first, self._blocks.second))
+            d = np.ascontiguousarray((self._centers[first] - self._centers[second]).T)
+            own, other = _rows_of(moments, first), _rows_of(signed, second)
+            kernels = kernel_derivatives(self._table, d, self._order + 1)
+            yield first, second, kernels, [own[rows] for rows in self._rows], [other[rows] for rows in self._rows]
+
+    def _by_moments(self, k: int, kernel: FloatArray, other: FloatArray) -> FloatArray:
+        """A kernel's derivatives with respect to one cluster's moments, from the other's; shape (monomials, k)."""
+        degrees, totals = range(k, k + self._order + 1), range(2 * k, 2 * k + self._order + 1)
+        return self._table.contract(kernel, other, degrees, totals)
+
+    def _upward(self) -> FloatArray:
+        """The moments of all clusters, from the leaves up (P2M and M2M); shape (clusters, rows)."""
+        table, moments = self._table, np.zeros((self._tree.size, self._by_center.start))
+        for own, positions, leaf_of in self._leaves():
+            power = self._exponentials(self._edges.m[positions] - self._centers[leaf_of])
+            both = self._edges.ell[positions] * power, table.multiply_linear(self._edges.e[positions].T, power)
+            start = self._tree.start[own] - self._tree.start[own[0]]
+            moments[own] = np.add.reduceat(np.concatenate(both), start, axis=1).T
+        for parents, children in _links(self._tree.upward()):
+            shift, theirs = self._shifts(parents, children), _rows_of(moments, children)
+            moved = [table.multiply(theirs[rows], shift, self._order + k) for k, rows in enumerate(self._rows)]
+            moments[parents] += np.concatenate(moved).T
+        return moments
+
+    def _downward(self, local: FloatArray) -> EdgeDerivatives:
+        """Derivatives by edge vectors, midpoints and lengths, from the clusters' down (L2L and L2P).
+
+        ``local``, shape (clusters, rows), are those with respect to the moments at fixed centers and to the centers;
+        it is overwritten.
+        """
+        p, (of_lengths, of_edges), contract = self._order, self._rows, self._table.contract
+        local[:, self._by_center] /= self._counts[:, None]
+        for parents, children in _links(self._tree.downward()):
+            theirs, shift, moved = _rows_of(local, parents), self._shifts(parents, children), []
+            for k, rows in enumerate(self._rows):
+                degrees = range(k, p + k + 1)
+                moved.append(contract(theirs[rows], shift, degrees, degrees))
+            local[children] += np.concatenate([*moved, theirs[self._by_center]]).T
+        n, m = self._edges.tau.shape
+        sums = EdgeDerivatives(np.zeros((n, m)), np.zeros((n, m)), np.zeros(n))
+        for _, positions, leaf_of in self._leaves():
+            own, ell, e = _rows_of(local, leaf_of), self._edges.ell[positions], self._edges.e[positions]
+            power = self._exponentials(self._edges.m[positions] - self._centers[leaf_of])
+            by_length = contract(own[of_lengths], power, range(2), range(p + 1))
+            by_edge = contract(own[of_edges], power, range(1, 3), range(1, p + 2))
+            linear = np.concatenate([np.zeros((1, len(e))), e.T])
+            by_midpoint = ell * by_length[1:] + own[self._by_center]
+            by_midpoint += contract(by_edge, linear, range(1, 2), range(2, 3))[1:]
+            sums.by_edge[positions] = by_edge[1 : m + 1].T
+            sums.by_midpoint[positions] = by_midpoint.T
+            sums.by_length[positions] = by_length[0]
+        return sums
+
+    def _exponentials(self, h: FloatArray) -> FloatArray:
+        """exp⟨h, ξ⟩ up to degree p; shapes (k, m) -> (monomials, k)."""
+        return self._table.exponentials(h.T, self._order)
+
+    def _shifts(self, parents: IntArray, children: IntArray) -> FloatArray:
+        """exp⟨h, ξ⟩ for h from the parents' centers to the children's; shape (monomials, k)."""
+        return self._exponentials(self._centers[children] - self._centers[parents])
+
+    def _leaves(self) -> Iterator[tuple[IntArray, IntArray, IntArray]]:
+        """Some leaves at a time, their edges, and the leaf of each of these."""
+        leaves, tree = self._tree.leaves(), self._tree
+        step = max(1, CHUNK * len(leaves) // len(tree.order))
+        for first in range(0, len(leaves), step):
+            own = leaves[first : first + step]
+            yield own, tree.order[tree.start[own[0]] : tree.stop[own[-1]]], np.repeat(own, self._counts[own])
 
 
-def _add_rows(total: FloatArray, clusters: IntArray, values: FloatArray) -> None:
-    """Add values, shape (rows, k), to some clusters, a few of which occur several times; total (clusters, rows)."""
-    order = np.argsort(clusters, kind="stable")
-    ordered = clusters[order]
-    starts = np.flatnonzero(np.diff(ordered, prepend=-1))
-    total[ordered[starts]] += np.add.reduceat(np.take(values, order, axis=1).T, starts)
+def _links(levels: Iterable[tuple[IntArray, IntArray]]) -> Iterator[tuple[IntArray, IntArray]]:
+    """Parents with one child of each, level by level, some at a time."""
+    for inner, child in levels:
+        for first in range(0, len(inner), CHUNK):
+            parents, children = inner[first : first + CHUNK], child[first : first + CHUNK]
+            yield parents, children
+            yield parents, children + 1
+
+
+def _rows_of(array: FloatArray, clusters: IntArray) -> FloatArray:
+    """The entries for some clusters of an array of shape (clusters, rows), contiguous by rows; shape (rows, k)."""
+    return np.ascontiguousarray(np.take(array, clusters, axis=0).T)
 
 
 def _inner(x: FloatArray, y: FloatArray) -> FloatArray:

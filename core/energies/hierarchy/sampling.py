@@ -18,10 +18,6 @@ from ..moebius import CONSTANT, MoebiusEnergy, energy_of_pairs
 from .energy import HierarchicalMoebiusEnergy
 
 EXACT_UP_TO = 30_000  # vertices; all pairs of edges take some fifteen seconds there
-EDGES = 512  # sampled for the energy: its standard error is some 3e-7 at order 4, and they take half a step
-EDGES_ALONG = 128  # for each of the two curves
-ENERGY_SHARE = 1e-2  # of an accuracy, which the energy's relative error may have
-NORM_SHARE = 0.5  # of an accuracy, which the derivative's error may have in the projected gradient's norm
 
 
 @dataclass(frozen=True)
@@ -40,15 +36,15 @@ class Estimate:
 
     @property
     def bound(self) -> float:
-        """A bound of the error's modulus that holds with 95 % probability."""
-        return abs(self.mean) + 2.0 * self.standard_error  # standard errors on either side, with 95 % probability
+        """A bound of the error's modulus that holds with 95 % probability, two standard errors on either side."""
+        return abs(self.mean) + 2.0 * self.standard_error
 
     def relative(self, scale: float) -> "Estimate":
         return Estimate(self.mean / scale, self.standard_error / scale)
 
 
-def energy_error(energy: HierarchicalMoebiusEnergy, curve: Curve, count: int = EDGES) -> Estimate:
-    """The error of the energy, from a number of edges."""
+def energy_error(energy: HierarchicalMoebiusEnergy, curve: Curve, count: int = 512) -> Estimate:
+    """The error of the energy, from edges of which 512 leave a standard error of some 3e-7, and take half a step."""
     energy, sample = energy.frozen_at(curve), sampled_edges(curve, count)
     rows = energy.row_energies(curve)
     off = rows[sample] - energy.exact.row_energies(curve, sample)
@@ -57,8 +53,8 @@ def energy_error(energy: HierarchicalMoebiusEnergy, curve: Curve, count: int = E
     return Estimate.of_sum(off, curve.mesh.edges, rest)
 
 
-def slope_error(energy: HierarchicalMoebiusEnergy, curve: Curve, u: FloatArray, count: int = EDGES_ALONG) -> Estimate:
-    """The error of the derivative's product with a field u, shape (n, m), from a number of edges."""
+def slope_error(energy: HierarchicalMoebiusEnergy, curve: Curve, u: FloatArray, count: int = 128) -> Estimate:
+    """The error of the derivative's product with a field u, shape (n, m), from a number of edges of two curves."""
     energy, sample = energy.frozen_at(curve), sampled_edges(curve, count)
     # the largest relative rate at which the distance of two near edges or two clusters can change along u
     blocks = energy.block_list(curve)
@@ -105,9 +101,8 @@ class SampledErrors:
         return cls(energy_error(energy, curve).relative(scale), along.relative(unit), energy.order)
 
     def within(self, accuracy: float) -> bool:
-        """Whether both bounds are within their shares of it: for the norm half, as the solution's error is added."""
-        energy, norm = ENERGY_SHARE * accuracy, NORM_SHARE * accuracy
-        return self.energy.bound <= energy and self.gradient_norm.bound <= norm
+        """Whether both are within it: the energy a hundred times, the norm twice, as the solution's error is added."""
+        return self.energy.bound <= 0.01 * accuracy and self.gradient_norm.bound <= 0.5 * accuracy
 
 
 @BLAS.bounded()

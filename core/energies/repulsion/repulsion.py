@@ -41,7 +41,6 @@ class Repulsion:
 
     name = "repulsion"
     scale_exponent = 0.0
-    description = "potential of still obstacles, integrated along the curve"
 
     @classmethod
     def of(cls, obstacles: Iterable[Obstacle]) -> "tuple[Repulsion, ...]":

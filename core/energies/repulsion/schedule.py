@@ -45,42 +45,18 @@ class Panels:
     def joined(cls, parts: "Sequence[Panels]") -> "Panels":
         return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in cls.__match_args__))
 
+    def halves(self, curve: Curve) -> FloatArray:
+        """Half of the panels' lengths."""
+        return np.asarray(0.5 * self.width * curve.edge_lengths[self.edge])
+
+    def middles(self, curve: Curve) -> FloatArray:
+        """Their middles; shape (3, k)."""
+        tails, vectors = curve.vertices[curve.mesh.tails].T, curve.edge_vectors.T
+        return np.asarray(tails[:, self.edge] + (self.begin + 0.5 * self.width) * vectors[:, self.edge])
+
 
 Groups = tuple[tuple[int, Panels], ...]
 """Numbers of Gauss points, and the panels that take so many, sorted by edge."""
-
-
-@dataclass(frozen=True, eq=False)
-class _View:
-    """How panels of a curve's edges see clusters and simplices."""
-
-    curve: Curve
-    clusters: Clusters
-
-    def half(self, panels: Panels) -> FloatArray:
-        """Half of the panels' lengths."""
-        return np.asarray(0.5 * panels.width * self.curve.edge_lengths[panels.edge])
-
-    def are_far(self, panels: Panels, theta: float) -> BoolArray:
-        """Whether the clusters that panels see may count by their moments."""
-        return np.asarray(self.clusters.radius[panels.source] + self.half(panels) < theta * self._distances(panels))
-
-    def analytic_ratios(self, panels: Panels) -> FloatArray:
-        """Analytic radius to half length, for panels that see simplices."""
-        tau = (self.curve.edge_vectors / self.curve.edge_lengths[:, None]).T[:, panels.edge]
-        reach = self.clusters.simplices.reach(panels.source, self._middles(panels), tau)
-        return np.asarray(reach / self.half(panels))
-
-    def clear_ratios(self, panels: Panels) -> FloatArray:
-        """Distance from the cluster to half length, for panels that see clusters."""
-        return np.asarray((self._distances(panels) - self.clusters.radius[panels.source]) / self.half(panels))
-
-    def _middles(self, panels: Panels) -> FloatArray:
-        tails, vectors = self.curve.vertices[self.curve.mesh.tails].T, self.curve.edge_vectors.T
-        return np.asarray(tails[:, panels.edge] + (panels.begin + 0.5 * panels.width) * vectors[:, panels.edge])
-
-    def _distances(self, panels: Panels) -> FloatArray:
-        return norm(self._middles(panels) - self.clusters.center[:, panels.source])
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,14 +71,34 @@ class Schedule:
     @classmethod
     def of(cls, curve: Curve, clusters: Clusters, theta: float) -> "Schedule":
         """The schedule of a curve in R³."""
-        view, n = _View(curve, clusters), curve.mesh.edges
-        found = [_traverse(view, np.arange(first, min(first + EDGES, n)), theta) for first in range(0, n, EDGES)]
-        single, clustered = (Panels.joined(kind) for kind in zip(*found, strict=True))
+        tree, n, single, clustered = clusters.tree, curve.mesh.edges, list[Panels](), list[Panels]()
+        for first_edge in range(0, n, EDGES):
+            # from whole edges that see the root
+            edges = np.arange(first_edge, min(first_edge + EDGES, n))
+            panels = Panels(edges, np.zeros(len(edges)), np.ones(len(edges)), np.zeros_like(edges))
+            while len(panels):
+                far = _are_far(curve, clusters, panels, theta)
+                clustered.append(panels[far])
+                panels = panels[~far]
+                leaf = tree.is_leaf[panels.source]
+                seen = replace(panels[leaf], source=tree.start[panels.source[leaf]])
+                fine = (_analytic_ratios(curve, clusters, seen) >= EXACT[-1]) | (seen.width <= SHORTEST)
+                single.append(seen[fine])
+                left = np.ones(len(panels), dtype=bool)
+                left[leaf] = ~fine
+                # each with both children of the cluster it sees, or both of its halves if these are larger
+                panels = panels[left]
+                child = tree.child[panels.source]
+                opened = (child > 0) & (clusters.radius[panels.source] >= panels.halves(curve))
+                same, halved, child = panels[opened], panels[~opened], child[opened]
+                first = replace(halved, width=0.5 * halved.width)
+                second = replace(first, begin=first.begin + first.width)
+                panels = Panels.joined([replace(same, source=child), replace(same, source=child + 1), first, second])
+        one, many = Panels.joined(single), Panels.joined(clustered)
+        # by their number of Gauss points: of those that see clusters by the distance from these to half length
+        clear = (_distances(curve, clusters, many) - clusters.radius[many.source]) / many.halves(curve)
         return cls(
-            curve,
-            _grouped(single, view.analytic_ratios(single), EXACT),
-            _grouped(clustered, view.clear_ratios(clustered), CLUSTERED),
-            theta,
+            curve, _grouped(one, _analytic_ratios(curve, clusters, one), EXACT), _grouped(many, clear, CLUSTERED), theta
         )
 
     def suits(self, curve: Curve, clusters: Clusters, slack: float) -> bool:
@@ -111,10 +107,10 @@ class Schedule:
             return False
         if np.array_equal(curve.vertices, self.curve.vertices):
             return True
-        view = _View(curve, clusters)
         return all(
-            np.all(view.analytic_ratios(panels) >= slack * EXACT[points - 1]) for points, panels in self.single
-        ) and all(np.all(view.are_far(panels, self.theta / slack)) for _, panels in self.clustered)
+            np.all(_analytic_ratios(curve, clusters, panels) >= slack * EXACT[points - 1])
+            for points, panels in self.single
+        ) and all(np.all(_are_far(curve, clusters, panels, self.theta / slack)) for _, panels in self.clustered)
 
     def chunks(self, clusters: Clusters) -> Iterator[tuple[Potential, Panels, int]]:
         """Potentials, the panels that see their sources, and the number of points on each."""
@@ -125,30 +121,21 @@ class Schedule:
                     yield source.potential, panels[first : first + size], points
 
 
-def _traverse(view: _View, edges: IntArray, theta: float) -> tuple[Panels, Panels]:
-    """Panels that see simplices and panels that see clusters, from whole edges that see the root."""
-    tree = view.clusters.tree
-    panels = Panels(edges, np.zeros(len(edges)), np.ones(len(edges)), np.zeros_like(edges))
-    single, clustered = [], []
-    while len(panels):
-        far = view.are_far(panels, theta)
-        clustered.append(panels[far])
-        panels = panels[~far]
-        leaf = tree.is_leaf[panels.source]
-        seen = replace(panels[leaf], source=tree.start[panels.source[leaf]])
-        fine = (view.analytic_ratios(seen) >= EXACT[-1]) | (seen.width <= SHORTEST)
-        single.append(seen[fine])
-        left = np.ones(len(panels), dtype=bool)
-        left[leaf] = ~fine
-        # each with both children of the cluster it sees, or both of its halves if these are larger
-        panels = panels[left]
-        child = view.clusters.tree.child[panels.source]
-        opened = (child > 0) & (view.clusters.radius[panels.source] >= view.half(panels))
-        same, halved, child = panels[opened], panels[~opened], child[opened]
-        first = replace(halved, width=0.5 * halved.width)
-        second = replace(first, begin=first.begin + first.width)
-        panels = Panels.joined([replace(same, source=child), replace(same, source=child + 1), first, second])
-    return Panels.joined(single), Panels.joined(clustered)
+def _are_far(curve: Curve, clusters: Clusters, panels: Panels, theta: float) -> BoolArray:
+    """Whether the clusters that panels see may count by their moments."""
+    bound = clusters.radius[panels.source] + panels.halves(curve)
+    return np.asarray(bound < theta * _distances(curve, clusters, panels))
+
+
+def _analytic_ratios(curve: Curve, clusters: Clusters, panels: Panels) -> FloatArray:
+    """Analytic radius to half length, for panels that see simplices."""
+    tau = (curve.edge_vectors / curve.edge_lengths[:, None]).T[:, panels.edge]
+    reach = clusters.simplices.reach(panels.source, panels.middles(curve), tau)
+    return np.asarray(reach / panels.halves(curve))
+
+
+def _distances(curve: Curve, clusters: Clusters, panels: Panels) -> FloatArray:
+    return norm(panels.middles(curve) - clusters.center[:, panels.source])
 
 
 def _grouped(panels: Panels, ratio: FloatArray, least: FloatArray) -> Groups:

@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 
-from ...base.types import BoolArray, FloatArray, IntArray, frozen
+from ...base.types import FloatArray, IntArray, frozen
 from ..clusters import ClusterTree, ranges
 from ..edge_pairs import arctan2
 from ..inverse_square import CONTACT
@@ -24,7 +24,6 @@ from ..inverse_square import CONTACT
 Form = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
 """N², D, ∇N² and ∇D."""
 
-_FLAT = 1e-3  # N²/D² below which series replace quotients by N², of which second derivatives lose six digits
 _VALUE = [(-1.0) ** k / (2 * k + 1) for k in range(6)]  # of D g in powers of N²/D²
 _SLOPE = [-((-1.0) ** k) * (k + 1) / (2 * k + 3) for k in range(6)]  # of D³ ∂g/∂N²
 
@@ -91,7 +90,8 @@ class Simplices:
         if self.are_triangles:
             normal = self.normals[:, index]
             pole = _quotient(dot(normal, seen[0]) ** 2, dot(normal, tau) ** 2)
-            square = np.where(_is_above(seen, sides, normal), np.minimum(square, pole), square)
+            above = np.all([dot(normal, cross(side, a)) > 0.0 for side, a in zip(sides, seen, strict=True)], axis=0)
+            square = np.where(above, np.minimum(square, pole), square)
         return np.asarray(np.sqrt(square))
 
 
@@ -124,16 +124,12 @@ def _arctangent_quotient(square: FloatArray, d: FloatArray) -> tuple[FloatArray,
     n, inverse = np.sqrt(square), 1.0 / (square + d * d)
     value = arctan2(n, d) / n
     by_square = (d * inverse - value) / (2.0 * square)
-    flat = (d.real > 0.0) & (square.real < _FLAT * d.real**2)
+    # there series replace quotients by N², of which second derivatives lose six digits
+    flat = (d.real > 0.0) & (square.real < 1e-3 * d.real**2)
     x, y = d[flat], square[flat] / d[flat] ** 2
     value[flat] = polyval(y, _VALUE) / x
     by_square[flat] = polyval(y, _SLOPE) / x**3
     return value, by_square, -inverse
-
-
-def _is_above(seen: FloatArray, sides: FloatArray, normal: FloatArray) -> BoolArray:
-    """Whether the foot on the plane is within the triangle, for points seen from the corners."""
-    return np.asarray(np.all([dot(normal, cross(side, a)) > 0.0 for side, a in zip(sides, seen, strict=True)], axis=0))
 
 
 def _quotient(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
@@ -175,7 +171,14 @@ class Clusters:
         order = np.arange(points.shape[1])
 
         def cut(start: IntArray, stop: IntArray) -> IntArray:
-            _sort_across(points, order, start, stop - start)
+            if start.size:  # each range is sorted by the coordinate in which its points are spread the most
+                count = stop - start
+                places, first = ranges(start, count), np.cumsum(count) - count
+                x = points[:, order[places]]
+                widths = np.maximum.reduceat(x, first, axis=1) - np.minimum.reduceat(x, first, axis=1)
+                owner = np.repeat(np.arange(start.size), count)
+                along = x[np.argmax(widths, axis=0)[owner], np.arange(len(places))]
+                order[places] = order[places][np.lexsort((along, owner))]
             return (start + stop) // 2
 
         tree = ClusterTree.halved(order, 1, cut)
@@ -192,7 +195,13 @@ class Clusters:
             center[:, inner] = center[:, child] + share * between
             apart = size[child] * share * (between[:, None] * between)
             spread[:, :, inner] = spread[:, :, child] + spread[:, :, child + 1] + apart
-        radius = np.concatenate([_radii(simplices.corners, center, tree, level) for level in tree.levels])
+        radius = np.empty_like(size)
+        for level in tree.levels:
+            count = (tree.stop - tree.start)[level]
+            members = simplices.corners[:, :, ranges(tree.start[level], count)]
+            from_center = members - np.repeat(center[:, level], count, axis=1)
+            square = np.max(np.einsum("cif,cif->cf", from_center, from_center), axis=0)
+            radius[level] = np.sqrt(np.maximum.reduceat(square, np.cumsum(count) - count))
         return cls(simplices, tree, *map(frozen, (center, radius, size, spread)))
 
     def potential(self, index: IntArray, x: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -209,24 +218,3 @@ class Clusters:
         size, trace, along = self.size[index, None], (q[0, 0] + q[1, 1] + q[2, 2]) * s, dot(d, q_d) * (s * s)
         radial = s * kernel * (half * trace - (p + 4) * half * along - p * size)
         return kernel * (size - 0.5 * p * trace + half * along), radial * d + (2.0 * half * s * s * kernel) * q_d
-
-
-def _sort_across(points: FloatArray, order: IntArray, start: IntArray, count: IntArray) -> None:
-    """Sort ranges of the order, each by the coordinate in which its points are spread the most."""
-    if not start.size:
-        return
-    places = ranges(start, count)
-    x = points[:, order[places]]
-    first = np.cumsum(count) - count
-    widths = np.maximum.reduceat(x, first, axis=1) - np.minimum.reduceat(x, first, axis=1)
-    owner = np.repeat(np.arange(start.size), count)
-    along = x[np.argmax(widths, axis=0)[owner], np.arange(len(places))]
-    order[places] = order[places][np.lexsort((along, owner))]
-
-
-def _radii(corners: FloatArray, center: FloatArray, tree: ClusterTree, level: slice) -> FloatArray:
-    """Largest distance of a corner from the center of its cluster, for the clusters of one level."""
-    count = (tree.stop - tree.start)[level]
-    from_center = corners[:, :, ranges(tree.start[level], count)] - np.repeat(center[:, level], count, axis=1)
-    square = np.max(np.einsum("cif,cif->cf", from_center, from_center), axis=0)
-    return np.asarray(np.sqrt(np.maximum.reduceat(square, np.cumsum(count) - count)))

@@ -54,13 +54,6 @@ def test_near_pairs_are_sorted(curve: Curve) -> None:
 
 
 @CURVE
-def test_share_of_near_pairs(curve: Curve) -> None:
-    blocks, n = BlockList.of(curve, 0.25, 4), curve.mesh.edges
-    neighbours_and_halves = len(curve.mesh.inner) + 0.5 * n
-    assert blocks.near_share * n**2 / 2 == pytest.approx(len(blocks.near[0]) + neighbours_and_halves, abs=1e-9)
-
-
-@CURVE
 def test_only_near_pairs_can_be_left_out(curve: Curve) -> None:
     """Wherever among the pairs those would be that are not: the last two edges are neighbours, or of two components."""
     blocks, n = BlockList.of(curve, 0.25, 4), curve.mesh.edges
