@@ -17,7 +17,7 @@ import numpy as np
 from mobius_flow.core import Curve, Obstacle, read_obstacle
 from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.collision import check_clear, free_motion, is_free
-from mobius_flow.core.proof.filter import FloatingSieve, doubtful_pairs
+from mobius_flow.core.proof.filter import doubtful_pairs
 
 REPETITIONS = 5
 SHARES = (0.3, 0.6, 0.9)  # of the largest curve that fits
@@ -73,7 +73,6 @@ def timings(obstacle: Obstacle, n: int) -> None:
         step = field(start)
         time = free_motion(mesh, start, start + step, (obstacle,)).time
         end = start + 2 / 3 * time * step
-        own = FloatingSieve(obstacle.vertices[obstacle.faces].tolist())
         tasks: tuple[Callable[[], object], ...] = (
             lambda: free_motion(mesh, start, start + step),  # noqa: B023 (called at once)
             lambda: free_motion(mesh, start, start + step, (obstacle,)),  # noqa: B023
@@ -81,19 +80,21 @@ def timings(obstacle: Obstacle, n: int) -> None:
             lambda: is_free(mesh, start, end, (obstacle,)),  # noqa: B023
             lambda: check_clear(curve, (obstacle,)),  # noqa: B023
             lambda: list(doubtful_pairs(start, end, mesh.heads)),  # noqa: B023
-            lambda: list(own.doubtful_triangles(start, end, mesh.heads)),  # noqa: B023
+            lambda: list(doubtful_pairs(start, end, mesh.heads, triangles=obstacle.corners)),  # noqa: B023
         )
         print(f"{share:13.1f}{time:13.4f}" + "".join(f"{best(task):13.2f}" for task in tasks), flush=True)
 
 
 def soak(motions: int) -> None:
     sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
-    from obstacle_motions import KINDS, Tally, placed
+    from exact_decisions import Tally
+    from obstacle_motions import KINDS, free, meets, placed
 
     for kind in KINDS:
-        rng, tally = np.random.default_rng(20261), Tally()
+        rng, tally = np.random.default_rng(20261), Tally(meets)
         for _ in range(motions // len(KINDS)):
-            tally.add(placed(rng, kind(rng)))
+            start, end = placed(rng, kind(rng))
+            tally.add(start, end, free(start, end))
         print(f"{kind.__name__:12} {tally}", flush=True)
 
 

@@ -1,10 +1,9 @@
-"""Motions of quadrilaterals, tame and nasty, and the exact time of their first contact."""
+"""Motions of quadrilaterals, tame and nasty."""
 
 from collections.abc import Callable
 
 import numpy as np
 import numpy.typing as npt
-from exact_times import Root, meetings
 
 Array = npt.NDArray[np.float64]
 Motion = tuple[Array, Array]
@@ -86,15 +85,3 @@ def placed(rng: Rng, motion: Motion) -> Motion:
     scale = rng.choice([1.0, 1e-6, 1e6])
     offset = rng.choice([0.0, 0.0, 1e3]) * scale * rng.normal(size=motion[0].shape[1])
     return motion[0] * scale + offset, motion[1] * scale + offset
-
-
-def first_contact(motion: Motion) -> Root | None:
-    """The first time at which opposite edges of the quadrilateral meet, in an interval of 2^-80; None if never."""
-    start, end = motion
-    turned = np.roll(start, -1, axis=0), np.roll(end, -1, axis=0)
-    return min(pair_contacts(motion) + pair_contacts(turned), key=lambda root: root.low, default=None)
-
-
-def pair_contacts(motion: Motion) -> list[Root]:
-    """Times at which two edges meet, the first among them; rows of the motion are x₀, x₁, y₀, y₁."""
-    return meetings(*(points.tolist() for points in motion))

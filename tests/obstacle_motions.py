@@ -1,18 +1,17 @@
-"""Motions of a segment near a triangle, tame and nasty, and the exact time of their first contact.
+"""Motions of a segment near a triangle, tame and nasty, and convex hulls that decide whether the two touch.
 
 A motion has the rows x₀, x₁ of the segment and y₀, y₁, y₂ of the triangle, which are the same at both times.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations
 
 import numpy as np
 import numpy.typing as npt
-from exact_times import meetings
+from exact_decisions import meet, meet_triangle
 from mobius_flow.core import Mesh, Obstacle
-from mobius_flow.core.collision import Limit, free_motion
+from mobius_flow.core.collision import FreeMotion, free_motion
 
 Array = npt.NDArray[np.float64]
 Motion = tuple[Array, Array]
@@ -164,28 +163,14 @@ def placed(rng: Rng, motion: Motion) -> Motion:
     return still(motion[0] * scale + offset, motion[1] * scale + offset)
 
 
-def first_contact(motion: Motion) -> tuple[Fraction, Fraction] | None:
-    """A short interval in which the first contact is, decided by rational arithmetic; None if there is none.
-
-    A segment that shrinks to a point touches itself.  Asks the verifier's code, which shares none with the program's.
-    """
-    start, end = ([[Fraction(x) for x in p] for p in points.tolist()] for points in motion)
-    triangle = start[2:]
-    if pierced_at(start[0], start[1], triangle) is not None:
-        return Fraction(0), Fraction(0)
-    times = [pierced_at(start[k], end[k], triangle) for k in (0, 1)] + [shrunk_at(start[:2], end[:2])]
-    found = [(time, time) for time in times if time is not None]
-    for a, b in combinations(triangle, 2):
-        found += [(root.low, root.high) for root in meetings([*start[:2], a, b], [*end[:2], a, b])]
-    return min(found, default=None)
+def meets(start: Array, end: Array) -> bool:
+    """Whether the segment meets the triangle, or shrinks to a point, where it touches itself."""
+    return meet_triangle(start, end) or meet(start[[0, 0, 1, 1]], end[[0, 0, 1, 1]])
 
 
-def shrunk_at(start: Sequence[Sequence[Fraction]], end: Sequence[Sequence[Fraction]]) -> Fraction | None:
-    """The first time at which both ends of a segment are the same point; None if there is none."""
-    before, after = ([x - y for x, y in zip(*ends, strict=True)] for ends in (start, end))
-    time = next((a / (a - b) for a, b in zip(before, after, strict=True) if a != b), Fraction(0))
-    meets = 0 <= time <= 1 and all((1 - time) * a + time * b == 0 for a, b in zip(before, after, strict=True))
-    return time if meets else None
+def free(start: Array, end: Array) -> FreeMotion:
+    """What is proved of a motion by the search."""
+    return free_motion(Mesh((2,), (False,)), start[:2], end[:2], (Obstacle(start[2:], [[0, 1, 2]]),))
 
 
 def almost_shrinks(motion: Motion) -> bool:
@@ -194,45 +179,6 @@ def almost_shrinks(motion: Motion) -> bool:
     change = after - before
     time = np.clip(-before @ change / max(change @ change, np.finfo(float).tiny), 0.0, 1.0)
     return bool(np.linalg.norm(before + time * change) <= 8 * np.finfo(float).eps * np.abs(motion).max())
-
-
-def pierced_at(p: Sequence[Fraction], q: Sequence[Fraction], triangle: Sequence[Sequence[Fraction]]) -> Fraction | None:
-    """The parameter at which the segment from p to q meets a triangle; None if it does not.
-
-    By Cramer's rule for p + s (q − p) = y₀ + r f + t g. If they are in one plane it is 0, or None if p is not in the
-    triangle: whether the segment meets its edges must be decided elsewhere.
-    """
-    y0, y1, y2 = triangle
-    f, g, d, D = _difference(y1, y0), _difference(y2, y0), _difference(p, q), _difference(p, y0)
-    volume = _det(d, f, g)
-    if volume == 0:
-        return Fraction(0) if _in_plane_and_inside(D, f, g) else None
-    s, r, t = (_det(*columns) / volume for columns in ((D, f, g), (d, D, g), (d, f, D)))
-    inside = 0 <= s <= 1 and r >= 0 and t >= 0 and r + t <= 1
-    return s if inside else None
-
-
-def _in_plane_and_inside(D: Sequence[Fraction], f: Sequence[Fraction], g: Sequence[Fraction]) -> bool:
-    """Whether D = r f + t g with r, t ≥ 0 and r + t ≤ 1, for a triangle with an area; by the normal equations."""
-    ff, fg, gg, Df, Dg = _inner(f, f), _inner(f, g), _inner(g, g), _inner(D, f), _inner(D, g)
-    whole = ff * gg - fg * fg
-    if whole == 0 or _det(D, f, g) != 0:
-        return False
-    r, t = (Df * gg - Dg * fg) / whole, (Dg * ff - Df * fg) / whole
-    return r >= 0 and t >= 0 and r + t <= 1
-
-
-def _difference(u: Sequence[Fraction], v: Sequence[Fraction]) -> Sequence[Fraction]:
-    return [a - b for a, b in zip(u, v, strict=True)]
-
-
-def _inner(u: Sequence[Fraction], v: Sequence[Fraction]) -> Fraction:
-    return sum((a * b for a, b in zip(u, v, strict=True)), Fraction(0))
-
-
-def _det(u: Sequence[Fraction], v: Sequence[Fraction], w: Sequence[Fraction]) -> Fraction:
-    products = (u[i] * (v[j] * w[k] - v[k] * w[j]) for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)))
-    return sum(products, Fraction(0))
 
 
 def touching(corners: Array) -> bool:
@@ -257,46 +203,3 @@ def _weights_exist(points: Sequence[Sequence[Fraction]]) -> bool:
         rows = [[x - row[column] * y for x, y in zip(row, pivot, strict=True)] for row in rows]
         rows.insert(column, pivot)
     return all(row[-1] >= 0 for row in rows[: len(points)]) and all(row[-1] == 0 for row in rows[len(points) :])
-
-
-ONE_EDGE = Mesh((2,), (False,))
-
-
-@dataclass
-class Tally:
-    """How answers compare with exact ones.
-
-    Attributes
-    ----------
-    hits, misses
-        Motions with a contact, and without any.
-    wrong
-        Contacts that were not seen, or only after they had happened.
-    timid
-        Motions without contact that were refused, but for those of segments that almost shrink to a point.
-    worst_time
-        The least part of the time of a contact that was proved.
-    """
-
-    hits: int = 0
-    misses: int = 0
-    wrong: int = 0
-    timid: int = 0
-    worst_time: float = 1.0
-
-    def add(self, motion: Motion) -> None:
-        """Compare the answer for one motion."""
-        (start, end), contact = motion, first_contact(motion)
-        obstacle = Obstacle(start[2:], [[0, 1, 2]])
-        answer = free_motion(ONE_EDGE, start[:2], end[:2], (obstacle,))
-        if contact is None:
-            self.misses += 1
-            self.timid += not answer.proved and not almost_shrinks(motion)
-            return
-        low, high = contact
-        self.hits += 1
-        if high == 0:
-            self.wrong += answer.limit is not Limit.TOUCHING_START
-            return
-        self.wrong += answer.proved or not (Fraction(answer.time) <= low or answer.time == 0.0)
-        self.worst_time = min(self.worst_time, answer.time / float(high))

@@ -10,16 +10,18 @@ from functools import lru_cache
 
 import numpy as np
 
+from ..base.tolerances import PLANE_UNDERFLOW
 from ..base.types import BoolArray, FloatArray, IntArray
 from ..curve import Mesh
 from ..curve.mesh import component_order, z_order
 from ..curve.obstacle import Obstacle
-from .planes import UNDERFLOW
 
 CHUNK = 1 << 14  # pairs of boxes handled at once: bounds the memory whatever the curve
-_ROOTS = 24  # the coarsest level has at most this many boxes; levels above it would only cost calls
-_NOWHERE = -4.0  # upper bounds of a padding box: empty, and away from everything when coordinates are at most 1
-_SLACK = 16 * float(np.finfo(np.float64).eps)
+_HALVES = {  # numbers of the halves of the first and of the second box, if they are halved
+    (halved, also): np.array([(k, j) for k in range(1 + halved) for j in range(1 + also)]).T[:, :, None]
+    for halved in (False, True)
+    for also in (False, True)
+}
 
 Test = Callable[["Level", IntArray, "Level", IntArray], BoolArray]
 
@@ -68,9 +70,9 @@ class BoxTree:
         Boxes are wider than their contents by an amount that matters only where scaling has cost digits.
         """
         ends = [points[..., vertices] for vertices in corners]
-        upper = _padded(np.concatenate([np.maximum.reduce(ends), -np.minimum.reduce(ends)], axis=1) + UNDERFLOW)
+        upper = _padded(np.concatenate([np.maximum.reduce(ends), -np.minimum.reduce(ends)], axis=1) + PLANE_UNDERFLOW)
         levels = [Level.of(upper, leaves=True)]
-        while upper.shape[2] > _ROOTS:
+        while upper.shape[2] > 24:  # levels above that would only cost calls
             upper = _padded(np.maximum(upper[..., 0::2], upper[..., 1::2]))
             levels.append(Level.of(upper, leaves=False))
         return cls(order, corners, tuple(reversed(levels)))
@@ -131,21 +133,16 @@ def contact_window(gaps: FloatArray) -> tuple[FloatArray, FloatArray]:
         root = 1 / (1 - after / before)  # signs differ where it is used: accurate to a few eps
     enter = np.where(before > 0, np.where(after > 0, np.inf, root), 0.0).max(axis=0)
     leave = np.where((before <= 0) & (after > 0), root, 1.0).min(axis=0)
-    return enter * (1 - _SLACK), leave * (1 + _SLACK)
+    slack = 16 * np.finfo(np.float64).eps
+    return enter * (1 - slack), leave * (1 + slack)
 
 
 def _padded(upper: FloatArray) -> FloatArray:
     """Boxes with an empty one added if their number is odd, so that they merge in pairs."""
     if upper.shape[2] % 2 == 0:
         return upper
-    return np.concatenate([upper, np.full((*upper.shape[:2], 1), _NOWHERE)], axis=2)
-
-
-_HALVES = {  # numbers of the halves of the first and of the second box, if they are halved
-    (halved, also): np.array([(k, j) for k in range(1 + halved) for j in range(1 + also)]).T[:, :, None]
-    for halved in (False, True)
-    for also in (False, True)
-}
+    nowhere = -4.0  # an upper bound of nothing, away from everything when coordinates are at most 1
+    return np.concatenate([upper, np.full((*upper.shape[:2], 1), nowhere)], axis=2)
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,28 +6,20 @@ import numpy as np
 
 from ..base.errors import CurveError
 from ..base.messages import COMPONENT, EDGE, VERTEX, Message
+from ..base.tolerances import MIN_GAP, MIN_SPACING, ON_EDGE_UNITS, PLANE_ROUNDING
 from ..base.types import BoolArray, FloatArray, IntArray
 from ..curve import Curve, Mesh, at_edges, at_vertices
 from ..curve.obstacle import Obstacle
 from .boxes import BoxTree, Level, corners, still_triangles
-from .exact import first_contact
-from .exact_triangle import EDGES, crossing
-from .gap import MIN_GAP, folds, minimal_gap, near_edges, scaled_points, squared_gaps, squared_segment_distances
-from .planes import ROUNDING, doubtful
-
-MIN_SPACING = 2.0**-48  # of neighbours, relative to the curve's size; nearer ones coincide up to rounding
+from .exact import EDGES, crossing, first_contact
+from .gap import folds, minimal_gap, near_edges, scaled_points, squared_gaps, squared_segment_distances, written
+from .planes import doubtful
 
 TOUCHING = Message("{edge} and {other} touch or cross near {place}; move the strands apart")
 DOUBTFUL = Message(
     "{edge} and {other}, near {place}, and thousands of others are so close that rounding hides whether they touch; "
     "move the strands apart"
 )
-_DECISIONS = 2000  # exact ones, about a second: strands that need more are refused by `check_gap`, if not here
-# Bound of the rounding errors of tail + t (head − tail), in units of the last place of the largest coordinate: one each
-# of the difference, which may be twice as large, and of the product, and half a one of the sum.  That of t itself only
-# moves the vertex along its edge.
-UNITS = 2.5
-
 PIERCES = Message("{edge} pierces {obstacle} at {place}; move one of them away")
 TOUCHES = Message("{edge} touches {obstacle} at {place}; move one of them away")
 TOO_NEAR = Message("{edge} comes too near to {obstacle} at {place}; move one of them away")
@@ -47,10 +39,9 @@ def check_embedded(curve: Curve) -> None:
     if same.size:
         tail, head = int(tails[same[0]]), int(heads[same[0]])
         same_point = "{vertex} and {other} are the same point {place}; remove one of them"
-        ends, place = (vertex_name(curve.mesh, tail), vertex_name(curve.mesh, head)), written(curve.vertices[tail])
-        raise CurveError(
-            Message(same_point, vertex=ends[0], other=ends[1], place=place), at_vertices(curve, tail, head)
-        )
+        ends = {"vertex": _name(curve.mesh, VERTEX, tail), "other": _name(curve.mesh, VERTEX, head)}
+        message = Message(same_point, **ends, place=written(curve.vertices[tail]))
+        raise CurveError(message, at_vertices(curve, tail, head))
     points, _ = scaled_points(curve)
     # the curve must not turn by 180° at a vertex, up to rounding
     mesh = curve.mesh
@@ -60,12 +51,12 @@ def check_embedded(curve: Curve) -> None:
     first, second = vectors[:, before], vectors[:, after]
     p, q = np.triu_indices(len(points), 1)
     left, right = first[p] * second[q], first[q] * second[p]
-    parallel = (np.abs(left - right) <= ROUNDING * (np.abs(left) + np.abs(right))).all(axis=0)
+    parallel = (np.abs(left - right) <= PLANE_ROUNDING * (np.abs(left) + np.abs(right))).all(axis=0)
     bad = np.flatnonzero(parallel & (np.einsum("mn,mn->n", first, second) < 0))
     if bad.size:
         vertex = int(mesh.tails[after[bad[0]]])
         back = "the curve doubles back at {vertex}, {place}; move or remove it"
-        message = Message(back, vertex=vertex_name(mesh, vertex), place=written(curve.vertices[vertex]))
+        message = Message(back, vertex=_name(mesh, VERTEX, vertex), place=written(curve.vertices[vertex]))
         raise CurveError(message, at_vertices(curve, vertex))
     touching = _touching_pairs if curve.dimension <= 3 else _coinciding_pairs
     for i, j in touching(curve, points):
@@ -78,7 +69,7 @@ def _touching_pairs(curve: Curve, points: FloatArray) -> Iterator[tuple[int, int
         ends = curve.vertices[corners(curve.mesh, i, j)]  # as given: scaling may cost the smallest digits
         if first_contact(ends, ends) is not None:
             yield i, j
-        if count == _DECISIONS:
+        if count == 2000:  # that take about a second; `check_gap` refuses strands that need more, if not this
             raise _refusal(DOUBTFUL, curve, i, j)
 
 
@@ -115,32 +106,19 @@ def meeting_point(ends: FloatArray) -> FloatArray:
     return np.asarray(x[np.linalg.norm(x - y0 - r[:, None] * f, axis=1).argmin()])
 
 
-def edge_name(mesh: Mesh, edge: int) -> Message:
-    """An edge's name in messages."""
-    c = int(mesh.edge_component[edge])
-    return _part(Message(EDGE, number=edge - int(mesh.edge_offsets[c]) + 1), c)
-
-
-def vertex_name(mesh: Mesh, vertex: int) -> Message:
-    """A vertex's name in messages."""
-    c = int(mesh.component[vertex])
-    return _part(Message(VERTEX, number=vertex - int(mesh.offsets[c]) + 1), c)
-
-
-def _part(part: Message, component: int) -> Message:
-    return Message("{part} of {component}", part=part, component=Message(COMPONENT, number=component + 1))
+def _name(mesh: Mesh, kind: str, number: int) -> Message:
+    """What messages call an edge or a vertex: ``kind`` is EDGE or VERTEX."""
+    components, offsets = (mesh.edge_component, mesh.edge_offsets) if kind == EDGE else (mesh.component, mesh.offsets)
+    c = int(components[number])
+    part = Message(kind, number=number - int(offsets[c]) + 1)
+    return Message("{part} of {component}", part=part, component=Message(COMPONENT, number=c + 1))
 
 
 def _refusal(template: str, curve: Curve, i: int, j: int) -> CurveError:
     """The sentence about two edges and the place where they meet."""
     where = meeting_point(curve.vertices[corners(curve.mesh, i, j)])
-    edges = {"edge": edge_name(curve.mesh, i), "other": edge_name(curve.mesh, j)}
+    edges = {"edge": _name(curve.mesh, EDGE, i), "other": _name(curve.mesh, EDGE, j)}
     return CurveError(Message(template, **edges, place=written(where)), at_edges(curve, (i, j), where))
-
-
-def written(position: FloatArray) -> str:
-    """A point as messages write it."""
-    return "(" + ", ".join(f"{x:.6g}" for x in position) + ")"
 
 
 def check_clear(curve: Curve, obstacles: Sequence[Obstacle]) -> None:
@@ -158,7 +136,7 @@ def check_clear(curve: Curve, obstacles: Sequence[Obstacle]) -> None:
         )
     for edge, pair, obstacle in _near(curve, obstacles, MIN_GAP * curve.length):
         what, where = _meeting(pair)
-        reason = Message(what, edge=edge_name(curve.mesh, edge), obstacle=obstacle.title, place=written(where))
+        reason = Message(what, edge=_name(curve.mesh, EDGE, edge), obstacle=obstacle.title, place=written(where))
         raise CurveError(reason, at_edges(curve, (edge,), where))
 
 
@@ -210,7 +188,7 @@ def survives_rounding(curve: Curve, obstacles: Sequence[Obstacle] = ()) -> bool:
     """
     if curve.dimension > 3:
         return True
-    rounding = UNITS * np.spacing(np.abs(curve.vertices).max()) * np.sqrt(curve.dimension)
+    rounding = ON_EDGE_UNITS * np.spacing(np.abs(curve.vertices).max()) * np.sqrt(curve.dimension)
     points, unit = scaled_points(curve)
     fold = np.sqrt(np.min(squared_segment_distances(points, folds(curve.mesh)), initial=np.inf))
     nearest = min(minimal_gap(curve)[0], float(np.ldexp(fold, unit)))

@@ -1,4 +1,4 @@
-"""Decide one stubborn pair of moving segments in exact integer arithmetic.
+"""Decide one stubborn pair, of moving segments or of one and a triangle at rest, in exact integer arithmetic.
 
 On an interval of time the segments x(s) = x₀ + s e and y(r) = y₀ + r f stay apart if their lines are nowhere coplanar,
 det(D, e, f) ≠ 0, D = x₀ − y₀, or if a plane that moves along separates them: ⟨n(t), x_i(t) − y_j(t)⟩ > 0 for all four
@@ -6,6 +6,12 @@ i, j. The directions tried are those from the closest point on one of the edges'
 from end to end: wherever such a pair of points is the closest one, its direction works, however small the gap. All of
 these are polynomials in t, positive if their Bernstein coefficients are. An interval without such a proof is narrowed
 down to the time when the lines are coplanar, if there is one such time, and halved otherwise.
+
+If a segment and a triangle are apart at first, then at their first contact an end of the segment is in the triangle, or
+the segment meets one of the triangle's edges: a segment that pierces it with both ends outside would have done so
+shortly before.  So there are three pairs of segments and the paths of the two ends, which are segments too: whether one
+of these crosses the triangle is decided by signs of determinants.  Of paths in its plane only the beginning matters,
+because they enter the triangle through its edges; a triangle without area consists of its edges alone.
 
 Coordinates are floating-point numbers, hence integers after scaling, and nothing that matters is ever rounded.
 """
@@ -24,12 +30,8 @@ Polynomial = Sequence[int]
 Vector = tuple[Polynomial, ...]
 Motion = tuple[Vector, Vector, Vector]  # D, e, f, each linear
 
-_MIN_LENGTH = Fraction(1, 2**60)  # length at which an interval is given up,
-_MIN_RATIO = Fraction(1, 2**52)  # or its length relative to its end
-_SURE = Fraction(1, 2**10)  # relative length below which a plain crossing needs no sharper time
-_INSIDE = 10**6  # one part in this many from the ends of both edges counts as plainly inside
+EDGES = ((2, 3), (3, 4), (4, 2))  # rows of a triangle's vertices, after those of the segment
 _BITS = 40  # a single time of coplanarity is narrowed down by a factor of 2^-40 at a time
-_MAX_INTERVALS = 600  # a bound for pathological motions that touch all the time
 
 
 def first_contact(start: FloatArray, end: FloatArray, after: float = 0.0) -> float | None:
@@ -44,13 +46,14 @@ def first_contact(start: FloatArray, end: FloatArray, after: float = 0.0) -> flo
     if after <= 0 and not _free(_frame(motion, 0)):
         return 0.0
     work = [(Fraction(0), Fraction(1), motion)]
-    for _ in range(_MAX_INTERVALS):
+    for _ in range(600):  # a bound for pathological motions that touch all the time
         if not work:
             return None
         a, b, motion = work.pop()
         if b <= after or _free(motion):
             continue
-        if b - a <= max(_MIN_LENGTH, _MIN_RATIO * b) or (b - a <= _SURE * b and _crosses(motion)):
+        # as short as a double tells, or short enough for a plain crossing, which needs no sharper time
+        if b - a <= max(Fraction(1, 2**60), b / 2**52) or (b - a <= b / 2**10 and _crosses(motion)):
             return max(below(a), after)
         if bracket := _only_root(motion):
             low, high = (a + (b - a) * Fraction(k, 2**_BITS) for k in bracket)
@@ -61,6 +64,42 @@ def first_contact(start: FloatArray, end: FloatArray, after: float = 0.0) -> flo
             work.append((middle, b, _part(motion, half, 2 * half)))
             work.append((a, middle, _part(motion, 0, half)))
     return max(below(work[-1][0]), after) if work else None
+
+
+def first_contact_with_triangle(start: FloatArray, end: FloatArray, after: float = 0.0) -> float | None:
+    """Return a time before which a moving segment certainly does not meet a triangle, or None if it never does.
+
+    ``start`` and ``end`` hold x₀, x₁, y₀, y₁, y₂, shape (5, 3), of which the last three do not move; until ``after``
+    the two are known not to meet. As sharp as `first_contact` is.
+    """
+    if after <= 0 and crossing(start[0], start[1], start[2:]) is not None:
+        return 0.0
+    times = [first_contact(start[[0, 1, a, b]], end[[0, 1, a, b]], after) for a, b in EDGES]
+    times += [crossing(start[k], end[k], start[2:]) for k in (0, 1)]
+    return min((time for time in times if time is not None), default=None)
+
+
+def crossing(p: FloatArray, q: FloatArray, triangle: FloatArray) -> float | None:
+    """Return the parameter of the point at which the segment from p to q meets a triangle, shape (3, 3), rounded down.
+
+    None if there is no such point. For a segment in the triangle's plane only its first end is examined: if that is
+    not in the triangle, the segment may still meet its edges.
+    """
+    points = whole_numbers(np.concatenate([[p, q], triangle]))
+    first, last, u, v, w = (tuple((x,) for x in row) for row in points)  # constant polynomials
+    normal = _normal(_minus(v, u), _minus(w, u))
+    (from_first,), (from_last,) = _dot(normal, _minus(first, u)), _dot(normal, _minus(last, u))
+    if from_first * from_last > 0 or not any(c for (c,) in normal):
+        return None
+    height = from_first - from_last or 1
+    # where the segment meets the plane, times the height
+    point = [height * a + from_first * (b - a) for a, b in zip(*points[:2], strict=True)]
+    for a, b in pairwise((u, v, w, u)):
+        beside = tuple((x - height * y,) for x, (y,) in zip(point, a, strict=True))
+        (side,) = _dot(normal, _normal(_minus(b, a), beside))
+        if side * height < 0:
+            return None
+    return below(Fraction(from_first, height))
 
 
 def whole_numbers(points: FloatArray) -> list[list[int]]:
@@ -158,13 +197,13 @@ def _crosses(motion: Motion) -> bool:
 
 
 def _well_inside(motion: Motion) -> bool:
-    """Whether the points where two lines, standing still, come nearest are well inside both edges."""
+    """Whether the points where two lines, standing still, come nearest are plainly inside both edges."""
     D, e, f = motion
     normal = _normal(e, f)
     (whole,) = _dot(normal, normal)
     for line in (f, e):
         (part,) = _dot(_normal(line, D), normal)  # s |e × f|² and r |e × f|²
-        if min(part, whole - part) * _INSIDE <= whole:
+        if min(part, whole - part) * 10**6 <= whole:
             return False
     return True
 

@@ -6,14 +6,12 @@ import numpy as np
 
 from ..base.errors import CurveError, Place
 from ..base.messages import Message
+from ..base.tolerances import MIN_GAP
 from ..base.types import BoolArray, FloatArray, IntArray
 from ..curve import Curve, Mesh
 from ..curve.distances import arc_distance_of_points
 from .boxes import BoxTree, Level, corners
 from .planes import closest_chord, relative_motion
-
-MIN_GAP = 1e-11  # relative to the curve's length; at half of that, energies are wrong by percents
-ENDS_ONLY = 1e-3  # of the longer edge: midpoints further apart than that are not affected by edges being near
 
 
 def minimal_gap(curve: Curve) -> tuple[float, tuple[int, int] | None]:
@@ -46,18 +44,18 @@ def check_gap(curve: Curve) -> None:
     radius = float(np.ldexp(MIN_GAP * curve.length, -unit))
     for i, j, squares in near_edges(curve, points, lambda: radius**2):
         apart = np.linalg.norm(curve.midpoints[i] - curve.midpoints[j], axis=1)
-        near = apart <= ENDS_ONLY * np.maximum(curve.edge_lengths[i], curve.edge_lengths[j])
+        # midpoints further apart than that part of the longer edge do not feel that edges are near
+        near = apart <= 1e-3 * np.maximum(curve.edge_lengths[i], curve.edge_lengths[j])
         if near.any():
             k = int(np.where(near, squares, np.inf).argmin())
             point = curve.vertices[curve.mesh.tails[i[k]]]
-            gap, place = np.ldexp(np.sqrt(squares[k]), unit), ", ".join(f"{x:.6g}" for x in point)
+            gap = float(np.ldexp(np.sqrt(squares[k]), unit))
             sentence = (
-                "strands are only {gap:.2g} apart near ({place}), less than {least:g} of the curve's length: too close "
+                "strands are only {gap:.2g} apart near {place}, less than {least:g} of the curve's length: too close "
                 "to compute their energy; move them apart"
             )
-            raise CurveError(
-                Message(sentence, gap=float(gap), place=place, least=MIN_GAP), Place((), tuple(point.tolist()))
-            )
+            message = Message(sentence, gap=gap, place=written(point), least=MIN_GAP)
+            raise CurveError(message, Place((), tuple(point.tolist())))
 
 
 def thickness(curve: Curve) -> float:
@@ -133,6 +131,11 @@ def squared_segment_distances(points: FloatArray, vertices: IntArray) -> FloatAr
         motion = np.asarray(np.linalg.qr(motion.transpose(2, 1, 0), mode="r")).transpose(2, 1, 0)
     chord = closest_chord(motion)
     return np.asarray(np.einsum("mp,mp->p", chord, chord))
+
+
+def written(position: FloatArray) -> str:
+    """A point as messages write it."""
+    return "(" + ", ".join(f"{x:.6g}" for x in position) + ")"
 
 
 def squared_gaps(signed: FloatArray) -> FloatArray:

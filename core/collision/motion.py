@@ -1,25 +1,27 @@
 """How far all vertices can move along straight lines before two edges meet, or an edge and an obstacle."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from typing import NamedTuple
+from typing import TypeVar
 
 import numpy as np
 
+from ..base.deadline import check_time
 from ..base.messages import EDGE, Message
 from ..base.types import BoolArray, FloatArray, IntArray
 from ..curve import Mesh
 from ..curve.obstacle import Obstacle
 from .boxes import BoxTree, Level, contact_window, still_triangles
-from .exact import first_contact
-from .exact_triangle import first_contact_with_triangle
+from .exact import first_contact, first_contact_with_triangle
 from .gap import folds
 from .planes import march
 
-_BATCH = 1 << 13  # pairs processed together, so that their arrays stay in the cache
-_SHARPNESS = 0.985  # a time proved up to this fraction of a known contact time is near enough to it
-_EARLY_START = 0.875  # fraction of the time at which boxes meet where marching begins: the pair is clearly apart there
+# Vertices of pairs of edges, or of edges and triangles at rest, that can meet before the limit, x₀, x₁, y₀, y₁, and y₂
+# of triangles, shape (4 or 5, pairs); numbers of the edges, or of edge and triangle, shape (2, pairs); times up to
+# which the pairs are surely free, shape (pairs,)
+Candidates = tuple[IntArray, IntArray, FloatArray]
+Proved = TypeVar("Proved")
 
 
 class Limit(Enum):
@@ -64,26 +66,18 @@ class FreeMotion:
         return self.limit is Limit.NONE
 
 
-def free_motion(mesh: Mesh, start: FloatArray, end: FloatArray, obstacles: Sequence[Obstacle] = ()) -> FreeMotion:
+def free_motion(
+    mesh: Mesh, start: FloatArray, end: FloatArray, obstacles: Sequence[Obstacle] = (), *, exhaustive: bool = True
+) -> FreeMotion:
     """Prove as much as possible of the motion (1−t) start + t end, t in [0, 1], free of contact.
 
     Neighbour edges are not tested: when they fold onto each other, one of them meets the edge after the other. In
     triangles and at the ends of arcs, where there is no such edge, a vertex is tested against an edge (`folds`).
 
     ``start`` and ``end`` are the vertices at both ends, shape (n, m) with m = 2 or 3, or a ValueError says so; the
-    proof is about exactly these floating-point numbers.  Obstacles are in the same units, and in space only.
+    proof is about exactly these floating-point numbers.  Obstacles are in the same units, and in space only.  Unless
+    the search is exhaustive it ends with any contact, not the first.
     """
-    return _search(mesh, start, end, obstacles, exhaustive=True)
-
-
-def is_free(mesh: Mesh, start: FloatArray, end: FloatArray, obstacles: Sequence[Obstacle] = ()) -> bool:
-    """Whether the motion from ``start`` to ``end``, shape (n, m), is proved free of contact; see `free_motion`."""
-    return _search(mesh, start, end, obstacles, exhaustive=False).limit is Limit.NONE
-
-
-def _search(
-    mesh: Mesh, start: FloatArray, end: FloatArray, obstacles: Sequence[Obstacle], *, exhaustive: bool
-) -> FreeMotion:
     if start.shape != end.shape or start.shape not in ((mesh.size, 2), (mesh.size, 3)):
         raise ValueError(
             f"start and end have shapes {start.shape} and {end.shape}; "
@@ -95,19 +89,18 @@ def _search(
     if not np.isfinite(size):  # NumPy's maximum, unlike Python's, is NaN if one is
         return FreeMotion(0.0, None, Limit.NOT_FINITE)
     search = _Search(mesh, (start, end), tuple(obstacles), max([size, *(each.size for each in obstacles)]))
-    for candidates in search.batches():
-        search.take(candidates)
+    for candidates in search.candidates():
+        search.take(*candidates)
         if search.met is not None and not exhaustive:
             break
-    return search.result()
+    if search.met is None:
+        return FreeMotion(1.0)
+    return FreeMotion(search.limit, search.met, Limit.CONTACT if search.limit > 0 else Limit.TOUCHING_START)
 
 
-class _Candidates(NamedTuple):
-    """Pairs of edges, or of edges and triangles at rest, that can meet before the limit."""
-
-    vertices: IntArray  # x₀, x₁, y₀, y₁, and y₂ of triangles; shape (4 or 5, pairs)
-    names: IntArray  # numbers of the edges, or of edge and triangle; shape (2, pairs)
-    reached: FloatArray  # times up to which the pairs are surely free; shape (pairs,)
+def is_free(mesh: Mesh, start: FloatArray, end: FloatArray, obstacles: Sequence[Obstacle] = ()) -> bool:
+    """Whether the motion from ``start`` to ``end``, shape (n, m), is proved free of contact; see `free_motion`."""
+    return free_motion(mesh, start, end, obstacles, exhaustive=False).proved
 
 
 class _Search:
@@ -128,12 +121,7 @@ class _Search:
         self.contact = np.inf  # the earliest contact found by an exact decision
         self.met: Contact | None = None
 
-    def result(self) -> FreeMotion:
-        if self.met is None:
-            return FreeMotion(1.0)
-        return FreeMotion(self.limit, self.met, Limit.CONTACT if self.limit > 0 else Limit.TOUCHING_START)
-
-    def batches(self) -> Iterator[_Candidates]:
+    def candidates(self) -> Iterator[Candidates]:
         """Yield all pairs that can meet before the limit, starting with those that can do so soon.
 
         No pair is lost between the two searches: boxes above it never meet later than its own (`contact_window`), so
@@ -141,7 +129,7 @@ class _Search:
         """
         # vertices, as edges of no length, against the edges that they would lie on
         vertices = folds(self.mesh)
-        yield _Candidates(vertices, self.mesh.outgoing[vertices[[0, 2]]], np.zeros(vertices.shape[1]))
+        yield vertices, self.mesh.outgoing[vertices[[0, 2]]], np.zeros(vertices.shape[1])
         start, end = self.start[:, : self.mesh.size], self.end[:, : self.mesh.size]
         tree = BoxTree.build(self.mesh, start, end)
         # in this time vertices move by about an edge length: contacts until then limit the search for others
@@ -156,8 +144,9 @@ class _Search:
             if self.still is not None:
                 yield from self._windows(tree, self.still.tree, self.mesh.size, after, until)
 
-    def _windows(self, tree: BoxTree, other: BoxTree, first: int, after: float, until: float) -> Iterator[_Candidates]:
+    def _windows(self, tree: BoxTree, other: BoxTree, first: int, after: float, until: float) -> Iterator[Candidates]:
         """Pairs whose boxes meet first at a time in (after, until]; ``first`` is the first vertex of the other tree."""
+        batch = 1 << 13  # pairs processed together, so that their arrays stay in the cache
 
         def near(level: Level, a: IntArray, others: Level, b: IntArray) -> BoolArray:
             enter, leave = contact_window(level.gaps(a, others, b))
@@ -165,37 +154,52 @@ class _Search:
             return keep & (enter > after) if level.leaves and others.leaves else keep
 
         for i, j in tree.pairs(near) if other is tree else tree.pairs_with(other, near):
-            for k in range(0, len(i), _BATCH):
-                a, b = i[k : k + _BATCH], j[k : k + _BATCH]
+            for k in range(0, len(i), batch):
+                a, b = i[k : k + batch], j[k : k + batch]
                 enter, _ = contact_window(tree.levels[-1].gaps(a, other.levels[-1], b))
                 vertices = np.concatenate([tree.corners[:, a], first + other.corners[:, b]])
-                yield _Candidates(vertices, np.stack([tree.order[a], other.order[b]]), _EARLY_START * enter)
+                # marching begins a bit before boxes meet, where the pair is clearly apart
+                yield vertices, np.stack([tree.order[a], other.order[b]]), 0.875 * enter
 
-    def take(self, candidates: _Candidates) -> None:
-        """March pairs and lower the limit to the earliest time that cannot be passed."""
-        vertices, names, reached = candidates
+    def take(self, vertices: IntArray, names: IntArray, reached: FloatArray) -> None:
+        """March candidates and lower the limit to the earliest time that cannot be passed."""
         reached = march(self.start, self.end, vertices, reached, self.limit)
         stopped = np.flatnonzero(reached < self.limit)
         for k in stopped[np.argsort(reached[stopped], kind="stable")]:
             time = float(reached[k])
             if time >= self.limit:
                 break
-            if time < _SHARPNESS * self.contact:
-                time = self._decide(vertices[:, k], time)
+            if time < 0.985 * self.contact:  # a time that near a known contact needs no decision
+                decide = first_contact if len(vertices) == 4 else first_contact_with_triangle
+                first, last = (points[vertices[:, k]] for points in self.given)
+                contact = decide(first, last, time)
+                if contact is None:
+                    continue
+                self.contact = min(self.contact, contact)
+                time = max(time, float(np.nextafter(contact, 0.0)))
             if time < self.limit:
-                self.limit, self.met = time, self._contact(*names[:, k].tolist(), with_obstacle=len(vertices) == 5)
+                edge, other = names[:, k].tolist()
+                touched = self.still.obstacle_of(other) if self.still and len(vertices) == 5 else None
+                self.limit, self.met = time, Contact((edge,), touched.title) if touched else Contact((edge, other))
 
-    def _contact(self, edge: int, other: int, *, with_obstacle: bool) -> Contact:
-        if self.still is not None and with_obstacle:
-            return Contact((edge,), self.still.obstacle_of(other).title)
-        return Contact((edge, other))
 
-    def _decide(self, vertices: IntArray, reached: float) -> float:
-        """The time up to which one pair is free by exact arithmetic, infinite if it never meets."""
-        start, end = (points[vertices] for points in self.given)
-        decide = first_contact if len(vertices) == 4 else first_contact_with_triangle
-        contact = decide(start, end, reached)
-        if contact is None:
-            return np.inf
-        self.contact = min(self.contact, contact)
-        return max(reached, float(np.nextafter(contact, 0.0)))
+def walk(
+    leg: Callable[[float, float], Proved | None], end: float, longest: float, shortest: float
+) -> Iterator[tuple[float, Proved]]:
+    """Yield the proved legs of a way from 0 to ``end``, each with the place it leads to.
+
+    ``leg(place, stride)`` tries to go on from a place by a stride, to the way's end at most: it returns what is proved,
+    or None.  A stride along which nothing is proved is halved; after a leg the next one is twice as long, up to the
+    longest.  Where strides shorter than ``shortest`` were needed the walk ends: what it has yielded is a part of the
+    way.
+    """
+    place, stride = 0.0, longest
+    while place < end and stride >= shortest:
+        check_time()
+        found = leg(place, stride)
+        if found is None:
+            stride *= 0.5
+        else:
+            place += stride
+            yield place, found
+            stride = min(2.0 * stride, longest)

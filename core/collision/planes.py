@@ -7,19 +7,11 @@ if all are positive at two times, a plane orthogonal to n separates the two at e
 
 import numpy as np
 
+from ..base.tolerances import PLANE_ROUNDING, PLANE_UNDERFLOW
 from ..base.types import BoolArray, FloatArray, IntArray
 
-# Bound of the rounding errors in units of Σ|n_k||d_k|. Differences of coordinates are relatively exact, one unit
-# roundoff u; a dot product of m ≤ 3 terms adds m, the combination of D, e and f or g two, the interpolation in time
-# three, this bound's own evaluation a few: below 16 u. Twice that is taken.
-ROUNDING = 32 * 2.0**-53
-UNDERFLOW = 1e-300  # products below 2^-1022 lose absolute, not relative accuracy
 _TINY = np.finfo(np.float64).tiny
 _PARALLEL = 1e-14  # sin² of the angle below which a cross product is mostly rounding
-_ROUNDS = 20
-_PATIENCE = 1 / 3  # so few pairs per round done are not worth another round: the exact decision is as quick
-_SHORT = 0.01  # a step that adds less than this part of the time reached calls for the exact decision
-_SHARE = 1 - 2.0**-6  # part of the way to the plane's own contact that a step goes, to stay apart for the next plane
 
 
 def march(start: FloatArray, end: FloatArray, vertices: IntArray, reached: FloatArray, limit: float) -> FloatArray:
@@ -34,15 +26,15 @@ def march(start: FloatArray, end: FloatArray, vertices: IntArray, reached: Float
     motion = relative_motion(start, end, vertices[:, active])
     size = np.abs(motion).sum(axis=1)
     t = reached[active]
-    for k in range(_ROUNDS):
-        if active.size <= _PATIENCE * k:
+    for k in range(20):
+        if 3 * active.size <= k:  # so few pairs are not worth another round: the exact decision is as quick
             break
         planes = Separation(motion, size, closest_chord(at_time(motion, t)))
-        further = np.minimum(t + _SHARE * planes.time_left(t), 1.0)
+        further = np.minimum(t + (1 - 2.0**-6) * planes.time_left(t), 1.0)  # there still apart, for the next plane
         moved = planes.proves(t) & planes.proves(further)
         further = np.where(moved, further, t)
         reached[active] = further
-        go_on = moved & (further < limit) & (further - t > _SHORT * further)
+        go_on = moved & (further < limit) & (further - t > 0.01 * further)  # else the exact decision is as quick
         active, motion, size, t = active[go_on], motion[..., go_on], size[..., go_on], further[go_on]
     return reached
 
@@ -73,7 +65,7 @@ class Separation:
 
     def __init__(self, motion: FloatArray, size: FloatArray, direction: FloatArray) -> None:
         D, e, *spans = np.einsum("tkmp,mp->ktp", motion, direction)
-        D = D - (ROUNDING * np.einsum("tmp,mp->tp", size, np.abs(direction)) + UNDERFLOW)
+        D = D - (PLANE_ROUNDING * np.einsum("tmp,mp->tp", size, np.abs(direction)) + PLANE_UNDERFLOW)
         ends = (D, D + e)
         self.values = np.stack([*ends, *(x - y for y in spans for x in ends)], axis=1)  # (2, 4 or 6, pairs)
 

@@ -71,15 +71,8 @@ class Verdict:
 
     def __str__(self) -> str:
         if self.accepted:
-            legs, stages, obstacles, pins = (
-                f"{count} {noun}{'s' * (count != 1)}"
-                for count, noun in (
-                    (self.legs, "leg"),
-                    (self.stages, "stage"),
-                    (self.obstacles, "obstacle"),
-                    (self.pins, "pin"),
-                )
-            )
+            counts = {"leg": self.legs, "stage": self.stages, "obstacle": self.obstacles, "pin": self.pins}
+            legs, stages, obstacles, pins = (f"{count} {noun}{'s' * (count != 1)}" for noun, count in counts.items())
             nor = f", nor with {obstacles}" if self.obstacles else ""
             held = f"; {pins} in place" if self.pins else ""
             return f"accepted: no contact on {legs} in {stages}{nor}{held}"
@@ -196,8 +189,8 @@ def cross(u: Sequence[Any], v: Sequence[Any], multiplied: Any = mul, less: Any =
     return [less(multiplied(u[i], v[j]), multiplied(u[j], v[i])) for i, j in ((1, 2), (2, 0), (0, 1))]
 
 
-def meetings(*ends: Motion) -> Iterator[Time]:
-    """Times when edges x0 x1 and y0 y1, whose four ends are motions, have a common point: the first is among them."""
+def meet(*ends: Motion) -> bool:
+    """Whether edges x0 x1 and y0 y1, whose four ends are motions, have a common point at any time."""
     x0, x1, y0, y1 = (list(zip(*motion, strict=True)) for motion in ends)  # coordinates as polynomials in time
     a, b, c, d = (list(map(minus, p, q)) for p, q in ((x0, y0), (x0, y1), (x1, y0), (x1, y1)))
     e, f = list(map(minus, x1, x0)), list(map(minus, y1, y0))
@@ -223,12 +216,8 @@ def meetings(*ends: Motion) -> Iterator[Time]:
                 for first, last, area in beside
             )
         if touch:
-            yield time
-
-
-def meet(*ends: Motion) -> bool:
-    """Whether edges x0 x1 and y0 y1, whose four ends are motions, have a common point at any time."""
-    return any(True for _ in meetings(*ends))
+            return True
+    return False
 
 
 def meet_triangle(x0: Motion, x1: Motion, *corners: Motion) -> bool:
@@ -463,9 +452,8 @@ class Archive(zipfile.ZipFile):
                     values = tuple(every[k + place] for place in places)
                 else:
                     values = struct.unpack(f"{order}{each}{code}", stream.read(size * each))
-                if not math.isfinite(sum(values)) and not all(
-                    map(math.isfinite, values)
-                ):  # sums of finite ones are fast
+                # the sum of finite ones is fast, and may yet overflow
+                if not math.isfinite(sum(values)) and not all(map(math.isfinite, values)):
                     where = f"{name}, frame {k}" if dimension == 3 else name
                     raise TrajectoryError(f"{where}: a coordinate is not finite")
                 yield values
@@ -488,10 +476,8 @@ class Archive(zipfile.ZipFile):
 
     def triangles(self, name: str) -> list[Points]:
         """Of an obstacle; a segment becomes a triangle without area."""
-        points, rows = (
-            self.points(f"{name}_vertices", [3]),
-            self.array(f"{name}_faces", WHOLE, 2, "a table of whole numbers"),
-        )
+        points = self.points(f"{name}_vertices", [3])
+        rows = self.array(f"{name}_faces", WHOLE, 2, "a table of whole numbers")
         shape = next(rows)
         if shape[1] not in (2, 3):
             raise TrajectoryError(f"{name}_faces has shape {shape}; it must be (f, 3) or (f, 2)")
@@ -531,7 +517,7 @@ class Archive(zipfile.ZipFile):
 
 
 @dataclass
-class Check:
+class Findings:
     """What has been found out about a file so far."""
 
     sieve: Sieve
@@ -639,7 +625,7 @@ def check(
             pins = archive.points("pins", [2, 3]) if "pins.npy" in archive.names else []
             what["pins"], total = len(pins), 0
             triangles, obstacle = [*chain(*parts)], [k for k, part in enumerate(parts) for _ in part]
-            found = Check(sieve(triangles), triangles, obstacle, pins)
+            found = Findings(sieve(triangles), triangles, obstacle, pins)
             with suppress(TrajectoryError):
                 for name in archive.numbered("stage", ""):
                     total += max(next(archive.array(name, FLOATS, 3, ""))[0] - 1, 0)

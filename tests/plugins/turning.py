@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from ...collision.walk import walk
+from ...collision.motion import walk
 from ...descent import Leg, Step
 from ...descent.step import leg
 from ..run import Change, Move

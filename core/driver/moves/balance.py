@@ -19,7 +19,7 @@ from scipy.optimize import minimize
 
 from ...base.arguments import checked_fields, number
 from ...base.types import FloatArray
-from ...collision.walk import walk
+from ...collision.motion import walk
 from ...curve import Curve
 from ...curve.measures import bending, bending_and_derivative
 from ...curve.refine import arc_lengths, cubic_spline, sample_parameters

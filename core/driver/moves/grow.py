@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ...base.arguments import checked_fields, number
-from ...collision.walk import walk
+from ...collision.motion import walk
 from ...curve.pins import spans
 from ...curve.refine import SPLIT, affordable_pieces, graded_spacing
 from ...descent import Leg, NoStep, Point, Step

@@ -12,7 +12,7 @@ from ...base.arguments import checked_fields, number
 from ...base.errors import CurveError, OptionError
 from ...base.messages import Message
 from ...base.types import FloatArray
-from ...collision.walk import walk
+from ...collision.motion import walk
 from ...curve import Curve
 from ...descent import Leg, Point, Step
 from ...descent.hessian import soft_modes

@@ -13,7 +13,7 @@ from ...base.errors import MobiusFlowError
 from ...base.messages import Message
 from ...base.types import FloatArray, IntArray
 from ...collision import check_gap
-from ...collision.walk import walk
+from ...collision.motion import walk
 from ...curve import Curve, refine
 from ...curve.pins import arcs, holds
 from ...descent import Leg, Point, Step

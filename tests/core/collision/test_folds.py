@@ -1,12 +1,11 @@
 """The ends of arcs: no fold is taken for free, by the program or by `verify`, against exact times."""
 
 import itertools
-from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 import pytest
-from exact_times import meet
+from exact_decisions import meet
 from mobius_flow.core import Curve, Mesh
 from mobius_flow.core.collision import Limit, free_motion, is_free, minimal_gap, survives_rounding
 from mobius_flow.core.collision.gap import folds
@@ -31,8 +30,7 @@ def collapses(mesh: Mesh, start: np.ndarray, end: np.ndarray) -> bool:
         segments += [(0, 0, 1, 1)]
     for (a, b), (c, d) in itertools.pairwise(edges):  # the end that two neighbours do not share, on the other edge
         segments += [(a, a, c, d), (d, d, a, b)]
-    points = [[[Fraction(x) for x in p] for p in frame.tolist()] for frame in (start, end)]
-    return any(meet(*([p[k] for k in segment] for p in points)) for segment in segments)
+    return any(meet(start[[*segment]], end[[*segment]]) for segment in segments)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

@@ -4,11 +4,11 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from exact_decisions import meet, until
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mobius_flow.core import Curve, Mesh
 from mobius_flow.core.collision import FreeMotion, Limit, free_motion, is_free
-from motions import pair_contacts
 from shapes import hopf_link, regular_polygon, torus_trefoil
 
 
@@ -96,20 +96,16 @@ def test_earliest_contact_of_all_pairs(seed: int, m: int, sizes: tuple[int, ...]
     mesh, rng = Mesh(sizes), np.random.default_rng(seed)
     start = np.concatenate([rng.normal(size=(k, m)) + 3 * c for c, k in enumerate(sizes)])
     end = start + rng.choice([0.1, 1.0]) * rng.normal(size=start.shape)
-    contacts = []
-    for i, j in zip(*np.triu_indices(mesh.size, 1), strict=True):
-        if mesh.disjoint(i, j):
-            four = [i, mesh.heads[i], j, mesh.heads[j]]
-            contacts += pair_contacts((start[four], end[four]))
-    earliest = min((float(root.high) for root in contacts), default=np.inf)
+    i, j = np.triu_indices(mesh.size, 1)
+    i, j = i[mesh.disjoint(i, j)], j[mesh.disjoint(i, j)]
+    quadruples = np.stack([i, mesh.heads[i], j, mesh.heads[j]], axis=1)
     motion = free_motion(mesh, start, end)
-    if 3 in sizes and motion.contact is not None and motion.time < 0.98 * earliest:
-        assert not mesh.disjoint(*motion.contact.edges)  # a triangle that turns inside out
-    elif np.isfinite(earliest):
-        assert motion.time == pytest.approx(earliest, rel=0.02)
-        assert motion.time <= earliest
-    else:
+    assert motion.time == 0 or not any(until(meet, start[four], end[four], motion.time) for four in quadruples)
+    if motion.contact is None:
         assert motion == FreeMotion(1.0)
+    elif mesh.disjoint(*motion.contact.edges):  # no triangle that turns inside out
+        later = min(1.0, motion.time / 0.98)
+        assert any(until(meet, start[four], end[four], later) for four in quadruples)
 
 
 def test_touching_at_the_start() -> None:

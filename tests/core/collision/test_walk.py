@@ -5,7 +5,7 @@ from itertools import pairwise
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from mobius_flow.core.collision.walk import walk
+from mobius_flow.core.collision.motion import walk
 
 
 @given(end=st.floats(0.01, 50.0), longest=st.floats(0.01, 5.0), seed=st.randoms())

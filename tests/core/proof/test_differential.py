@@ -1,45 +1,26 @@
-"""Decisions that share no code are the same for motions that nothing about is general.
+"""The whole searches of program and ``verify``, with folds, boxes and planes, agree about polygons side by side.
 
-MOBIUS_FLOW_DIFFERENTIAL=100000 makes it a million motions of pairs, and another one of polygons side by side, which
-takes an hour or two.
+MOBIUS_FLOW_DIFFERENTIAL=100000 makes it a million motions, which takes an hour.
 """
 
 import os
 from collections import Counter
 from collections.abc import Callable, Iterator
-from fractions import Fraction
 from functools import partial
 
 import motions
 import numpy as np
-import pytest
 from degenerate_motions import KINDS, Motion, Rng
-from exact_times import meet
+from exact_decisions import meet
 from mobius_flow.core import Mesh
 from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.collision import is_free
-from mobius_flow.core.collision.exact import first_contact
 from mobius_flow.core.proof.filter import doubtful_pairs
 
 COUNT = int(os.environ.get("MOBIUS_FLOW_DIFFERENTIAL", "90"))
 BATCH = 200
 # the four vertices of a motion as two arcs, as one, or as a quadrilateral
 POLYGONS = (((2, 2), (False, False)), ((4,), (False,)), ((4,), (True,)))
-
-
-def exact(points: FloatArray) -> list[list[Fraction]]:
-    return [[Fraction(x) for x in p] for p in points.tolist()]
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_same_answers(kind: Callable[[Rng], Motion]) -> None:
-    rng, contacts = np.random.default_rng([93, KINDS.index(kind)]), 0
-    for _ in range(COUNT):
-        start, end = kind(rng)
-        found = meet(exact(start), exact(end))
-        assert found == (first_contact(start, end) is not None), (start.tolist(), end.tolist())
-        contacts += found
-    assert contacts > 0
 
 
 def random_motion(rng: Rng, m: int) -> tuple[str, Motion]:
@@ -76,7 +57,7 @@ def meeting_ones(frames: FloatArray, mesh: Mesh) -> set[int]:
     found: set[int] = set()
     for corners in np.concatenate([np.empty((4, 0), int), *doubtful_pairs(start, end, heads)], axis=1).T:
         k = int(corners[0]) // 4
-        if k not in found and meet(exact(start[corners]), exact(end[corners])):
+        if k not in found and meet(start[corners], end[corners]):
             found.add(k)
     return found
 
@@ -115,7 +96,6 @@ def compared(seed: int) -> Counter[str]:
 
 
 def test_polygons_are_free_if_no_pair_meets() -> None:
-    """The whole of the searches, with folds, boxes and planes."""
     total = sum((compared(seed) for seed in range(max(1, COUNT // 30))), Counter[str]())
     print(dict(total))
     assert min(total["free"], total["meet"]) > COUNT // 60

@@ -1,19 +1,15 @@
 """Trajectories among obstacles: real ones are accepted, wrong ones refused with the place."""
 
-from collections.abc import Callable
-from fractions import Fraction
 from itertools import product
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 import pytest
-from exact_times import meet_triangle
+from exact_decisions import meet_triangle
 from mobius_flow.core import Obstacle
-from mobius_flow.core.collision.exact_triangle import first_contact_with_triangle
 from mobius_flow.core.proof import Verdict, verify
-from mobius_flow.core.proof.filter import FloatingSieve, overlapping
-from obstacle_motions import Motion, Rng, in_plane, inside, lattice, touching
+from mobius_flow.core.proof.filter import doubtful_pairs, overlapping
 from shapes import hopf_link, regular_polygon, torus_trefoil
 from solids import box, plate, rod, sphere
 
@@ -164,31 +160,9 @@ def test_filters_lose_no_edge_that_meets_a_triangle(n: int) -> None:
     rng, curve = np.random.default_rng(n), regular_polygon(n)
     start, end = (curve.vertices + rng.integers(-2, 3, size=(n, 3)) for _ in range(2))
     triangles = rng.integers(-2, 3, size=(6, 3, 3)).astype(float)
-    found = FloatingSieve(triangles.tolist()).doubtful_triangles(start, end, curve.mesh.heads)
+    found = doubtful_pairs(start, end, curve.mesh.heads, triangles=triangles)
     doubtful = {tuple(pair) for batch in found for pair in batch.T.tolist()}
     for tail, k in product(range(n), range(6)):
         head = int(curve.mesh.heads[tail])
-        x, y = [points[[tail, head]].tolist() for points in (start, end)], triangles[k].tolist()
-        if meet_triangle([*x[0], *y], [*x[1], *y]):
+        if meet_triangle(*([*points[[tail, head]], *triangles[k]] for points in (start, end))):
             assert (tail, head, k) in doubtful
-
-
-@pytest.mark.parametrize("kind", [lattice, in_plane, inside])
-def test_a_segment_meets_a_triangle_if_it_does_so_at_some_time(kind: Callable[[Rng], Motion]) -> None:
-    """At quarters of the time coordinates are exact; there convex hulls decide, of which nobody else makes use."""
-    rng, met = np.random.default_rng(5), 0
-    for _ in range(24):
-        start, end = kind(rng)
-        frames = [(1 - t) * start + t * end for t in np.linspace(0.0, 1.0, 5)]
-        touched = [touching(frame) for frame in frames]
-        assert touched == [first_contact_with_triangle(frame, frame) is not None for frame in frames]
-        assert touched == [meet_triangle(exact(frame), exact(frame)) for frame in frames]
-        if any(touched):
-            assert meet_triangle(exact(start), exact(end))
-            assert first_contact_with_triangle(start, end) is not None
-        met += any(touched)
-    assert met > 3
-
-
-def exact(points: Array) -> list[list[Fraction]]:
-    return [[Fraction(x) for x in p] for p in points.tolist()]

@@ -1,19 +1,11 @@
 """The exact decision about two moving segments: cases known by hand, and fine sampling."""
 
 import os
-from fractions import Fraction
 
 import numpy as np
 import pytest
 from degenerate_motions import crossing_shadows
-from exact_times import meet, meetings
-
-THIRD = Fraction(1, 3)
-
-
-def exact(points: list[list[float]]) -> list[list[Fraction]]:
-    return [[Fraction(x) for x in p] for p in points]
-
+from exact_decisions import meet, until
 
 CROSS = [[-1, 0, 1], [1, 0, 1], [0, -1, 0], [0, 1, 0]]
 FLAT = [[0, 1], [1, 1], [0, 0], [1, 0]]
@@ -28,40 +20,38 @@ def moved(points: list[list[float]], first: list[float], second: list[float]) ->
 @pytest.mark.parametrize(
     ("start", "end", "contact"),
     [
-        (CROSS, moved(CROSS, [0, 0, -3], [0, 0, 0]), THIRD),
+        (CROSS, moved(CROSS, [0, 0, -4], [0, 0, 0]), 0.25),
         (CROSS, moved(CROSS, [0, 0, -1], [0, 0, 0]), 1),
         (CROSS, moved(CROSS, [0, 0, -0.999], [0, 0, 0]), None),
         (CROSS, moved(CROSS, [0, 1, -1], [0, 0, 0]), 1),  # over an end, exactly
         (CROSS, moved(CROSS, [0, 1.001, -1], [0, 0, 0]), None),
         (CROSS, moved(CROSS, [0, 4, -3], [0, 0, 0]), None),
-        (FLAT, moved(FLAT, [0, -3], [0, 0]), THIRD),  # parallel, face to face
+        (FLAT, moved(FLAT, [0, -4], [0, 0]), 0.25),  # parallel, face to face
         (FLAT, moved(FLAT, [5, -1], [0, 0]), None),
         (FLAT, moved(FLAT, [1, -1], [0, 0]), 1),  # end to end
         (FLAT, [[1, 0], [1, 1], [0, 0], [1, 0]], 1),
-        (IN_A_ROW, moved(IN_A_ROW, [3, 0, 0], [0, 0, 0]), THIRD),  # collinear
+        (IN_A_ROW, moved(IN_A_ROW, [4, 0, 0], [0, 0, 0]), 0.25),  # collinear
         (IN_A_ROW, moved(IN_A_ROW, [3, 0.001, 0], [0, 0, 0]), None),
         (IN_A_ROW, IN_A_ROW, None),
         (IN_A_ROW, moved(IN_A_ROW, [0, 7, 0], [0, 0, 7]), None),
         ([[0, 0], [2, 2], [0, 2], [2, 0]], [[0, 0], [2, 2], [0, 2], [2, 0]], 0),
         ([[0, 0, 0], [2, 0, 0], [1, 0, 0], [1, 1, 1]], [[9, 9, 9], [8, 8, 7], [1, 2, 3], [4, 4, 4]], 0),
-        ([[0, 0], [0, 0], [1, 0], [1, 1]], [[2, 1], [2, 1], [1, 0], [1, 1]], Fraction(1, 2)),  # a point and an edge
-        ([[0, 0], [0, 0], [1, 1], [1, 1]], [[2, 2], [2, 2], [1, 1], [1, 1]], Fraction(1, 2)),  # two points
+        ([[0, 0], [0, 0], [1, 0], [1, 1]], [[2, 1], [2, 1], [1, 0], [1, 1]], 0.5),  # a point and an edge
+        ([[0, 0], [0, 0], [1, 1], [1, 1]], [[2, 2], [2, 2], [1, 1], [1, 1]], 0.5),  # two points
     ],
 )
-def test_known_contacts(start: list[list[float]], end: list[list[float]], contact: Fraction | None) -> None:
-    found = list(meetings(exact(start), exact(end)))
-    assert bool(found) == (contact is not None) == meet(exact(start), exact(end))
+def test_known_contacts(start: list[list[float]], end: list[list[float]], contact: float | None) -> None:
+    assert meet(start, end) == (contact is not None)
     if contact is not None:
-        time = Fraction(contact)
-        first = min(found, key=lambda root: root.low)
-        assert first.sign_of((-time.numerator, time.denominator)) == 0
+        assert until(meet, start, end, contact)
+        assert contact == 0 or not until(meet, start, end, np.nextafter(contact, 0.0))
 
 
 def test_contact_at_an_irrational_time() -> None:
     """The point (t, 0) meets the edge from (0, −1) to (2, 4t − 1) where 2t² = 1."""
     start, end = [[0, -1], [2, -1], [0, 0], [0, 0]], [[0, -1], [2, 3], [1, 0], [1, 0]]
-    found = list(meetings(exact(start), exact(end)))
-    assert {root.sign_of((-1, 0, 2)) for root in found} == {0}
+    before, after = 0.7071067811865475, 0.7071067811865476
+    assert [until(meet, start, end, t) for t in (before, after)] == [False, True]
 
 
 def test_edges_that_meet_beside_a_multiple_root() -> None:
@@ -69,7 +59,7 @@ def test_edges_that_meet_beside_a_multiple_root() -> None:
     rng = np.random.default_rng(617)
     for _ in range(int(os.environ.get("MOBIUS_FLOW_SHADOWS", "300"))):
         start, end = crossing_shadows(rng)
-        assert meet(exact(start.tolist()), exact(end.tolist())), (start.tolist(), end.tolist())
+        assert meet(start, end), (start.tolist(), end.tolist())
 
 
 def test_random_motions_against_sampling() -> None:
@@ -85,7 +75,7 @@ def test_random_motions_against_sampling() -> None:
         if margin > 1e-2:  # sampling can tell
             expected = any(0 < s < 1 and 0 < r < 1 for s, r in crossings)
             hits += expected
-            assert meet(exact(start.tolist()), exact(end.tolist())) == expected
+            assert meet(start, end) == expected
     assert hits > 10
 
 
