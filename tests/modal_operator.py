@@ -7,10 +7,12 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
+from blender_scenes import add_curve, contents
 from mobius_flow.addon.buttons.relaxing import CURVE_OT_mobius_flow_relax
 from mobius_flow.addon.curves.splines import Splines
 from mobius_flow.addon.properties import SETTINGS
 from processes import PATIENCE
+from shapes import hopf_link
 
 
 class Operator:
@@ -81,11 +83,40 @@ class Operator:
 
 
 def restored(obj, before):
-    after = Splines.of(obj.data)
-    for old, new in zip(before.each, after.each, strict=True):
-        assert (old.type, old.count, old.settings) == (new.type, new.count, new.settings)
-        assert all(np.array_equal(old.points[name], new.points[name]) for name in old.points)
+    """See that an object's splines are as they were, bit for bit."""
+    assert splines_of(obj.data) == before
+
+
+def splines_of(data):
+    """All there is to know of the splines of curve data, to be compared."""
+    return [
+        (each.type, each.count, each.settings, {name: array.tobytes() for name, array in each.points.items()})
+        for each in Splines.of(data).each
+    ]
+
+
+def everything():
+    """All that a run that is not kept must leave alone: names, curves, keys, and what would be purged."""
+    users = {data.name: (data.users, data.use_fake_user) for data in bpy.data.curves}
+    return contents() | {"users": users, "all": {data.name: splines_of(data) for data in bpy.data.curves}}
 
 
 def keys(obj):
     return np.array([[p.co[:] for p in block.data] for block in obj.data.shape_keys.key_blocks])
+
+
+def rings():
+    """Two linked rings, each an object, both selected, one of them scaled."""
+    vertices = hopf_link(24).vertices
+    pair = [add_curve([vertices[:24]], "A"), add_curve([0.5 * vertices[24:] - [0, 2, 0]], "B")]
+    pair[1].scale, pair[1].location = (2, 2, 2), (0, 4, 0)
+    bpy.context.view_layer.update()
+    return pair
+
+
+def ring_and_torus():
+    """A stretched ring around a mesh, selected, and the mesh."""
+    bpy.ops.mesh.primitive_torus_add(major_radius=1, minor_radius=0.25)
+    torus = bpy.context.object
+    torus.select_set(False)
+    return add_curve([hopf_link(24).vertices[24:] * [1.0, 1.0, 4.0]], "Ring"), torus

@@ -8,7 +8,6 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 from ...core import Curve
 from ...core.base.messages import Message
-from ...core.collision import check_embedded
 from ...core.curve.tube import places_between
 from ...core.driver.words import named
 from ...core.keys.colours import COLOURINGS, COMPONENT, DISTANCE, ENERGY, vertex_values
@@ -43,7 +42,6 @@ class _Output(Button):
         objects = selected_curves(context)
         recorded = [self.read(obj) for obj in objects]
         link = in_world(objects, recorded, [each.points[-1] for each in recorded])
-        check_embedded(link)
         for made, obj in zip(self.make(objects, recorded, link), objects, strict=True):
             put_beside(made, obj, self.hide_curve)
 

@@ -10,9 +10,7 @@ from collections.abc import Sequence
 import bpy
 import numpy as np
 
-from ...core import Curve, CurveError, Obstacle
-from ...core.collision import check_embedded
-from ...core.driver.words import in_blenders_words, spline_names
+from ...core import Curve, Obstacle
 from ...core.keys.tube import free_radius, radius_beside, thickest_radius
 from . import bake
 from .recorded import Recorded, in_world
@@ -68,12 +66,6 @@ def fit_tubes(objects: Sequence[bpy.types.Object], constant: bool = False) -> No
     if len({len(shapes) for shapes in keys}) > 1:
         keys = [shapes[-1:] for shapes in keys]
     links = [in_world(objects, recorded, shapes) for shapes in zip(*keys, strict=True)]
-    splines = spline_names([obj.name for obj in objects], [len(each.mesh.component_sizes) for each in recorded])
-    for link in links:
-        try:
-            check_embedded(link)
-        except CurveError as error:
-            raise CurveError(in_blenders_words(str(error), splines)) from error
     fitting = np.array([fitting_radius(link) for link in links])
     fitting = np.full_like(fitting, fitting.min()) if constant else fitting
     for obj in objects:

@@ -8,13 +8,13 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from ...core import Curve, MobiusFlowError
+from ...core import Curve, CurveError, MobiusFlowError
 from ...core.base.messages import Message
 from ...core.base.types import FloatArray
-from ...core.collision import is_free
+from ...core.collision import check_embedded, is_free
 from ...core.curve import Mesh
 from ...core.curve.refine import along, interpolated
-from ...core.driver.words import named
+from ...core.driver.words import in_blenders_words, named, spline_names
 from ...core.keys.placement import Frame, Link, Measure, Similarity, Turn, orthonormal
 from . import bake, pins
 from .keyframes import coordinate_curves, fcurves_of
@@ -63,13 +63,20 @@ class Recorded:
 
 
 def in_world(objects: Sequence[bpy.types.Object], recorded: Sequence[Recorded], shapes: Sequence[FloatArray]) -> Curve:
-    """Shapes of several objects as one link in world space; (n, 3) each."""
+    """Shapes of several objects, (n, 3) each, as one link in world space; raises CurveError where they touch."""
     components = [
         placement(obj).to_world(points[piece])
         for obj, each, points in zip(objects, recorded, shapes, strict=True)
         for piece in each.mesh.slices
     ]
-    return Curve.from_components(components, [flag for each in recorded for flag in each.mesh.closed])
+    link = Curve.from_components(components, [flag for each in recorded for flag in each.mesh.closed])
+    try:
+        check_embedded(link)
+    except CurveError as error:
+        counts = [len(each.mesh.component_sizes) for each in recorded]
+        said = in_blenders_words(str(error), spline_names([obj.name for obj in objects], counts))
+        raise CurveError(said) from error
+    return link
 
 
 def _frames(curves: Sequence[bpy.types.FCurve]) -> FloatArray:

@@ -41,11 +41,11 @@ EXPORTERS = {
 }
 
 
-def through(suffix, path):
+def through(suffix, path, more=None):
     """Write what is selected to a file, and read it into an empty one; the objects that have points."""
     name, options, importer, how = EXPORTERS[suffix]
     target = str(path / f"out.{suffix}")
-    operator(name)(filepath=target, **options)
+    operator(name)(filepath=target, **options | (more or {}))
     bpy.ops.wm.read_factory_settings(use_empty=True)
     operator(importer)(filepath=target, **how)
     bpy.context.view_layer.update()
@@ -70,20 +70,16 @@ def moving():
 
 
 @pytest.mark.parametrize("suffix", EXPORTERS)
-def test_a_tube_keeps_its_motion(suffix, moving, tmp_path):
+def test_a_tube_keeps_its_motion_and_its_colours_and_usd_attributes_too(suffix, moving, tmp_path):
+    mesh, attributes = bpy.context.object.data, {"component", "strand_distance", "energy_density"}
+    expected = colours(mesh)
+    assert attributes < set(mesh.attributes.keys())
     assert np.abs(moving[0] - moving[-1]).max() > 0.1
     (tube,) = through(suffix, tmp_path)
-    for frame, expected in zip(FRAMES, moving, strict=True):
-        points = evaluated(tube, frame + LATER.get(suffix, 0))
-        np.testing.assert_allclose(in_world(tube, points), expected, atol=5e-6)
-
-
-@pytest.mark.parametrize("suffix", EXPORTERS)
-def test_a_tube_keeps_its_colours(suffix, moving, tmp_path):
-    mesh = bpy.context.object.data
-    expected = colours(mesh)
-    (tube,) = through(suffix, tmp_path)
+    for frame, points in zip(FRAMES, moving, strict=True):
+        np.testing.assert_allclose(in_world(tube, evaluated(tube, frame + LATER.get(suffix, 0))), points, atol=5e-6)
     np.testing.assert_allclose(colours(tube.data), expected, atol=0.02)
+    assert attributes & set(tube.data.attributes.keys()) == (attributes if suffix == "usdc" else set())
 
 
 def colours(mesh):
@@ -100,22 +96,9 @@ def colours(mesh):
     return found[:, :3]
 
 
-@pytest.mark.parametrize("suffix", EXPORTERS)
-def test_usd_alone_keeps_attributes(suffix, moving, tmp_path):
-    expected = {"component", "strand_distance", "energy_density"}
-    assert expected < set(bpy.context.object.data.attributes.keys())
-    (tube,) = through(suffix, tmp_path)
-    assert expected & set(tube.data.attributes.keys()) == (expected if suffix == "usdc" else set())
-
-
 def test_fbx_as_it_is_set_by_default_has_no_motion(moving, tmp_path):
     """The tooltip says what to turn off."""
-    name, options, importer, how = EXPORTERS["fbx"]
-    target = str(tmp_path / "out.fbx")
-    operator(name)(filepath=target, **{key: value for key, value in options.items() if key not in MOTION_SETTINGS})
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    operator(importer)(filepath=target, **how)
-    (tube,) = (obj for obj in bpy.data.objects if obj.type == "MESH")
+    (tube,) = through("fbx", tmp_path, dict.fromkeys(MOTION_SETTINGS, True))
     np.testing.assert_allclose(evaluated(tube, 1), evaluated(tube, 20), atol=1e-6)
 
 
@@ -147,13 +130,15 @@ def test_control_points_of_smooth_curves_are_kept(suffix, depth, smooth, tmp_pat
 
 @pytest.mark.parametrize("suffix", ["glb", "fbx"])
 def test_of_smooth_curves_what_is_drawn_is_kept(suffix, smooth, tmp_path):
+    """And of glTF nothing without a bevel."""
     smooth.data.bevel_depth = 0.1
     expected = evaluated(smooth)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "a.blend"))
     (mesh,) = through(suffix, tmp_path)
     found = in_world(mesh, evaluated(mesh))
     for some, others in ((found, expected), (expected, found)):
         assert cKDTree(some).query(others)[0].max() < 1e-5
-
-
-def test_gltf_has_no_curves_without_a_bevel(smooth, tmp_path):
-    assert through("glb", tmp_path) == []
+    if suffix == "glb":
+        bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "a.blend"))
+        bpy.context.object.data.bevel_depth = 0.0
+        assert through("glb", tmp_path) == []

@@ -5,9 +5,9 @@ from types import SimpleNamespace
 
 import bpy
 import pytest
-from blender_scenes import add_trefoil, contents, sentence
+from blender_scenes import add_trefoil, contents
 from mobius_flow.addon.buttons import film as buttons
-from mobius_flow.addon.buttons.film import CURVE_OT_mobius_flow_render_film, CURVE_OT_mobius_flow_set_up_stage
+from mobius_flow.addon.buttons.film import CURVE_OT_mobius_flow_render_film
 from mobius_flow.addon.pictures import staging
 from mobius_flow.addon.pictures.movie import Filming, length_of
 
@@ -95,37 +95,17 @@ def test_the_stage_is_one_step_of_undo(scene):
     assert bpy.context.scene.camera is None
 
 
-def test_the_stage_is_removed(scene):
+def test_the_stage_changes_no_selection_and_goes(scene, capfd):
+    obj = bpy.context.object
+    obj.data.bevel_depth = 0
     before = contents()
     OPS.mobius_flow_set_up_stage()
+    assert "Renders do not show 'Knot'" in capfd.readouterr().out
+    assert bpy.context.selected_objects == [obj]
+    assert bpy.context.object == obj
     OPS.mobius_flow_remove_stage()
     assert contents() == before
     assert not OPS.mobius_flow_remove_stage.poll()
-
-
-def test_the_selection_stays(scene):
-    obj = bpy.context.object
-    OPS.mobius_flow_set_up_stage()
-    assert bpy.context.selected_objects == [obj]
-    assert bpy.context.object == obj
-
-
-def test_a_curve_that_renders_do_not_show_is_told_of(scene, capfd):
-    bpy.context.object.data.bevel_depth = 0
-    OPS.mobius_flow_set_up_stage()
-    assert "Renders do not show 'Knot'" in capfd.readouterr().out
-
-
-def test_what_is_wanted_first(scene):
-    assert CURVE_OT_mobius_flow_render_film.refusal(bpy.context).sentence.startswith("The scene has no camera")
-    bpy.context.object.data.dimensions = "2D"
-    assert "is a 2D curve" in CURVE_OT_mobius_flow_set_up_stage.refusal(bpy.context).sentence
-    bpy.ops.object.select_all(action="DESELECT")
-    before = contents()
-    with pytest.raises(RuntimeError) as error:
-        OPS.mobius_flow_set_up_stage()
-    assert "Select a curve object first" in sentence(error.value)
-    assert contents() == before
 
 
 class Waiting:

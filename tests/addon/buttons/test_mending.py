@@ -5,12 +5,11 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_curve, add_trefoil, contents, evaluated, linked, show, stored
+from blender_scenes import add_curve, add_trefoil, contents, evaluated, in_world, linked, relax, show, stored
 from mended_curves import SHAPE, call, may_be_relaxed, mend, relax_once, two, with_material
 from mobius_flow.addon.buttons import mending
-from mobius_flow.addon.live import registry
-from mobius_flow.addon.live.requirements import POLYGONS, RELAXABLE, Remedy
-from modal_operator import keys
+from mobius_flow.addon.live.requirements import POLYGONS, RELAXABLE, UNEDITED, Remedy
+from modal_operator import keys, splines_of
 
 
 def test_every_remedy_has_its_words():
@@ -23,24 +22,27 @@ def test_every_remedy_has_its_words():
         assert mending.CURVE_OT_mobius_flow_mend.description(bpy.context, asked) == item.description
 
 
-@pytest.mark.parametrize("remedy", list(Remedy), ids=lambda remedy: remedy.name)
+@pytest.mark.parametrize("remedy", [each for each in Remedy if each is not Remedy.COPY], ids=lambda each: each.name)
 def test_what_needs_nothing_is_left_alone(remedy):
-    add_trefoil()
-    if remedy is not Remedy.COPY:
-        before = contents()
-        with pytest.raises(RuntimeError, match="Nothing selected needs that"):
-            call(remedy)
-        assert contents() == before
-
-
-@pytest.mark.parametrize("remedy", [Remedy.MAKE_3D, Remedy.COPY], ids=lambda remedy: remedy.name)
-def test_not_during_a_run(operator, remedy):
-    add_trefoil()
-    operator.start()
+    """A baked open spline is not closed: its keys are proved for an open one."""
     add_curve([SHAPE + 9], cyclic=False)
-    with pytest.raises(RuntimeError, match="is being relaxed; stop that first"):
+    relax(max_iterations=1)
+    add_trefoil()
+    before = contents()
+    with pytest.raises(RuntimeError, match="Nothing selected needs that"):
         call(remedy)
-    registry.current().cancel()
+    assert contents() == before
+
+
+def test_open_splines_are_closed():
+    first, second = two(cyclic=False)
+    third = add_curve([SHAPE + 20], "C")
+    second.data.splines.new("NURBS").points.add(5)
+    before = [stored(obj.data) for obj in (first, second, third)]
+    assert call(Remedy.CLOSE) == {"FINISHED"}
+    assert all(spline.use_cyclic_u for obj in (first, second) for spline in obj.data.splines)
+    for obj, points in zip((first, second, third), before, strict=True):
+        np.testing.assert_array_equal(stored(obj.data), points)
 
 
 def test_flat_curves_become_curves_in_space():
@@ -114,7 +116,7 @@ def test_smooth_splines_become_what_is_drawn(kind):
     drawn = evaluated(obj)
     assert RELAXABLE(bpy.context) is None, "relaxing asks by itself"
     assert POLYGONS.of([obj]).remedy is Remedy.TO_POLY
-    assert bpy.ops.curve.mobius_flow_mend(remedy="TO_POLY") == {"FINISHED"}
+    assert call(Remedy.TO_POLY) == {"FINISHED"}
     assert {spline.type for spline in obj.data.splines} == {"POLY"}
     assert obj.data.splines[1].material_index == 1
     np.testing.assert_array_equal(stored(obj.data), drawn)
@@ -129,7 +131,7 @@ def test_what_cannot_become_a_polygon_is_said_and_the_rest_does():
     spline.bezier_points.add(1)
     spline.use_cyclic_u = True
     with pytest.raises(RuntimeError, match="Spline 2 of 'B' is drawn with only 2 points"):
-        bpy.ops.curve.mobius_flow_mend(remedy="TO_POLY")
+        call(Remedy.TO_POLY)
     assert {spline.type for spline in good.data.splines} == {"POLY"}
     assert {spline.type for spline in bad.data.splines} == {"BEZIER"}
 
@@ -165,13 +167,7 @@ def test_texts_become_curves_step_by_step():
     may_be_relaxed()
 
 
-def test_no_button_for_meshes_of_other_files(tmp_path):
-    wire("Theirs")
-    show(linked(tmp_path / "library.blend", "objects", "Theirs"))
-    assert RELAXABLE(bpy.context).remedy is None
-
-
-def test_no_button_for_what_has_no_lines():
+def test_no_button_for_what_has_no_lines_or_is_in_another_file(tmp_path):
     wire("Dots", edges=False)
     assert RELAXABLE(bpy.context).remedy is None
     bpy.ops.mesh.primitive_cube_add()
@@ -179,54 +175,129 @@ def test_no_button_for_what_has_no_lines():
     assert RELAXABLE(bpy.context).remedy is None
     show(bpy.data.objects.new("Axes", None))
     assert RELAXABLE(bpy.context).remedy is None
+    wire("Theirs")
+    show(linked(tmp_path / "library.blend", "objects", "Theirs"))
+    assert RELAXABLE(bpy.context).remedy is None
 
 
-def test_linked_curves_become_local(tmp_path):
+@pytest.mark.parametrize("kind", ["object", "data", "override", "collection"])
+def test_what_is_in_another_file_becomes_local(tmp_path, kind):
     with_material(add_trefoil())
-    obj = show(linked(tmp_path / "library.blend", "objects", "Knot"))
-    mend(Remedy.MAKE_LOCAL)
-    (obj,) = bpy.context.selected_objects
-    assert (obj.library, obj.data.library, obj.name) == (None, None, "Knot")
-    assert obj.data.materials[0].library is not None, "materials stay linked"
-    may_be_relaxed()
-
-
-def test_linked_data_becomes_local(tmp_path):
-    add_trefoil()
-    data = linked(tmp_path / "library.blend", "curves", "Knot")
-    obj = show(bpy.data.objects.new("Mine", data))
-    mend(Remedy.MAKE_LOCAL)
-    assert obj.data.library is None
-    may_be_relaxed()
-
-
-def test_what_is_in_a_linked_collection_is_copied(tmp_path):
-    collection = bpy.data.collections.new("Set")
-    bpy.context.scene.collection.children.link(collection)
-    obj = add_trefoil()
-    collection.objects.link(obj)
-    bpy.context.scene.collection.objects.unlink(obj)
-    theirs = linked(tmp_path / "library.blend", "collections", "Set")
-    bpy.context.scene.collection.children.link(theirs)
-    (obj,) = theirs.objects
+    if kind == "collection":
+        collection = bpy.data.collections.new("Set")
+        bpy.context.scene.collection.children.link(collection)
+        collection.objects.link(bpy.context.object)
+        bpy.context.scene.collection.objects.unlink(bpy.context.object)
+        theirs = linked(tmp_path / "library.blend", "collections", "Set")
+        bpy.context.scene.collection.children.link(theirs)
+        (obj,) = theirs.objects
+    elif kind == "data":
+        data = linked(tmp_path / "library.blend", "curves", "Knot")  # first: it opens another file
+        obj = show(bpy.data.objects.new("Knot", data))
+    else:
+        obj = show(linked(tmp_path / "library.blend", "objects", "Knot"))
+        if kind == "override":
+            obj = obj.override_create(remap_local_usages=True)
     obj.select_set(True)
     bpy.context.view_layer.objects.active = obj
     mend(Remedy.MAKE_LOCAL)
     (mine,) = bpy.context.selected_objects
-    assert mine.library is mine.data.library is None
     assert mine == bpy.context.object
-    assert len(theirs.objects) == 1
-    assert theirs.objects[0].library is not None
+    assert (mine.library, mine.data.library, mine.override_library, mine.name) == (None, None, None, "Knot")
+    assert mine.data.materials[0].library is not None, "materials stay linked"
+    if kind == "collection":  # which still has its own
+        assert [each.library is None for each in theirs.objects] == [False]
     may_be_relaxed()
 
 
-def test_overrides_become_local(tmp_path):
-    add_trefoil()
-    theirs = show(linked(tmp_path / "library.blend", "objects", "Knot"))
-    mine = theirs.override_create(remap_local_usages=True)
-    mine.select_set(True)
-    bpy.context.view_layer.objects.active = mine
-    mend(Remedy.MAKE_LOCAL)
-    (mine,) = bpy.context.selected_objects
-    assert mine.override_library is mine.library is mine.data.library is None
+def shape_keys(obj):
+    obj.shape_key_add(name="Basis")
+    key = obj.shape_key_add(name="Mine")
+    key.data[3].co.z += 0.5
+    key.value = 0.5
+
+
+def animation(obj):
+    obj.data.bevel_depth = 0.1
+    obj.data.keyframe_insert("bevel_depth", frame=1)
+
+
+def edited_film(_obj):
+    obj = relax(max_iterations=3)
+    obj.data.shape_keys.key_blocks[0].data[7].co.x += 0.125
+    bpy.context.scene.frame_set(1)
+
+
+def turned(obj):
+    obj.rotation_euler, obj.scale, obj.location = (0.3, 0.2, 0.1), (1.1, 2, 0.7), (3, 2, 1)
+
+
+def own_collection(obj):
+    collection = bpy.data.collections.new("Mine")
+    bpy.context.scene.collection.children.link(collection)
+    collection.objects.link(obj)
+    bpy.context.scene.collection.objects.unlink(obj)
+
+
+DRIVEN = (shape_keys, animation, lambda obj: obj.data.driver_add("splines[0].points[3].co", 1), edited_film)
+
+
+@pytest.mark.parametrize("prepare", [*DRIVEN, turned, own_collection])
+def test_a_still_copy_has_the_shape_that_is_shown_and_nothing_that_moves_it(prepare):
+    obj = with_material(add_trefoil())
+    prepare(obj)
+    bpy.context.view_layer.update()
+    refusal = RELAXABLE(bpy.context) or UNEDITED(bpy.context)
+    assert (refusal is not None and refusal.remedy is Remedy.COPY) == (prepare in DRIVEN)
+    before = splines_of(obj.data), obj.data.animation_data and obj.data.animation_data.action, obj.data.shape_keys
+    shown, bevel, matrix, homes = evaluated(obj), obj.data.bevel_depth, obj.matrix_world.copy(), obj.users_collection
+    assert call(Remedy.COPY) == {"FINISHED"}
+    (copy,) = bpy.context.selected_objects
+    assert copy == bpy.context.object != obj
+    assert (splines_of(obj.data), obj.data.animation_data and obj.data.animation_data.action) == before[:2]
+    assert obj.data.shape_keys == before[2]
+    np.testing.assert_array_equal(evaluated(obj), shown)
+    if not bevel:
+        np.testing.assert_array_equal(stored(copy.data), shown)
+    assert (copy.data.shape_keys, copy.data.animation_data) == (None, None)
+    assert copy.data.bevel_depth == bevel
+    assert (copy.matrix_world, copy.users_collection) == (matrix, homes)
+    assert copy.data.materials[0].name == "Gold"
+    assert UNEDITED(bpy.context) is None
     may_be_relaxed()
+
+
+def test_still_copies_stand_where_their_originals_are():
+    first, second = two()
+    parent = bpy.data.objects.new("Parent", None)
+    bpy.context.scene.collection.objects.link(parent)
+    parent.scale, parent.rotation_euler = (1, 2, 1), (0.3, 0, 0)
+    first.parent, first.rotation_euler = parent, (0, 0, 0.7)
+    first.keyframe_insert("location", frame=1)
+    second.constraints.new("COPY_SCALE").target = parent
+    bpy.context.view_layer.update()
+    places = {obj.name: in_world(obj, stored(obj.data)) for obj in (first, second)}
+    mend(Remedy.COPY)
+    copies = bpy.context.selected_objects
+    assert len(copies) == 2
+    assert not {first, second} & set(copies)
+    for obj in copies:
+        assert obj.parent is None
+        assert not obj.constraints
+        assert obj.animation_data is None
+        np.testing.assert_allclose(in_world(obj, stored(obj.data)), places[obj.name[0]], atol=1e-5)
+    assert first.parent == parent
+    assert first.animation_data is not None
+    assert len(second.constraints) == 1
+    may_be_relaxed()
+
+
+def test_only_what_needs_it_is_copied():
+    plain, keyed = two()
+    keyed.shape_key_add(name="Mine")
+    mend(Remedy.COPY)
+    assert plain.select_get()
+    assert not keyed.select_get()
+    assert len(bpy.context.selected_objects) == 2
+    may_be_relaxed()
+    assert [block.name for block in keyed.data.shape_keys.key_blocks] == ["Mine"]

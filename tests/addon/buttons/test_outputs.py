@@ -3,23 +3,15 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import (
-    add_curve,
-    add_hopf_link,
-    add_trefoil,
-    contents,
-    evaluated,
-    in_world,
-    relax,
-    stored,
-)
+from baked_curves import KEYED
+from blender_scenes import add_curve, add_hopf_link, add_trefoil, contents, evaluated, in_world, relax
 from mobius_flow.addon.curves import bevel, splines
 from mobius_flow.addon.curves.keyframes import end_of
 from mobius_flow.addon.curves.surroundings import near
 from mobius_flow.core import Curve
 from mobius_flow.core.energies.moebius import moebius_by_length
 from mobius_flow.core.keys.colours import PALETTE, ramp, strand_distances
-from shapes import hopf_link, torus_trefoil
+from shapes import hopf_link
 
 
 def tube(**options):
@@ -32,11 +24,29 @@ def smooth(**options):
     return bpy.context.object
 
 
+def unplaced(obj):
+    return obj
+
+
 def placed(obj):
     """Somewhere else, turned and scaled."""
     obj.location, obj.rotation_euler, obj.scale = (1, 2, 3), (0.3, 0.2, 0.1), (2, 2, 2)
     bpy.context.view_layer.update()
     return obj
+
+
+def parented(obj):
+    """A matrix with shear is no product of location, rotation and scale."""
+    obj.parent = parent = bpy.data.objects.new("Parent", None)
+    bpy.context.scene.collection.objects.link(parent)
+    parent.scale, parent.location.x = (1, 2, 3), 5.0
+    obj.matrix_parent_inverse.translation.y = 0.5
+    return placed(obj)
+
+
+def radii(made, frame, sides=16):
+    rings = evaluated(made, frame).reshape(-1, sides, 3)
+    return np.linalg.norm(rings - rings.mean(axis=1, keepdims=True), axis=-1)
 
 
 def value(mesh, name):
@@ -57,8 +67,8 @@ def colours(mesh):
     return found
 
 
-@pytest.mark.parametrize("keyframes", ["SHAPE_KEYS", "FCURVES"])
-@pytest.mark.parametrize("place", [lambda obj: obj, placed], ids=["origin", "placed"])
+@pytest.mark.parametrize("keyframes", KEYED)
+@pytest.mark.parametrize("place", [unplaced, placed])
 def test_it_moves_with_the_curve(place, keyframes):
     """Rings stay round the curve's points, at keys and between them."""
     curve = place(add_trefoil())
@@ -69,44 +79,30 @@ def test_it_moves_with_the_curve(place, keyframes):
         np.testing.assert_allclose(middles, in_world(curve, evaluated(curve, frame)), atol=2e-3)
 
 
-def test_it_is_as_thick_as_the_curve_is_drawn():
+def test_it_is_as_thick_as_the_curve_is_drawn_or_as_fits_a_line():
     curve = add_trefoil(60)
-    relax(max_iterations=8, fit_bevel=True)
-    made = tube(sides=16)
-    for frame, block in enumerate(curve.data.shape_keys.key_blocks, 1):
-        rings = evaluated(made, frame).reshape(-1, 16, 3)
-        radius = np.linalg.norm(rings - rings.mean(axis=1, keepdims=True), axis=-1)
-        np.testing.assert_allclose(radius, curve.data.bevel_depth * block.data[0].radius, rtol=0.05)
-
-
-def test_a_line_is_as_thick_as_fits():
-    curve = add_trefoil()
-    made = tube(sides=16)
-    bpy.data.objects["Knot"].hide_set(False)
+    made = tube(hide_curve=False)
+    line = radii(made, 1).min()
     made.select_set(False)
     curve.select_set(True)
+    bpy.context.view_layer.objects.active = curve
     bpy.ops.curve.mobius_flow_fit_tube()
-    rings = evaluated(made).reshape(-1, 16, 3)
-    radius = np.linalg.norm(rings - rings.mean(axis=1, keepdims=True), axis=-1).min()
-    assert radius == pytest.approx(curve.data.bevel_depth, rel=0.05)
+    assert line == pytest.approx(curve.data.bevel_depth, rel=0.05)
+    relax(max_iterations=8, fit_bevel=True)
+    made = tube()
+    for frame, block in enumerate(curve.data.shape_keys.key_blocks, 1):
+        np.testing.assert_allclose(radii(made, frame), curve.data.bevel_depth * block.data[0].radius, rtol=0.05)
 
 
-def test_points_of_a_key_are_those_of_every_key():
+def test_attributes_are_of_the_end_and_points_those_of_every_key():
     add_hopf_link(20)
     relax(max_iterations=6, vertices=60)
-    made = tube(sides=6)
-    assert len(made.data.vertices) == 60 * 6
-    assert {len(block.data) for block in made.data.shape_keys.key_blocks} == {360}
-    assert made.data.shape_keys.use_relative
-    assert not made.data.validate()
-
-
-def test_attributes_are_of_the_end():
-    add_hopf_link(20)
-    relax(max_iterations=6, vertices=60)
-    points = end_of(bpy.context.object.data).astype(np.float64)
-    link = Curve.from_components(np.split(points, 2))
+    link = Curve.from_components(np.split(end_of(bpy.context.object.data).astype(np.float64), 2))
     mesh = tube(sides=6).data
+    assert len(mesh.vertices) == 60 * 6
+    assert {len(block.data) for block in mesh.shape_keys.key_blocks} == {360}
+    assert mesh.shape_keys.use_relative
+    assert not mesh.validate()
     np.testing.assert_allclose(value(mesh, "strand_distance"), np.repeat(strand_distances(link), 6), rtol=1e-5)
     np.testing.assert_array_equal(value(mesh, "component"), np.repeat([0, 1], 180))
     density = moebius_by_length(link)
@@ -122,16 +118,13 @@ def test_colours_show_attributes(name, sign):
     assert [material.name for material in mesh.materials] == ["Glaze colour"]
 
 
-def test_components_of_several_objects_are_coloured_in_turn():
-    parts = hopf_link(24).components
-    for part, name in zip(parts, "AB", strict=True):
+def test_materials_of_the_curve_are_kept_or_components_coloured_through_all_objects():
+    for part, name in zip(hopf_link(24).components, "AB", strict=True):
         add_curve([part], name)
-    bpy.ops.curve.mobius_flow_tube_mesh(color="component")
+    tube(color="component")
     for name, colour in zip(("A Tube", "B Tube"), PALETTE, strict=False):
         np.testing.assert_allclose(colours(bpy.data.objects[name].data), np.tile(colour, (24 * 16, 1)), atol=0.02)
-
-
-def test_materials_of_the_curve_are_kept():
+    bpy.ops.object.select_all(action="DESELECT")
     obj = add_hopf_link(20)
     bpy.ops.curve.mobius_flow_color_components()
     mesh = tube(sides=4).data
@@ -140,48 +133,26 @@ def test_materials_of_the_curve_are_kept():
 
 
 @pytest.mark.parametrize("make", [tube, smooth])
-def test_the_curve_stays_as_it_is(make):
-    curve = placed(add_trefoil())
-    relax(max_iterations=3)
-    curve.data.bevel_depth = 0.125
-    before = contents()["splines"]["Knot"]
-    made = make()
-    assert contents()["splines"]["Knot"] == before
-    assert made.select_get()
-    assert not curve.select_get()
-    assert (curve.hide_get(), curve.hide_render) == (True, True)
-    bpy.context.view_layer.update()
-    assert made.matrix_world == curve.matrix_world
-
-
-def test_it_has_the_curves_parent():
-    """A matrix with shear is no product of location, rotation and scale."""
-    curve, parent = placed(add_trefoil()), bpy.data.objects.new("Parent", None)
-    bpy.context.scene.collection.objects.link(parent)
-    parent.scale, parent.location.x = (1, 2, 3), 5.0
-    curve.parent = parent
-    curve.matrix_parent_inverse.translation.y = 0.5
-    bpy.context.view_layer.update()
-    made = tube()
-    bpy.context.view_layer.update()
-    assert made.parent == parent
-    assert made.matrix_world == curve.matrix_world
-
-
-@pytest.mark.parametrize("make", [tube, smooth])
-def test_the_curve_may_stay_visible(make):
-    curve = add_trefoil()
-    make(hide_curve=False)
-    assert (curve.hide_get(), curve.hide_render) == (False, False)
-
-
-def test_it_is_in_the_curves_collections():
-    curve = add_trefoil()
-    collection = bpy.data.collections.new("Knots")
+@pytest.mark.parametrize("place", [unplaced, placed, parented])
+def test_it_is_where_the_curve_is_which_stays_as_it_is(make, place):
+    curve, collection = add_trefoil(), bpy.data.collections.new("Knots")
     bpy.context.scene.collection.children.link(collection)
     collection.objects.link(curve)
     bpy.context.scene.collection.objects.unlink(curve)
-    assert [each.name for each in tube().users_collection] == ["Knots"]
+    place(curve)
+    if place is placed:
+        relax(max_iterations=3)
+    curve.data.bevel_depth = 0.125
+    before = contents()["splines"]["Knot"]
+    hides = place is not unplaced
+    made = make(hide_curve=hides)
+    assert contents()["splines"]["Knot"] == before
+    assert (made.select_get(), curve.select_get()) == (True, False)
+    assert (curve.hide_get(), curve.hide_render) == (hides, hides)
+    bpy.context.view_layer.update()
+    assert made.matrix_world == curve.matrix_world
+    assert made.parent == curve.parent
+    assert [each.name for each in made.users_collection] == ["Knots"]
 
 
 def test_undo_takes_it_away():
@@ -201,7 +172,7 @@ def test_other_profiles_are_said_to_be_left_out(capfd):
 
 
 @pytest.mark.parametrize("kind", ["BEZIER", "NURBS"])
-@pytest.mark.parametrize("place", [lambda obj: obj, placed], ids=["origin", "placed"])
+@pytest.mark.parametrize("place", [unplaced, placed])
 def test_smooth_splines_are_where_it_is_said(kind, place, capfd):
     curve = place(add_trefoil(30))
     relax(max_iterations=5, vertices=150)
@@ -240,25 +211,20 @@ def test_too_few_points_are_not_proved(capfd):
     assert "where strands are only" in said
 
 
-def test_of_a_link_of_two_objects():
-    for part, name in zip(hopf_link(80).components, "AB", strict=True):
-        add_curve([part], name)
-    bpy.ops.curve.mobius_flow_smooth_curve()
-    assert {obj.name for obj in bpy.context.selected_objects} == {"A Smooth", "B Smooth"}
-
-
-def test_it_has_the_bevel_and_the_materials():
-    curve = add_hopf_link(60)
-    curve.data.bevel_depth, curve.data.bevel_resolution, curve.data.extrude = 0.125, 3, 0.25
+def test_smooth_curves_have_the_bevels_and_the_materials():
+    pair = [add_curve([part], name) for part, name in zip(hopf_link(80).components, "AB", strict=True)]
+    pair[0].data.bevel_depth, pair[0].data.bevel_resolution, pair[0].data.extrude = 0.125, 3, 0.25
     bpy.ops.curve.mobius_flow_color_components()
-    data = smooth().data
-    assert (data.bevel_depth, data.bevel_resolution, data.extrude) == (0.125, 3, 0.25)
-    assert list(data.materials) == list(curve.data.materials)
-    assert [spline.material_index for spline in data.splines] == [0, 1]
-    assert not bevel.is_fitted(data)
-
-
-def test_it_is_fitted_if_the_curve_is():
+    smooth()
+    assert {obj.name for obj in bpy.context.selected_objects} == {"A Smooth", "B Smooth"}
+    for obj in pair:
+        data = bpy.data.objects[f"{obj.name} Smooth"].data
+        for name in ("bevel_depth", "bevel_resolution", "extrude"):
+            assert getattr(data, name) == getattr(obj.data, name)
+        assert list(data.materials) == list(obj.data.materials)
+        assert [spline.material_index for spline in data.splines] == [0]
+        assert not bevel.is_fitted(data)
+    bpy.ops.object.select_all(action="DESELECT")
     add_trefoil()
     bpy.ops.curve.mobius_flow_fit_tube()
     assert bevel.is_fitted(smooth().data)
@@ -271,24 +237,6 @@ def test_a_radius_is_a_number(radius):
     with pytest.raises(RuntimeError, match=r"Radius is .*; it must be a number up to 1e"):
         bpy.ops.curve.mobius_flow_tube_mesh(radius=radius)
     assert contents() == before
-
-
-def test_curves_that_touch_are_refused():
-    vertices = torus_trefoil(30).vertices.copy()
-    vertices[11] = vertices[1]
-    add_curve([vertices])
-    before = contents()
-    for button in (bpy.ops.curve.mobius_flow_tube_mesh, bpy.ops.curve.mobius_flow_smooth_curve):
-        with pytest.raises(RuntimeError, match="touch or cross"):
-            button()
-    assert contents() == before
-
-
-def test_stored_points_of_a_static_curve_are_not_moved():
-    curve = add_trefoil()
-    before = stored(curve.data)
-    tube()
-    np.testing.assert_array_equal(stored(curve.data), before)
 
 
 def test_a_tubes_mesh_is_filmed_as_its_curve_is():

@@ -43,10 +43,6 @@ def values():
     return {name: getattr(settings, name) for name in SETTINGS}
 
 
-def test_the_two_are_there():
-    assert set(SHIPPED) == {"Animation", "Gradient Flow of the Paper"}
-
-
 @pytest.mark.parametrize("path", SHIPPED.values(), ids=SHIPPED)
 def test_a_preset_of_the_extension_can_be_relaxed_with(path):
     before = values()
@@ -57,7 +53,8 @@ def test_a_preset_of_the_extension_can_be_relaxed_with(path):
     assert not METHODS[options.method].comparison
 
 
-def test_what_they_are_for():
+def test_what_the_two_are_for():
+    assert set(SHIPPED) == {"Animation", "Gradient Flow of the Paper"}
     assert "Reiter and Schumacher" in METHODS[use(SHIPPED["Gradient Flow of the Paper"]).method].label
     assert bpy.context.scene.mobius_flow.timing == "FLOW_TIME"
     assert use(SHIPPED["Animation"]).length == 120
@@ -94,14 +91,11 @@ def test_a_preset_of_ones_own_keeps_every_setting(user):
 
 
 @pytest.mark.parametrize("name", SHIPPED)
-def test_presets_of_the_extension_stay(name):
+def test_presets_of_the_extension_stay(user, name):
     with pytest.raises(RuntimeError, match=f"The preset {name} belongs to Möbius Flow; only your own can be removed"):
         bpy.ops.curve.mobius_flow_preset_add(name=name, remove_name=True)
+    assert bpy.ops.curve.mobius_flow_preset_add(name=name) == {"CANCELLED"}
     assert SHIPPED[name].exists()
-
-
-def test_a_preset_does_not_replace_one_of_the_extension(user):
-    assert bpy.ops.curve.mobius_flow_preset_add(name="Animation") == {"CANCELLED"}
     assert not list(user.glob("*"))
 
 
@@ -122,10 +116,8 @@ def listed():
         layout = Row()
         path_menu = VIEW3D_PT_mobius_flow_presets.path_menu
         bl_idname, preset_subdir = presets.PANEL, presets.SUBDIRECTORY
-        preset_operator, preset_add_operator = (
-            VIEW3D_PT_mobius_flow_presets.preset_operator,
-            VIEW3D_PT_mobius_flow_presets.preset_add_operator,
-        )
+        preset_operator = VIEW3D_PT_mobius_flow_presets.preset_operator
+        preset_add_operator = VIEW3D_PT_mobius_flow_presets.preset_add_operator
 
     bpy.types.Menu.draw_preset(Menu(), bpy.context)
     return [Path(button.filepath).stem for name, button in shown if name == Menu.preset_operator]

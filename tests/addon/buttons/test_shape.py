@@ -1,12 +1,359 @@
-"""Buttons of the panel Shape, where there is no curve."""
+"""Buttons of the panel Shape: sizes that are kept, curves that are turned, colours, constant tubes."""
+
+from itertools import pairwise
 
 import bpy
+import numpy as np
 import pytest
-from blender_scenes import show
+from baked_curves import KEYED
+from blender_scenes import (
+    add_curve,
+    add_hopf_link,
+    add_trefoil,
+    contents,
+    evaluated,
+    fcurves,
+    in_world,
+    place,
+    relax,
+    sentence,
+    show,
+    stored,
+)
+from mobius_flow.addon.buttons import shape
+from mobius_flow.addon.curves import bake, bevel, recorded
+from mobius_flow.addon.curves.recorded import BakedKeys, Recorded
+from mobius_flow.core import Curve
+from mobius_flow.core.collision import is_free
+from mobius_flow.core.keys.colours import PALETTE
+from mobius_flow.core.keys.placement import Measure
+from modal_operator import rings
+from shapes import hopf_link, lattice_knot, torus_trefoil
+
+OPS = bpy.ops.curve
+FLAT = torus_trefoil(40).vertices[:, [2, 0, 1]]  # which lies on its side
+MEASURES = [measure.name for measure in Measure]
 
 
-@pytest.mark.parametrize("name", ["keep_size", "lay_flat", "face_camera", "continue"])
-def test_without_a_curve_the_buttons_say_so(name):
-    show(bpy.data.objects.new("Empty", None))
-    with pytest.raises(RuntimeError, match="is of type Empty; select a curve object"):
-        getattr(bpy.ops.curve, f"mobius_flow_{name}")()
+def baked(keyframes="SHAPE_KEYS", **options):
+    """A lattice figure-eight knot that shrinks as seen on the screen."""
+    add_curve([lattice_knot("4_1").vertices])
+    return relax(**{"max_iterations": 8, "vertices": 120, "keyframes": keyframes} | options)
+
+
+def of_keys(objects, measure):
+    return [Measure[measure].of(curve) for curve in BakedKeys(objects).curves]
+
+
+@pytest.mark.parametrize("keyframes", KEYED)
+@pytest.mark.parametrize("measure", MEASURES)
+def test_a_size_stays(keyframes, measure):
+    obj = baked(keyframes)
+    place(obj)
+    frames = np.linspace(*(obj.data.shape_keys or obj.data).animation_data.action.curve_frame_range, 5)
+    before = [Curve(in_world(obj, evaluated(obj, frame))) for frame in frames]
+    assert OPS.mobius_flow_keep_size(measure=measure) == {"FINISHED"}
+    after, measured = [Curve(in_world(obj, evaluated(obj, frame))) for frame in frames], Measure[measure].of
+    np.testing.assert_allclose(after[0].vertices, before[0].vertices, atol=1e-5)
+    np.testing.assert_allclose(of_keys([obj], measure), measured(before[0]), rtol=1e-5)
+    for a, b in zip(before, after, strict=True):
+        centers = [curve.edge_lengths @ curve.midpoints / curve.length for curve in (a, b)]
+        assert np.linalg.norm(centers[1] - centers[0]) < 0.05 * measured(before[0])
+    keys = BakedKeys([obj])  # proved as they are stored
+    assert keys.unproved == 0
+    for a, b in pairwise(keys.frames):
+        assert is_free(keys.mesh, a.astype(float), b.astype(float))
+
+
+@pytest.mark.parametrize("keyframes", KEYED)
+def test_the_size_of_the_last_key(keyframes):
+    obj = baked(keyframes)
+    end = BakedKeys([obj]).curves[-1]
+    assert OPS.mobius_flow_keep_size(measure="RADIUS", reference="LAST") == {"FINISHED"}
+    keys = BakedKeys([obj])
+    np.testing.assert_allclose(keys.curves[-1].vertices, end.vertices, atol=1e-6)
+    np.testing.assert_allclose(of_keys([obj], "RADIUS"), Measure.RADIUS.of(end), rtol=1e-5)
+    if keyframes == "SHAPE_KEYS":  # F-curves move the points themselves
+        np.testing.assert_array_equal(stored(obj.data), keys.frames[-1])
+
+
+def test_motions_that_cannot_be_proved_are_told_of(monkeypatch):
+    obj, told = baked(), []
+    monkeypatch.setattr(recorded, "is_free", lambda *_: False)
+    monkeypatch.setattr(shape, "_report", lambda _, what, unproved: told.append((what, unproved)))
+    assert OPS.mobius_flow_keep_size(measure="BOX") == {"FINISHED"}
+    count = len(obj.data.shape_keys.key_blocks)
+    assert told == [(f"The bounding box of 'Knot' stays at all {count} keys", count - 1)]
+    monkeypatch.undo()
+
+    class Teller:
+        def report(self, *words):
+            told.append(words)
+
+    for unproved in range(3):
+        shape._report(Teller(), "It stays", unproved)
+    assert told[1:] == [
+        ({"INFO"}, "It stays, proved free of contact"),
+        ({"WARNING"}, "It stays; 1 motion between keys is NOT proved free of contact"),
+        ({"WARNING"}, "It stays; 2 motions between keys are NOT proved free of contact"),
+    ]
+
+
+@pytest.mark.parametrize("keyframes", KEYED)
+def test_scaled_curves_are_still_baked_and_can_be_cleared(keyframes):
+    obj = add_trefoil()
+    before = stored(obj.data)
+    obj.data.bevel_depth = 0.1
+    relax(max_iterations=4, keyframes=keyframes, fit_bevel=True)
+    assert OPS.mobius_flow_keep_size(measure="BOX") == {"FINISHED"}
+    assert bake.is_baked(obj.data)
+    assert not bake.is_edited(obj.data)
+    assert OPS.mobius_flow_continue(max_iterations=2, fit_bevel=False) == {"FINISHED"}
+    assert OPS.mobius_flow_clear() == {"FINISHED"}
+    np.testing.assert_array_equal(stored(obj.data), before)
+    assert obj.data.bevel_depth == pytest.approx(0.1)
+
+
+def test_the_tube_is_scaled_with_the_curve():
+    obj = baked(fit_bevel=True)
+    radii, lengths = Recorded.of(obj).radii[:, 0], [curve.length for curve in BakedKeys([obj]).curves]
+    OPS.mobius_flow_keep_size(measure="BOX")
+    factors = [curve.length / old for curve, old in zip(BakedKeys([obj]).curves, lengths, strict=True)]
+    assert max(factors) > 1.05 * min(factors)
+    np.testing.assert_allclose(Recorded.of(obj).radii[:, 0], np.multiply(radii, factors), rtol=1e-4)
+
+
+@pytest.mark.parametrize("keyframes", [*KEYED, "RESULT"])
+@pytest.mark.parametrize("measure", ["BOX", "RADIUS"])
+def test_a_size_stays_while_it_is_baked_and_further(keyframes, measure):
+    size = Measure[measure].of(Curve(lattice_knot("4_1").vertices))
+    obj = baked(keyframes, keep_size=measure)
+    if keyframes == "RESULT":
+        assert Measure[measure].of(Curve(stored(obj.data).astype(float))) == pytest.approx(size, rel=1e-5)
+        return
+    for _ in range(2 if keyframes == "SHAPE_KEYS" else 1):
+        np.testing.assert_allclose(of_keys([obj], measure), size, rtol=1e-5)
+        assert BakedKeys([obj]).unproved == 0
+        OPS.mobius_flow_continue(max_iterations=5, keep_size=measure, fit_bevel=False)
+
+
+def test_by_itself_a_curve_stays_in_view_and_its_length_is_what_the_flow_keeps():
+    lengths = [curve.length for curve in BakedKeys([baked(keep_size="AUTO", grow=1.1)]).curves]
+    assert lengths[-1] > 1.05 * lengths[0], "what grows is not scaled"
+    bpy.context.object.select_set(False)
+    radii = of_keys([baked(keep_size="AUTO")], "RADIUS")
+    np.testing.assert_allclose(radii, radii[0], rtol=1e-5)
+    points = []
+    for options in ({}, {"keep_size": "LENGTH"}):
+        bpy.context.object.select_set(False)
+        points.append(BakedKeys([baked(**options)]).frames)
+    np.testing.assert_array_equal(*points)
+
+
+def test_links_are_scaled_together():
+    objects = rings()
+    relax(max_iterations=5)
+    size = of_keys(objects, "RADIUS")[0]
+    assert OPS.mobius_flow_keep_size(measure="RADIUS") == {"FINISHED"}
+    np.testing.assert_allclose(of_keys(objects, "RADIUS"), size, rtol=1e-5)
+    assert BakedKeys(objects).unproved == 0
+
+
+def test_f_curves_with_keys_removed_are_refused():
+    points = fcurves(baked("FCURVES").data)[0].keyframe_points
+    points.remove(points[1])
+    with pytest.raises(RuntimeError, match="were edited; undo that, or Bake Again"):
+        OPS.mobius_flow_keep_size()
+
+
+@pytest.mark.parametrize("is_baked", [False, True])
+def test_flat_curves_extend_least_upwards(is_baked):
+    obj = add_curve([FLAT])
+    if is_baked:
+        relax(max_iterations=5)
+    place(obj)
+    scale, points = obj.scale.copy(), stored(obj.data)
+    assert OPS.mobius_flow_lay_flat() == {"FINISHED"}
+    x, y, z = np.ptp(in_world(obj, evaluated(obj)), axis=0)
+    assert x >= 0.9 * y > z
+    np.testing.assert_allclose(obj.scale, scale, rtol=1e-5)
+    np.testing.assert_array_equal(stored(obj.data), points)
+    rotation = obj.rotation_euler.copy()
+    OPS.mobius_flow_lay_flat()
+    np.testing.assert_allclose(obj.rotation_euler, rotation, atol=1e-3)
+
+
+def keyed_rotation(obj):
+    for frame in (1, 100):
+        obj.rotation_euler.z += 1
+        obj.keyframe_insert("rotation_euler", frame=frame)
+    bpy.context.scene.frame_set(50)
+
+
+def uneven_parent(obj):
+    """An empty whose scale shears what is turned under it."""
+    parent = show(bpy.data.objects.new("Parent", None))
+    parent.rotation_euler, parent.scale = (0.3, 0.5, 1.0), (2.0, 0.5, -1.0)
+    obj.parent, obj.rotation_euler = parent, (0.4, 0.0, 0.2)
+    parent.select_set(False)
+    bpy.context.view_layer.objects.active = obj
+    bpy.context.view_layer.update()
+    return parent
+
+
+HELD = {
+    keyed_rotation: "'Knot' is moved by animation",
+    uneven_parent: "'Knot' would change its shape, as its parent's scale is uneven",
+}
+
+
+@pytest.mark.parametrize("keyframes", KEYED)
+@pytest.mark.parametrize("hold", HELD)
+def test_keys_are_turned_where_the_object_cannot_be(hold, keyframes):
+    obj = add_curve([FLAT])
+    if hold is uneven_parent:
+        hold(obj)
+    relax(max_iterations=5, keyframes=keyframes)
+    if hold is keyed_rotation:
+        hold(obj)
+    matrix, before = obj.matrix_world.copy(), BakedKeys([obj]).curves
+    assert OPS.mobius_flow_lay_flat() == {"FINISHED"}
+    assert obj.matrix_world == matrix
+    keys = BakedKeys([obj])
+    x, y, z = np.ptp(keys.curves[-1].vertices, axis=0)
+    assert max(x, y) > z
+    for old, new in zip(before, keys.curves, strict=True):
+        np.testing.assert_allclose(new.edge_lengths, old.edge_lengths, rtol=1e-4)
+    assert keys.unproved == 0
+    assert not bake.is_edited(obj.data)
+
+
+@pytest.mark.parametrize("hold", HELD)
+def test_what_can_neither_be_turned_is_refused(hold):
+    hold(add_trefoil())
+    before = contents()
+    with pytest.raises(RuntimeError) as error:
+        OPS.mobius_flow_lay_flat()
+    assert sentence(error.value) == f"{HELD[hold]}; remove that, or bake it and turn it alone"
+    assert contents() == before
+
+
+def test_edited_keys_are_not_turned_but_their_object_is():
+    add_curve([FLAT])
+    obj = relax(max_iterations=3)
+    obj.data.shape_keys.key_blocks[1].data[0].co.x += 0.01
+    assert OPS.mobius_flow_lay_flat() == {"FINISHED"}
+    keyed_rotation(obj)
+    before = BakedKeys([obj]).frames
+    with pytest.raises(RuntimeError, match="is moved by animation, and its keys were edited; undo one or the other"):
+        OPS.mobius_flow_lay_flat()
+    np.testing.assert_array_equal(BakedKeys([obj]).frames, before)
+    assert bake.is_edited(obj.data)
+
+
+def test_a_scale_that_turns_along_changes_no_length():
+    """Of a parent that mirrors and stretches evenly, and of a curve that carries its child along."""
+    obj = add_trefoil()
+    parent = uneven_parent(obj)
+    parent.scale, obj.scale = (-2.0, -2.0, -2.0), (1.0, 3.0, 0.5)
+    other, child = add_curve([FLAT], "Other"), add_curve([FLAT + 9.0])
+    other.scale, child.parent, child.rotation_euler = (2.0, 0.5, 1.0), other, (0.4, 0.5, 0.2)
+    for selected in ([obj], [other, child]):
+        bpy.ops.object.select_all(action="DESELECT")
+        for each in selected:
+            each.select_set(True)
+        bpy.context.view_layer.update()
+        lengths = [Curve(in_world(each, evaluated(each))).edge_lengths for each in selected]
+        assert OPS.mobius_flow_lay_flat() == {"FINISHED"}
+        for each, before in zip(selected, lengths, strict=True):
+            np.testing.assert_allclose(Curve(in_world(each, evaluated(each))).edge_lengths, before, rtol=1e-4)
+
+
+def test_a_single_point_has_no_flat_side():
+    add_curve([np.zeros((3, 3))])
+    with pytest.raises(RuntimeError, match="All points of the curves are the same; move them apart"):
+        OPS.mobius_flow_lay_flat()
+
+
+def test_links_are_turned_as_one():
+    objects = [add_curve([part], name) for part, name in zip(hopf_link(24).components, "AB", strict=True)]
+    objects[1].parent = objects[0]
+    objects[0].location, objects[0].rotation_euler = (1, 2, 3), (0.5, 0.6, 0.7)
+    bpy.context.view_layer.update()
+
+    def gaps():
+        a, b = (in_world(each, evaluated(each)) for each in objects)
+        return np.linalg.norm(a[:, None] - b[None], axis=2)
+
+    before = gaps()
+    assert OPS.mobius_flow_lay_flat() == {"FINISHED"}
+    np.testing.assert_allclose(gaps(), before, atol=1e-5)
+    x, y, z = np.ptp(np.concatenate([in_world(each, evaluated(each)) for each in objects]), axis=0)
+    assert x > y - 1e-4
+    assert y > z - 1e-4
+
+
+@pytest.mark.parametrize("kind", ["PERSP", "ORTHO"])
+def test_the_camera_sees_the_widest_side(kind):
+    obj = add_curve([torus_trefoil(40).vertices * np.array([2.0, 1.0, 1.0])])
+    place(obj)
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.data.type = kind
+    camera.location, camera.rotation_euler = (9, -4, 6), (1.0, 0.1, 1.1)
+    bpy.context.scene.collection.objects.link(camera)
+    bpy.context.scene.camera = camera
+    bpy.context.view_layer.update()
+    assert OPS.mobius_flow_face_camera() == {"FINISHED"}
+    curve = Curve(in_world(obj, evaluated(obj)))
+    center = curve.edge_lengths @ curve.midpoints / curve.length
+    axes = np.array(camera.matrix_world)[:3, :3].T
+    back = axes[2] if kind == "ORTHO" else np.array(camera.location) - center
+    right = axes[0] - (axes[0] @ back) * back / (back @ back)
+    away = curve.midpoints - center
+    moments = (curve.edge_lengths[:, None] * away).T @ away
+    directions = [each / np.linalg.norm(each) for each in (right, np.cross(back, right), back)]
+    seen = np.array([[a @ moments @ b for a in directions] for b in directions])
+    assert seen[0, 0] > seen[1, 1] > seen[2, 2]
+    np.testing.assert_allclose(seen - np.diag(np.diag(seen)), 0, atol=1e-4 * seen[0, 0])
+
+
+def colours(obj):
+    """The colour of each spline."""
+    materials = [obj.data.materials[spline.material_index] for spline in obj.data.splines]
+    shaders = [next(n for n in each.node_tree.nodes if n.type == "BSDF_PRINCIPLED") for each in materials]
+    return [tuple(shader.inputs["Base Color"].default_value)[:3] for shader in shaders]
+
+
+def test_components_are_coloured_through_all_objects_and_in_turn():
+    one, other = add_hopf_link(), add_hopf_link()
+    one.data.materials.append(bpy.data.materials.new("Mine"))
+    for _ in range(2):
+        assert OPS.mobius_flow_color_components() == {"FINISHED"}
+        assert one.data.materials[0].name == "Mine", "one's own slots stay"
+        assert len(one.data.materials) == 3
+        assert colours(one) + colours(other) == [pytest.approx(colour) for colour in PALETTE[:4]]
+    bpy.ops.object.select_all(action="DESELECT")
+    many = add_curve([hopf_link(12).components[0] + np.array([0, 0, 3 * k]) for k in range(7)])
+    OPS.mobius_flow_color_components()
+    assert len(many.data.materials) == len(PALETTE)
+    assert colours(many)[5:] == colours(many)[:2]
+
+
+def test_colours_and_keys_do_not_mind_each_other():
+    obj = add_hopf_link()
+    relax(max_iterations=3)
+    OPS.mobius_flow_color_components()
+    OPS.mobius_flow_fit_tube()
+    before = colours(obj)
+    relax(max_iterations=2)
+    assert colours(obj) == before
+
+
+def test_a_tube_of_constant_thickness_stays_one_until_it_is_fitted_otherwise():
+    obj = baked()
+    for constant in (False, True, False):
+        OPS.mobius_flow_fit_tube(constant=constant)  # which acts on the finished film
+        for _ in range(2):
+            drawn = obj.data.bevel_depth * np.array([block.data[0].radius for block in obj.data.shape_keys.key_blocks])
+            assert (np.ptp(drawn) < 1e-6) == constant == bevel.is_constant(obj.data)
+            OPS.mobius_flow_relax(max_iterations=8, vertices=120, timing="ITERATE")

@@ -84,30 +84,22 @@ def gap(operator, target):
     return np.linalg.norm(drag.held(operator.run.group.in_view)[:2] - target[:2])
 
 
+@pytest.mark.parametrize("operator", ["thread", "process"], indirect=True)
 def test_a_strand_follows_the_mouse_and_all_is_proved(operator):
     place = taken(operator)
-    target = moved(place, 1.0, 0.5, 0.0)
-    assert move(operator, target) == {"RUNNING_MODAL"}
+    for k in range(1, 11):
+        target = moved(place, 0.1 * k, 0.05 * k, 0.0)
+        assert move(operator, target) == {"RUNNING_MODAL"}
+        operator.event()
     operator.until(lambda: gap(operator, target) < 0.2)
+    operator.run.pull(np.array([np.nan, 0.0, np.inf]))  # nowhere, which is left out
+    operator.run.pull(np.array([1e300, 0.0, 0.0]))
     assert release(operator, target) == {"RUNNING_MODAL"}
     assert operator.run.drag is None
+    operator.reach(operator.run.last.index + 1)
     assert key(operator, "RET") == {"RUNNING_MODAL"}
     assert operator.until(lambda: False) == {"FINISHED"}
     assert operator.run.report.certified
-
-
-@pytest.mark.parametrize("operator", ["process"], indirect=True)
-def test_the_worker_takes_in_where_the_mouse_goes(operator):
-    place = taken(operator)
-    for k in range(1, 11):
-        target = moved(place, 0.1 * k, 0.0, 0.0)
-        move(operator, target)
-        operator.event()
-    operator.until(lambda: gap(operator, target) < 0.2)
-    held = operator.run.last.index
-    release(operator, target)
-    operator.reach(held + 1)
-    assert operator.run.last.certified
 
 
 @pytest.mark.parametrize("operator", ["process"], indirect=True)
@@ -182,11 +174,8 @@ def test_ctrl_leaves_a_pin_that_is_kept(operator, size, early):
     np.testing.assert_allclose(pinned, held, rtol=0.0, atol=1e-6)
 
 
-@pytest.mark.parametrize("let_go", [True, False], ids=["after", "meanwhile"])
-@pytest.mark.parametrize("pressed", [("Z", True), ("ESC", False)], ids=["undo", "escape"])
-def test_a_drag_is_taken_back(operator, let_go, pressed):
-    if let_go and pressed[0] == "ESC":
-        pytest.skip("that ends the run")
+@pytest.mark.parametrize(("pressed", "let_go"), [("Z", True), ("Z", False), ("ESC", False)])
+def test_a_drag_is_taken_back(operator, pressed, let_go):
     obj = add_curve([torus_trefoil(40).vertices])
     bpy.ops.ed.undo_push(message="Before")
     begin(operator, timing="ITERATE")
@@ -200,12 +189,12 @@ def test_a_drag_is_taken_back(operator, let_go, pressed):
     if let_go:
         release(operator, target, ctrl=True)
     assert np.abs(stored(obj.data) - before).max() > 0.1
-    if pressed[0] == "Z":
-        assert key(operator, *pressed) == {"PASS_THROUGH"}, "Blender undoes its step"
+    if pressed == "Z":
+        assert key(operator, pressed, ctrl=True) == {"PASS_THROUGH"}, "Blender undoes its step"
         bpy.ops.ed.undo()
         obj, operator.context.scene = bpy.context.view_layer.objects.active, bpy.context.scene
     else:
-        assert key(operator, *pressed) == {"RUNNING_MODAL"}
+        assert key(operator, pressed) == {"RUNNING_MODAL"}
     operator.until(lambda: at_rest(operator) and np.abs(stored(obj.data) - before).max() < 1e-4)
     assert operator.run.drag is None
     assert pins.count(obj.data) == 0
@@ -228,14 +217,6 @@ def test_an_object_that_is_deleted_in_mid_drag_ends_the_run(operator):
     assert operator.run.drag is None
 
 
-def test_targets_that_are_nowhere_are_left_out(operator):
-    place = taken(operator)
-    operator.run.pull(np.array([np.nan, 0.0, np.inf]))
-    operator.run.pull(np.array([1e300, 0.0, 0.0]))
-    release(operator, place)
-    operator.reach(operator.run.last.index + 1)
-
-
 def test_the_strand_in_front_is_held_where_two_cross(operator):
     add_hopf_link()
     begin(operator)
@@ -249,23 +230,16 @@ def test_the_strand_in_front_is_held_where_two_cross(operator):
     assert Drag.at(curve, region, np.array([1.0, 1.0]), 15.0) is None
 
 
-def test_an_object_that_was_moved_is_dragged_where_it_is(operator):
+@pytest.mark.parametrize("size", ["LENGTH", "BOX", "RADIUS"])
+def test_curves_are_dragged_where_they_are_seen(operator, size):
+    """Wherever their object was moved, in whatever size they are shown."""
     obj = add_curve([torus_trefoil(40).vertices])
-    begin(operator)
-    obj.location = (2.0, -1.0, 0.0)
-    bpy.context.view_layer.update()
-    place = on_curve(operator)
-    press(operator, place)
-    target = moved(place, 0.5, 0.5, 0.0)
-    move(operator, target)
-    operator.until(lambda: gap(operator, target) < 0.2)
-
-
-@pytest.mark.parametrize("size", ["BOX", "RADIUS"])
-def test_curves_of_a_size_are_dragged_where_they_are_seen(operator, size):
-    add_curve([torus_trefoil(40).vertices])
     begin(operator, keep_size=size)
-    operator.until(lambda: at_rest(operator))
+    if size == "LENGTH":
+        obj.location = (2.0, -1.0, 0.0)
+        bpy.context.view_layer.update()
+    else:
+        operator.until(lambda: at_rest(operator))
     place = on_curve(operator)
     press(operator, place)
     target = moved(place, 0.3, 0.3, 0.0)

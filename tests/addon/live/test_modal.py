@@ -3,37 +3,97 @@
 Without a window Blender runs ``execute`` instead of ``invoke``; ``tests/window`` has the real thing.
 """
 
+import re
+import time
 from types import SimpleNamespace
 
 import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_curve, add_hopf_link, add_trefoil, stored
-from mobius_flow.addon.curves.splines import Splines
+from mobius_flow.addon.engine import worker
+from mobius_flow.addon.live import handlers, run
 from mobius_flow.addon.live.modal import Listening
 from mobius_flow.addon.live.run import RunState
 from mobius_flow.addon.properties import SETTINGS
 from mobius_flow.core import Curve, minimize
-from modal_operator import Operator, keys, restored
-from shapes import lattice_knot, torus_trefoil
+from mobius_flow.core.keys.motion import Kind
+from modal_operator import Operator, keys, restored, ring_and_torus, rings, splines_of
+from shapes import lattice_knot
+
+
+def one():
+    return [add_trefoil()]
+
+
+def beside():
+    ring, torus = ring_and_torus()
+    collection = bpy.data.collections.new("Avoid")
+    collection.objects.link(torus)
+    return [ring]
+
+
+@pytest.mark.parametrize(
+    ("scene", "said", "operator"),
+    [
+        (one, "with itself", "process"),
+        (rings, "with themselves and each other", "thread"),
+        (beside, "proved free of contact with itself, and with 'Torus'", "thread"),
+    ],
+    indirect=["operator"],
+)
+def test_the_same_curves_as_the_headless_job(operator, scene, said):
+    live = scene()
+    bpy.ops.curve.mobius_flow_fit_tube()
+    bpy.ops.object.duplicate()
+    copies = sorted(bpy.context.selected_objects, key=lambda obj: obj.name)
+    for obj in copies:
+        obj.data = obj.data.copy()
+    avoid = "Avoid" if scene is beside else ""
+    bpy.ops.curve.mobius_flow_relax(vertices=120, timing="DISTANCE", avoid=avoid)
+    for obj in copies:
+        obj.select_set(False)
+    for obj in live:
+        obj.select_set(True)
+    operator.given["avoid"] = list(bpy.data.collections["Avoid"].objects) if avoid else []
+    assert operator.start() == {"RUNNING_MODAL"}
+    assert operator.until(lambda: False) == {"FINISHED"}
+    assert operator.run.report.names == tuple(obj.name for obj in live)
+    assert operator.run.avoided == operator.run.report.avoided == (("Torus",) if avoid else ())
+    assert operator.reports[-1][0] == {"INFO"}
+    assert said in operator.reports[-1][1]
+    for obj, headless in zip(live, copies, strict=True):
+        np.testing.assert_array_equal(keys(obj), keys(headless))
+        np.testing.assert_array_equal(stored(obj.data), stored(headless.data))
+        assert obj.data.bevel_depth == headless.data.bevel_depth > 0
 
 
 @pytest.mark.parametrize("operator", ["process"], indirect=True)
-def test_the_same_curve_as_the_headless_job(operator):
-    live = add_trefoil()
-    bpy.ops.curve.mobius_flow_fit_tube()
-    live.select_set(False)
-    headless = add_trefoil()
-    bpy.ops.curve.mobius_flow_fit_tube()
-    bpy.ops.curve.mobius_flow_relax(vertices=120, timing="DISTANCE")
-    headless.select_set(False)
-    live.select_set(True)
-    assert operator.start() == {"RUNNING_MODAL"}
+@pytest.mark.parametrize("scene", [rings, beside])
+def test_the_worker_proves_what_is_stored(operator, scene, monkeypatch):
+    """Nothing is proved twice: the motions of rounded points of all objects come proved from the worker."""
+    scene()
+    again = []
+    monkeypatch.setattr(worker, "is_free", lambda *given: again.append(given[-1]) or True)
+    avoid = list(bpy.data.collections["Avoid"].objects) if scene is beside else []
+    operator.given |= {"timing": "ITERATE", "avoid": avoid}  # which leaves no room for keys in between
+    operator.start()
     assert operator.until(lambda: False) == {"FINISHED"}
-    np.testing.assert_array_equal(keys(live), keys(headless))
-    np.testing.assert_array_equal(stored(live.data), stored(headless.data))
-    assert live.data.bevel_depth == headless.data.bevel_depth > 0
-    assert operator.reports[-1][0] == {"INFO"}
+    assert operator.run.report.certified
+    assert len(again) <= 1, "only the rounding of the start"
+    assert all([each.name for each in given] == [each.name for each in avoid] for given in again)
+
+
+def test_a_start_in_contact_is_said_and_shown(operator):
+    _, torus = ring_and_torus()
+    operator.given["avoid"] = [torus]
+    torus.scale = (2, 1, 1)
+    operator.start()
+    assert operator.until(lambda: False) == {"CANCELLED"}
+    kind, said = operator.reports[-1]
+    assert kind == {"ERROR"}
+    assert re.match(r"Segment \d+ of spline 1 of 'Ring' .*'Torus' at \(", said)
+    assert [spot.member for spot in operator.run.trouble] == [0]
 
 
 @pytest.mark.slow
@@ -52,36 +112,6 @@ def test_points_that_are_added_in_the_end_are_in_every_key(operator):
     assert operator.run.report.certified
 
 
-def test_esc_restores_what_has_got_more_points_meanwhile(operator):
-    obj = add_curve([lattice_knot("5_1").vertices])
-    before = Splines.of(obj.data)
-    operator.given |= {"vertices": 0, "tolerance": 1e-3}
-    operator.start()
-    operator.reach(1)
-    given = len(obj.data.splines[0].points)
-    operator.until(lambda: len(obj.data.splines[0].points) > given)
-    assert operator.event("ESC") == {"CANCELLED"}
-    restored(obj, before)
-
-
-@pytest.mark.parametrize("kind", ["POLY", pytest.param("BEZIER", marks=pytest.mark.slow), "NURBS"])
-def test_esc_restores_bit_for_bit(operator, kind):
-    rng = np.random.default_rng(7)
-    obj = add_curve([torus_trefoil(24).vertices + 3 * k for k in (0, 4)], kind=kind)
-    for spline in obj.data.splines:
-        for point in spline.bezier_points if kind == "BEZIER" else spline.points:
-            point.radius, point.tilt = rng.random(2)
-    obj.data.splines[1].material_index, obj.data.splines[0].use_smooth = 2, False
-    before = Splines.of(obj.data)
-    operator.given["vertices"] = 0
-    operator.start()
-    operator.reach(2)
-    assert obj.data.splines[0].type == "POLY"
-    assert operator.event("ESC") == {"CANCELLED"}
-    restored(obj, before)
-    assert operator.run.state is RunState.CANCELLED
-
-
 def test_every_iterate_is_shown(operator):
     obj = add_trefoil()
     operator.start()
@@ -91,7 +121,45 @@ def test_every_iterate_is_shown(operator):
     assert obj.data.shape_keys is not None
 
 
-def test_pause_and_enter_keep_what_is_shown(operator):
+def test_iterates_are_taken_together_and_the_last_is_shown(operator, monkeypatch):
+    obj = add_trefoil()
+    monkeypatch.setattr(run.LiveRun, "slice", 60.0)
+    operator.given["view_every"] = 0
+    operator.start()
+    operator.until(lambda: operator.run._worker._queue.qsize() > 3 or operator.run.shown is not None)
+    operator.until(lambda: operator.run.last is not None and operator.run.last.index > 2)
+    operator.run.toggle_pause()
+    assert operator.run.shown is operator.run.last
+    np.testing.assert_array_equal(stored(obj.data), operator.run.last.curve.vertices.astype(np.float32))
+    operator.run.toggle_pause()
+    assert operator.until(lambda: False) == {"FINISHED"}
+    assert operator.run.report.kinds[Kind.STEP] == operator.run.last.index + 1
+
+
+_WHILE = 0.4  # seconds, in which a worker does many iterates
+
+
+@pytest.mark.parametrize("operator", ["thread", "process"], indirect=True)
+def test_a_pause_is_one_for_the_worker_too(operator):
+    add_trefoil()
+    operator.given |= {"view_every": 0, "method": "flow-l2", "tolerance": 1e-9, "max_iterations": 10_000}
+    operator.start()
+    operator.reach(3)
+    operator.run.toggle_pause()
+    paused, waiting = operator.run.last.index, operator.run._worker._queue
+    time.sleep(_WHILE)
+    ahead = waiting.qsize()
+    time.sleep(_WHILE)
+    assert waiting.qsize() == ahead < 40
+    operator.event()
+    assert operator.run.last.index == operator.run.shown.index == paused
+    operator.run.toggle_pause()
+    operator.until(lambda: operator.run.shown.index != paused)
+    assert operator.run.shown.index == paused + 1
+    operator.reach(paused + ahead + 3)
+
+
+def test_enter_keeps_what_is_shown_in_a_pause(operator):
     obj = add_hopf_link()
     operator.start()
     operator.reach(2)
@@ -105,15 +173,6 @@ def test_pause_and_enter_keep_what_is_shown(operator):
     np.testing.assert_array_equal(stored(obj.data), shown)
     assert "stopped after 2 steps" in operator.run.message
     assert bpy.context.scene.frame_current_final == pytest.approx(operator.run.report.last_frame)
-
-
-def test_undo_key_is_esc(operator):
-    obj = add_trefoil()
-    before = Splines.of(obj.data)
-    operator.start()
-    operator.reach(1)
-    assert operator.event("Z", ctrl=True) == {"CANCELLED"}
-    restored(obj, before)
 
 
 class Screen:
@@ -132,6 +191,7 @@ def test_keys_meant_for_something_else_pass_through(operator, key):
     add_trefoil()
     operator.start()
     operator.reach(1)
+    assert operator.event("MOUSEMOVE") == operator.event("G") == operator.event() == {"PASS_THROUGH"}
     screen = Screen()
     operator.context.window = SimpleNamespace(screen=screen)
     operator.context.workspace = SimpleNamespace(status_text_set=lambda _: None)
@@ -144,134 +204,58 @@ def test_keys_meant_for_something_else_pass_through(operator, key):
     assert operator.run.state in (RunState.CANCELLED, RunState.FINISHING)
 
 
-def test_other_events_pass_through(operator):
-    add_trefoil()
-    operator.start()
-    assert operator.event("MOUSEMOVE") == operator.event("G") == operator.event() == {"PASS_THROUGH"}
-
-
 def test_another_object_has_to_wait(operator):
     obj = add_trefoil()
-    before = Splines.of(obj.data)
     operator.start()
     operator.reach(1)
     other = add_hopf_link()
-    untouched = Splines.of(other.data)
+    untouched = splines_of(other.data)
     second = Operator()
     assert second.start() == {"CANCELLED"}
     assert second.reports == [({"ERROR"}, f"'{obj.name}' is being relaxed; stop that first")]
     operator.event("ESC")
-    restored(obj, before)
     restored(other, untouched)
-
-
-def test_a_bad_curve_is_refused_untouched(operator):
-    points = torus_trefoil(30).vertices.copy()
-    points[3] = points[2]
-    obj = add_curve([points])
-    before = Splines.of(obj.data)
-    operator.start()
-    assert operator.until(lambda: False) == {"CANCELLED"}
-    assert operator.reports[-1][0] == {"ERROR"}
-    restored(obj, before)
-
-
-def test_deletion(operator):
-    obj = add_trefoil()
-    data, before = obj.data, stored(obj.data)
-    operator.start()
-    operator.reach(1)
-    bpy.data.objects.remove(obj)
-    assert operator.event() == {"CANCELLED"}
-    assert operator.run.state is RunState.LOST
-    np.testing.assert_array_equal(stored(data), before)
-
-
-def test_a_new_name_does_not_matter(operator):
-    obj = add_trefoil()
-    operator.start()
-    operator.reach(1)
-    obj.name, obj.data.name = "Other", "Other"
-    assert operator.until(lambda: False) == {"FINISHED"}
-    assert operator.run.report.names == ("Other",)
-    assert obj.data.name == "Other", "it was given to a stand-in"
-    operator.start()
-    operator.reach(1)
-    obj.data.name = "Another"
-    operator.run.cancel()
-    assert obj.data.name == "Another"
-
-
-def test_topology_change_leaves_what_somebody_made(operator):
-    obj = add_trefoil()
-    operator.start()
-    operator.reach(1)
-    obj.data.splines[0].points.add(1)
-    count = len(obj.data.splines[0].points)
-    assert operator.event() == {"CANCELLED"}
-    assert len(obj.data.splines[0].points) == count
-
-
-def test_shape_keys_of_somebody_else_are_left_alone(operator):
-    obj = add_trefoil()
-    operator.start()
-    operator.reach(1)
-    obj.shape_key_add(name="Mine")
-    shown, key = stored(obj.data), keys(obj)
-    assert operator.event() == {"CANCELLED"}
-    assert operator.run.state is RunState.LOST
-    np.testing.assert_array_equal(stored(obj.data), shown)
-    np.testing.assert_array_equal(keys(obj), key)
-
-
-def test_edit_mode(operator):
-    obj = add_trefoil()
-    before = Splines.of(obj.data)
-    operator.start()
-    operator.reach(1)
-    bpy.ops.object.mode_set(mode="EDIT")
-    assert operator.event() == {"CANCELLED"}
-    assert obj.mode == "EDIT"
-    bpy.ops.object.mode_set(mode="OBJECT")
-    restored(obj, before)
-
-
-@pytest.mark.parametrize("operator", ["process"], indirect=True)
-def test_loading_a_file(operator):
-    add_trefoil()
-    operator.start()
-    operator.reach(1)
-    bpy.ops.wm.read_homefile(use_empty=True)
-    assert operator.run.state is RunState.CANCELLED
-    assert operator.run._worker.process.poll() is not None
-    operator.cancel(operator.context)
-
-
-def test_disabling_ends_the_run(operator, addon):
-    obj = add_trefoil()
-    before = Splines.of(obj.data)
-    operator.start()
-    operator.reach(1)
-    addon.unregister()
-    addon.register()
-    assert operator.run.state is RunState.CANCELLED
-    restored(obj, before)
-
-
-@pytest.mark.parametrize("operator", ["process"], indirect=True)
-def test_a_worker_that_dies_loses_nothing(operator):
-    obj = add_trefoil()
-    operator.given["vertices"] = 400
-    operator.start()
-    operator.reach(1)
-    operator.run._worker.process.kill()
-    assert operator.until(lambda: False) == {"FINISHED"}
-    assert operator.run.failed
-    assert operator.reports[-1][0] == {"WARNING"}
-    assert obj.data.shape_keys is not None
 
 
 def test_operators_can_keep_what_they_need_in_a_window():
     """Blender makes attributes of what is annotated: a setting of the same name would take the place of another."""
-    for name in dir(Listening):
-        assert name not in SETTINGS, name
+    assert not set(dir(Listening)) & set(SETTINGS)
+
+
+def test_the_timeline_shows_any_iterate_while_the_run_goes_on(operator, monkeypatch):
+    obj, scene = add_trefoil(), bpy.context.scene
+    operator.given |= {"timing": "ITERATE", "vertices": 0}
+    operator.start()
+    operator.reach(3)
+    start = operator.run._session.motion.start.vertices.astype(np.float32)
+
+    def shows_the_last():
+        np.testing.assert_array_equal(stored(obj.data), operator.run.last.curve.vertices.astype(np.float32))
+
+    monkeypatch.setattr(run, "looks_back", lambda: True)
+    with monkeypatch.context() as patch:
+        patch.setattr(run, "is_rendering", lambda: True)
+        handlers.HANDLERS["frame_change_post"]()
+        assert operator.run.looked_at is None, "nothing moves while Blender renders"
+    for _ in range(3):
+        scene.frame_set(1)  # the handler shows it
+        np.testing.assert_array_equal(stored(obj.data), start)
+        assert (operator.run.looked_at, operator.run.shown) == (0.0, None)
+        operator.event()
+    operator.reach(5)
+    scene.frame_set(2, subframe=0.5)
+    assert operator.run.looked_at == 1.5
+    operator.run.toggle_pause()
+    scene.frame_set(1)
+    np.testing.assert_array_equal(stored(obj.data), start)
+
+    monkeypatch.setattr(run, "looks_back", lambda: False)
+    operator.event()
+    assert operator.run.shown is operator.run.last
+    shows_the_last()
+    monkeypatch.setattr(run, "looks_back", lambda: True)
+    scene.frame_set(1)
+    operator.event("RET")
+    shows_the_last()
+    operator.until(lambda: False)
+    assert operator.run.report.certified

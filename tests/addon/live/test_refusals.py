@@ -104,6 +104,7 @@ CASES = [
     (animated, "is animated"),
     (lambda: add_trefoil().data.driver_add("splines[0].points[3].co", 1), "are driven"),
     (lambda: setattr(add_trefoil().data, "dimensions", "2D"), "2D"),
+    (lambda: add_trefoil() and bpy.ops.object.mode_set(mode="EDIT"), "being edited"),
     (lambda: add_curve([TREFOIL, [[9, 9, 9]]], kind="BEZIER"), "Spline 2 of 'Knot' has fewer than 2 points"),
     (
         lambda: add_curve([TREFOIL, [[9, 9, 9], [9, 9, 8]]], kind="NURBS"),
@@ -122,23 +123,12 @@ def test_refused_in_one_sentence(prepare, said):
     assert said in refused()
 
 
-def test_edit_mode():
+@pytest.mark.parametrize("own", [False, True], ids=["its object too", "its data"])
+def test_linked_from_a_library(tmp_path, own):
     add_trefoil()
-    bpy.ops.object.mode_set(mode="EDIT")
-    assert "being edited" in refused()
-    bpy.ops.object.mode_set(mode="OBJECT")
-
-
-def test_linked_from_a_library(tmp_path):
-    add_trefoil()
-    show(linked(tmp_path / "library.blend", "objects", "Knot"))
-    assert "linked from another file" in refused()
-
-
-def test_object_of_ones_own_with_linked_data(tmp_path):
-    add_trefoil()
-    data = linked(tmp_path / "library.blend", "curves", "Knot")  # first: it opens another file, with other `bpy.data`
-    show(bpy.data.objects.new("Mine", data))
+    kind = "curves" if own else "objects"
+    block = linked(tmp_path / "library.blend", kind, "Knot")  # first: it opens another file, with other `bpy.data`
+    show(bpy.data.objects.new("Mine", block) if own else block)
     assert "linked from another file" in refused()
 
 
@@ -154,18 +144,6 @@ def test_absurd_sizes_are_relaxed_or_refused(scale):
         return
     assert sentence(error)
     assert contents() == before
-
-
-def test_options_that_do_not_fit():
-    add_trefoil(30)
-    assert "vertices is 10" in refused(vertices=10)
-    assert "vertices is 2" in refused(vertices=2)
-
-
-def test_an_unknown_method_is_a_type_error():
-    add_trefoil()
-    with pytest.raises(TypeError, match="magic"):
-        bpy.ops.curve.mobius_flow_relax(method="magic")
 
 
 @pytest.mark.parametrize("kind", ["BEZIER", "NURBS"])
@@ -193,6 +171,8 @@ NAN = float("nan")
     [
         ({"frames_per_iterate": NAN}, "Frames/Iterate is nan; it must be from 0.1 to 10000"),
         ({"tolerance": NAN}, "tolerance is nan"),
+        ({"vertices": 10}, "vertices is 10"),
+        ({"vertices": 2}, "vertices is 2"),
         ({"start_frame": 2**24}, "Start Frame is 16777216; it must be from -1048574 to 1048574"),
         ({"start_frame": -(2**24)}, "it must be from -1048574 to 1048574"),
         (
@@ -202,11 +182,13 @@ NAN = float("nan")
         ({"frames_per_iterate": 10_000.0}, "The animation would go on to frame 20000001"),
     ],
 )
-def test_frames_that_a_scene_does_not_have(options, said):
+def test_numbers_that_do_not_fit(options, said):
     add_trefoil()
     assert said in refused(**options)
 
 
 def test_without_keys_there_is_room_anywhere():
     add_trefoil()
+    with pytest.raises(TypeError, match="magic"):
+        bpy.ops.curve.mobius_flow_relax(method="magic")
     relax(keyframes="RESULT", start_frame=1_048_000, max_iterations=2000, vertices=60)

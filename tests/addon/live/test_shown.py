@@ -1,10 +1,14 @@
-"""The panel shows a run that is about the active object as it is now, in the open file, and no other."""
+"""What is shown of a run: in the curves while it goes on, in the panel for as long as it is about the active object."""
 
 import bpy
 import pytest
 from blender_scenes import add_curve, add_hopf_link, add_trefoil
+from mobius_flow.addon.curves.bevel import fitting_radius, is_fitted
+from mobius_flow.addon.curves.recorded import Recorded
 from mobius_flow.addon.live import registry
 from shapes import torus_trefoil
+
+COARSE = 1e-6  # of a radius: Blender keeps 32 bits
 
 
 def shown():
@@ -29,65 +33,50 @@ def done(operator):
 def test_what_goes_on_is_always_shown(operator):
     add_trefoil()
     operator.start()
-    for other in (None, add_curve([torus_trefoil(9).vertices]), bpy.data.objects.new("Empty", None)):
-        if other is not None and other.name == "Empty":
-            bpy.context.scene.collection.objects.link(other)
+    empty = bpy.data.objects.new("Empty", None)
+    bpy.context.scene.collection.objects.link(empty)
+    for other in (None, add_curve([torus_trefoil(9).vertices]), empty):
         activate(other)
         assert shown() is operator.run
 
 
-def test_another_object(done, operator):
+def test_it_is_about_its_object_wherever_and_whenever_that_is_seen(done, operator):
+    run = operator.run
+    assert len(run.energies) == run.last.index + 1 == 6
+    assert run.energies[-1] == run.last.energy
+    assert run.target is None, "it is knotted"
+    for frame in (1, 40, 250):
+        bpy.context.scene.frame_set(frame)
+        assert shown() is run
+    done.location, done.name = (1, 2, 3), "Other"
+    assert shown() is run
     other = add_hopf_link()
-    assert shown() is None
-    activate(done)
-    assert shown() is operator.run
-    activate(None)
-    assert shown() is None
-    activate(other)
-    assert shown() is None
-
-
-def test_clear(done):
+    for active, about in ((other, None), (done, run), (None, None), (done, run)):
+        activate(active)
+        assert shown() is about
+    done.select_set(True)
+    other.select_set(False)
     bpy.ops.curve.mobius_flow_clear()
     assert shown() is None
 
 
-@pytest.mark.parametrize("output", ["SHAPE_KEYS", "FCURVES", "RESULT"])
-def test_points_that_are_moved(operator, output):
+@pytest.mark.parametrize("output", ["SHAPE_KEYS", "FCURVES", "RESULT", "cancelled"])
+def test_points_that_are_moved_are_others(operator, output):
     obj = add_trefoil()
-    operator.given |= {"max_iterations": 5, "keyframes": output}
+    operator.given |= {"max_iterations": 5} | ({} if output == "cancelled" else {"keyframes": output})
     operator.start()
+    if output == "cancelled":
+        operator.reach(2)
+        operator.event("ESC")
+        assert operator.run.recoverable
     operator.until(lambda: False)
     assert shown() is operator.run
     obj.data.splines[0].points[3].co[0] += 1
     assert shown() is None
-    obj.data.splines[0].points[3].co[0] -= 1
-
-
-def test_playing_the_animation(done, operator):
-    for frame in (1, 40, 250):
-        bpy.context.scene.frame_set(frame)
-        assert shown() is operator.run
-
-
-def test_moving_and_renaming_the_object(done, operator):
-    done.location, done.name = (1, 2, 3), "Other"
-    assert shown() is operator.run
-
-
-def test_a_cancelled_run_is_shown_while_the_curve_is_as_it_was(operator):
-    obj = add_trefoil()
-    operator.start()
-    operator.reach(2)
-    operator.event("ESC")
-    assert shown() is operator.run
-    assert operator.run.recoverable
-    obj.data.splines[0].points[0].co[1] += 1
-    assert shown() is None
 
 
 @pytest.mark.parametrize("going_on", [True, False])
-def test_another_file(operator, tmp_path, going_on):
+def test_another_file_has_none(operator, tmp_path, going_on):
     add_trefoil()
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "a.blend"))
     operator.given["max_iterations"] = 5
@@ -99,8 +88,63 @@ def test_another_file(operator, tmp_path, going_on):
     assert shown() is None
 
 
-def test_energies_are_kept_for_the_plot(done, operator):
-    run = operator.run
-    assert len(run.energies) == run.last.index + 1 == 6
-    assert run.energies[-1] == run.last.energy
-    assert run.target is None, "it is knotted"
+@pytest.fixture
+def knot():
+    """A flat trefoil, stretched by 2, with a tube that fits."""
+    obj = add_trefoil()
+    obj.scale = (2, 2, 2)
+    for point in obj.data.splines[0].points:
+        point.co.z *= 0.3
+    bpy.context.view_layer.update()
+    bpy.ops.curve.mobius_flow_fit_tube()
+    return obj
+
+
+@pytest.mark.parametrize("keep_size", ["LENGTH", "RADIUS"])
+def test_a_fitted_tube_is_as_thick_as_free_of_contact_allows_at_every_moment(operator, knot, keep_size):
+    operator.given |= {"keep_size": keep_size}
+    depth, original, depths = knot.data.bevel_depth, knot.data, []
+    operator.start()
+    for index in (1, 3, 6):
+        operator.reach(index)
+        depths.append(knot.data.bevel_depth)
+        assert fitting_radius(operator.run.group.in_view) == pytest.approx(2.0 * depths[-1], rel=COARSE)
+    assert len(set(depths)) > 1
+    assert max(depths) > 1.05 * depth, "a flat knot is given room"
+    operator.run.cancel()
+    assert knot.data == original
+    assert (knot.data.bevel_depth, is_fitted(knot.data)) == (depth, True)
+
+
+def test_a_fitted_tube_is_kept_as_it_is_shown(operator, knot):
+    operator.given |= {"keep_size": "LENGTH", "max_iterations": 8}
+    operator.start()
+    operator.reach(8)
+    shown = knot.data.bevel_depth
+    assert operator.until(lambda: False) == {"FINISHED"}
+    assert knot.data.bevel_depth == pytest.approx(shown, rel=COARSE)
+    assert is_fitted(knot.data)
+    assert Recorded.of(knot).radii[-1] == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("factor", [1.0, 0.5], ids=["asked for", "the artist's own"])
+def test_other_tubes_are_not_changed(operator, knot, factor):
+    if factor == 1.0:
+        operator.given["fit_bevel"] = False
+    else:
+        knot.data.bevel_depth *= factor
+    depth = knot.data.bevel_depth
+    operator.start()
+    operator.reach(4)
+    assert knot.data.bevel_depth == depth
+    operator.run.cancel()
+
+
+def test_a_tube_that_somebody_else_takes_over_still_counts_as_fitted(operator, knot):
+    operator.start()
+    operator.reach(4)
+    depth = knot.data.bevel_depth
+    knot.data.splines[0].points.add(1)
+    operator.event()
+    assert operator.run.state.over
+    assert (knot.data.bevel_depth, is_fitted(knot.data)) == (depth, True)
