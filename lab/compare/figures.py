@@ -17,7 +17,10 @@ if TYPE_CHECKING:
 
 DPI, COLORS = 100, 128  # of pictures made of pixels
 _ENDS = {"converged": "o", "stalled": "x"}  # marks where lines end
-_DASHES: Sequence[Any] = ("-", "--", ":", "-.", (0, (8, 2)), (0, (3, 1, 1, 1, 1, 1)))
+_DASHES: Sequence[Any] = (  # one for each kind of method that there is
+    *("-", "--", ":", "-.", (0, (8, 2)), (0, (3, 1, 1, 1, 1, 1))),
+    *((0, (1, 4)), (0, (8, 2, 1, 2, 1, 2)), (0, (2, 2))),
+)
 _CELL = 1.9  # inches of a curve's picture
 
 

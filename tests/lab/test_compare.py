@@ -58,6 +58,12 @@ def test_figures_show_energy_its_distance_to_the_least_and_the_gradient(
     assert said == ["E rises: cg in 1 of 3 steps, flow-moebius in 1 of 3 steps"]
     assert (tmp_path / "a.png").stat().st_size > 1000
 
+    drawn.clear()
+    every = [replace(HELPED, method=name, metric=method.metric.name) for name, method in METHODS.items()]
+    WRITERS[".png"](tmp_path / "b.png", every)
+    styles = {(keywords["color"], str(keywords["linestyle"])) for *_, keywords in drawn if "linestyle" in keywords}
+    assert len(styles) == len(every), "no two methods look the same"
+
 
 def test_the_least_energy_is_that_of_methods_that_keep_lengths() -> None:
     other = replace(HELPED, method="penalty-cg", energy=(9.0, 5.0))
