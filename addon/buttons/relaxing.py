@@ -288,7 +288,7 @@ class CURVE_OT_mobius_flow_recover(Listening, Button, bpy.types.Operator):
     def _recovered(self) -> LiveRun:
         run = registry.latest()
         assert run is not None, "poll looks for it"
-        require(RELAXABLE.of(run.group.objects))
+        require(RELAXABLE.of(run.session.objects))
         run.recover()
         return run
 

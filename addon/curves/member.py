@@ -26,7 +26,7 @@ _MARK = "mobius_flow_stand_in"  # custom property of stand-ins
 
 
 class Member:
-    """A curve object of a run, as for `CurveGroup`; nothing of it is touched before `begin`."""
+    """A curve object of a run, as for `Session`; nothing of it is touched before `begin`."""
 
     def __init__(self, obj: bpy.types.Object, continues: bool = False) -> None:
         self.name = obj.name

@@ -1,4 +1,4 @@
-"""One relaxation of a group of curve objects: consumes iterates, then writes the animation.
+"""One relaxation of curve objects as one link: consumes iterates, shows them, then writes the animation.
 
 A plain class: a blocking operator runs it, a modal one hands it the iterates of a worker (`live.run`).
 What it knows lives here and never in the file.
@@ -6,6 +6,7 @@ What it knows lives here and never in the file.
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any
@@ -14,21 +15,22 @@ import bpy
 import numpy as np
 
 from ...core import Curve, Hand, Iterate, Obstacle, Outcome, RelaxOptions, Status, Task, WithOutcome
-from ...core.base.errors import CurveError, MobiusFlowError, OptionError
+from ...core.base.errors import CurveError, MobiusFlowError, OptionError, Place
 from ...core.base.messages import Message, Sentence
 from ...core.base.types import FloatArray
 from ...core.collision import is_free
-from ...core.driver.words import named
+from ...core.driver.words import in_blenders_words, named, spline_names
 from ...core.keys.key_options import Course, KeyOptions, Output
 from ...core.keys.motion import Key, Keys, Kind, Proof, Recording
-from ...core.keys.placement import Frame, Measure
+from ...core.keys.placement import Frame, Measure, Placement, Spot, spots
 from ...core.keys.tube import eased
 from ..engine.worker import begun, in_common_space
 from . import bake, bevel
 from .goals import Goals
-from .group import CurveGroup
-from .pins import FREE, Held
-from .splines import stretch
+from .member import Member
+from .pins import FREE, Held, pin, pinned_vertices, unpin
+from .sizes import placement
+from .splines import coordinates, read_link, stretch
 from .surroundings import NOTHING, Surroundings
 
 
@@ -85,22 +87,22 @@ class Report:
         return self.certified and self.outcome.status is not Status.STALLED
 
 
-@dataclass(frozen=True, eq=False)
-class Prepared:
-    """What is to be written; (keys,) each."""
-
-    keys: Keys
-    frames: FloatArray
-    course: Course
-    radii: FloatArray | None  # of the tube, in the common space of `Link`, if it is fitted
+# what is to be written: the keys, and for each of them its scene frame, how far the relaxation has come there, and the
+# radius of the tube, in the common space of `Link`, if it is fitted
+Prepared = tuple[Keys, FloatArray, Course, FloatArray | None]
 
 
 class Session:
-    """A relaxation of curve objects as one link; ``objects`` and ``continues`` as for `CurveGroup`.
+    """A relaxation of curve objects as one link, in the world; a single object is one, too.
 
-    ``goals``: curve objects that it is to become, one after the other; by default it is relaxed alone.
-    ``outcome``: how the relaxation ended, once it has.  Raises MobiusFlowError if the curves cannot be relaxed, or
-    there is no room for their keys.
+    `requirements` accept the objects, and their transforms are evaluated. They show stand-ins until all is written, or
+    until `discard`. Where the run ``continues``, baked curves are relaxed on from the ends of their animations, and
+    keys are added to theirs. ``goals``: curve objects that the link is to become, one after the other; by default it is
+    relaxed alone.
+
+    ``curve``: all splines as polygons in world space; ``link``: where their vertices are stored; ``outcome``: how the
+    relaxation ended, once it has.  Raises MobiusFlowError if the curves cannot be relaxed, or there is no room for
+    their keys.
     """
 
     def __init__(
@@ -114,34 +116,61 @@ class Session:
         goals: Sequence["bpy.types.Object"] = (),
     ) -> None:
         key_options.check_room(options.max_iterations)
-        self.surroundings = surroundings
-        self._key_options = key_options
-        self.group = CurveGroup(objects, continues)
+        self.surroundings, self._key_options, self._continues = surroundings, key_options, continues
+        self.outcome: Outcome | None = None
+        self._last: Iterate | None = None
+        self._repinned = False  # whether a hand has left pins
+        self._begin(objects)
         try:
-            self.goals = Goals(goals, self.group.curve)
-            pins, obstacles = tuple(sorted({*held.points, *self.group.pins})), surroundings.obstacles
-            tangents = held.tangents and bool(pins)
-            self.task = Task(curve=self.group.curve, obstacles=obstacles, pins=pins, pin_tangents=tangents)
-            if self.task.pins or obstacles:
+            self.goals = Goals(goals, self.curve)
+            pins = tuple(sorted({*held.points, *pinned_vertices(objects, self.curve.mesh)}))
+            obstacles, tangents = surroundings.obstacles, held.tangents and bool(pins)
+            self.task = Task(curve=self.curve, obstacles=obstacles, pins=pins, pin_tangents=tangents)
+            if pins or obstacles:
                 key_options.check_place()
             if obstacles and options.balance:
                 raise OptionError(Message("Balance does not go with what is avoided; leave it out, or avoid nothing"))
-            self.options = options
+            self.options, first, size = options, None, None
             if continues:  # the keys that are there have as many points as the curves have now
-                self.options = replace(options, vertices=len(self.group.curve), mesh="fixed", untangle="never")
+                self.options = replace(options, vertices=len(self.curve), mesh="fixed", untangle="never")
+                first = np.concatenate([coordinates(spline) for spline in self._splines])
+                size = self.members[0].size
         except BaseException:
-            self.group.discard()
+            self.discard()
             raise
-        first = self.group.stored if continues else None
         # what of the size stays constant, or changes evenly between goals
-        stays = self.task.pins or obstacles or self.options.grow != 1.0
+        stays = pins or obstacles or self.options.grow != 1.0
         # a taper may leave no radii at points, which make up for the size
         stays = stays or any(o.data.taper_object and o.data.taper_radius_mode == "OVERRIDE" for o in objects)
         measure = key_options.keep_size or (Measure.LENGTH if stays else Measure.RADIUS)
-        self.motion = Recording(self.group.link, first, measure, self.group.size, not self._shape_keys)
-        self._last: Iterate | None = None
-        self._repinned = False  # whether a hand has left pins
-        self.outcome: Outcome | None = None
+        self.motion = Recording(self.link, first, measure, size, not self._shape_keys)
+
+    def _begin(self, objects: Sequence[bpy.types.Object]) -> None:
+        """Show stand-ins for curve objects, and read the link that they form."""
+        self.members = [Member(obj, self._continues) for obj in objects]
+        self._shown: tuple[Curve, Frame, float | None] | None = None
+        try:
+            for member in self.members:
+                member.begin()
+            self.curve, self.link = read_link(objects)
+        except BaseException:
+            self.discard()
+            raise
+
+    def reopen(self) -> None:
+        """Go on after `discard`; raises MobiusFlowError if the curves are not as they were at first."""
+        changed = Message("{names} changed since the relaxation ended; relax anew", names=self.title)
+        objects, curve, link = self.objects, self.curve, self.link
+        if len(objects) < len(self.members) or self.surroundings.lost():
+            raise MobiusFlowError(changed)
+        self._begin(objects)
+        same = link.counts == self.link.counts and curve.mesh == self.curve.mesh
+        same = same and all(a.equals(b) for a, b in zip(link.placements, self.link.placements, strict=True))
+        same = same and np.array_equal(curve.vertices, self.curve.vertices)
+        self.curve, self.link = curve, link
+        if not same:
+            self.discard()
+            raise MobiusFlowError(changed)
 
     def run(self, drag: Callable[[Hand, Iterate], object] | None = None) -> Report:
         """Do the whole job; raises MobiusFlowError if the curves cannot be relaxed, or an object is gone.
@@ -165,32 +194,67 @@ class Session:
                 raise MobiusFlowError(Message("{reason} during the relaxation; nothing was written", reason=reason))
             *_, report = self.bake(prepared)
         except BaseException:
-            self.group.discard()
+            self.discard()
             raise
         assert report is not None, "it comes last"
         return report
 
-    @cached_property
-    def _avoided(self) -> tuple[Obstacle, ...]:
-        return in_common_space(self.task.obstacles, self.group.link)
-
-    def lost(self) -> Message | None:
-        """Say what was done to one of the objects, or to what they avoid, that makes it impossible to go on."""
-        return self.group.lost(alone=not self.task.obstacles) or self.surroundings.lost()
-
-    def reworded(self, error: CurveError) -> CurveError:
-        """The core's error in Blender's words; those about options use the names that options have."""
-        if isinstance(error, OptionError):
-            return error
-        return CurveError(Sentence("{reason}", reason=self.group.reworded(str(error))), error.place)
-
-    def end(self, outcome: Outcome) -> None:
-        self.outcome = replace(outcome, clauses=tuple(map(self.group.reworded, outcome.clauses)))
+    # -- its objects -------------------------------------------------------------------------------------------------
 
     @property
-    def _shape_keys(self) -> bool:
-        """Whether shape keys are written; an animation that goes on may have them whatever is asked for."""
-        return self._key_options.output is Output.SHAPE_KEYS or self.group.continues
+    def names(self) -> tuple[str, ...]:
+        return tuple(member.name for member in self.members)
+
+    @property
+    def title(self) -> str:
+        return named(self.names)
+
+    @property
+    def objects(self) -> list[bpy.types.Object]:
+        """Those that are still there."""
+        return [obj for member in self.members if (obj := member.object) is not None]
+
+    @property
+    def _splines(self) -> list[bpy.types.Spline]:
+        return [spline for obj in self.objects for spline in obj.data.splines]
+
+    def lost(self) -> Message | None:
+        """Say what was done to one of the objects, or to what they avoid, that makes it impossible to go on.
+
+        What is proved of a single object that avoids nothing holds wherever it goes.
+        """
+        reason = next((reason for member in self.members if (reason := member.lost())), None)
+        for member in self.members if len(self.members) > 1 or self.task.obstacles else ():
+            if reason is None and not placement(member.object).equals(member.placement):
+                reason = Message("'{name}' was moved against the others", name=member.name)
+        return reason or self.surroundings.lost()
+
+    def hide(self) -> None:
+        """Show the originals for a moment, because the file is being saved or something is undone."""
+        for member in self.members:
+            member.hide()
+
+    def resume(self) -> None:
+        for member in self.members:
+            member.resume()
+        if self._shown is not None:
+            shown, self._shown = self._shown, None
+            self._move(*shown)
+
+    def discard(self) -> bool:
+        """Show the originals for good, unless somebody else changed something; return whether all is as it was."""
+        restored: list[bool] = []
+        with ExitStack() as everything:
+            # close curves that may just have been opened for editing, and reopen them afterwards
+            if mode := next((obj.mode for obj in self.objects if obj.mode != "OBJECT"), None):
+                bpy.ops.object.mode_set(mode="OBJECT")
+                everything.callback(bpy.ops.ed.undo_push, message="Relaxation Ended")
+                everything.callback(bpy.ops.object.mode_set, mode=mode)
+            for member in self.members:  # each of them, even if one fails
+                everything.callback(lambda each: restored.append(each.discard()), member)
+        return all(restored)
+
+    # -- its motion --------------------------------------------------------------------------------------------------
 
     def take(self, iterate: Iterate) -> None:
         """Record an iterate."""
@@ -202,87 +266,152 @@ class Session:
         if self.goals.curves:
             self.motion.natural = sorted({0, *self.goals.iterates, iterate.index})
 
-    def show(self, there: Key | None = None) -> None:
-        """Show a shape, by default the last iterate with the pins that a hand left, its tube as thick as at a key."""
-        frame, fits = self.motion.frame if there is None else there.points, self.group.fits(self._key_options)
-        self.group.show(self.motion.start, frame, self._key_options, self._radius(frame) if fits else None)
-        if there is None:
-            self._mark_pins()
+    def end(self, outcome: Outcome) -> None:
+        self.outcome = replace(outcome, clauses=tuple(map(self._in_our_words, outcome.clauses)))
+
+    def reworded(self, error: CurveError) -> CurveError:
+        """The core's error in Blender's words; those about options use the names that options have."""
+        if isinstance(error, OptionError):
+            return error
+        return CurveError(Sentence("{reason}", reason=self._in_our_words(str(error))), error.place)
+
+    def _in_our_words(self, message: str) -> str:
+        """The core's message about the link and what it avoids, with the splines named by their objects."""
+        return in_blenders_words(message, spline_names(self.names, self.link.counts))
+
+    def spots(self, place: Place | None, curve: Curve) -> list[Spot]:
+        """The spots on the objects of a place on the link, or on the same link with other vertices."""
+        return [] if place is None else spots(place, curve, self.link)
 
     def at(self, frame: float) -> Key:
         """The shape that a scene frame would have if this were the end."""
         return self.motion.at(frame, self._key_options.timing)
 
-    def _mark_pins(self) -> None:
-        """Mark the points where the last iterate, which may have fewer vertices, has pins."""
-        if self._repinned and (last := self.motion.last) is not None:
-            link, curve = self.group.link, last.curve
-            shown = link.to_common(self.motion.start.mesh, self.motion.frame)
-            seen = self.motion.size.of(curve.vertices)
-            pins = link.to_common(curve.mesh, link.to_stored(curve.mesh, seen))[list(last.pins)]
-            self.group.mark_pins([int(np.linalg.norm(shown - pin, axis=1).argmin()) for pin in pins])
+    def show(self, there: Key | None = None) -> None:
+        """Show a shape, by default the last iterate with the pins that a hand left, its tube as thick as at a key."""
+        frame = self.motion.frame if there is None else there.points
+        self._move(self.motion.start, frame, self._radius(frame) if self._fits else None)
+        if there is None:
+            self._mark_pins()
 
-    def prepare(self, proof: Proof) -> Prepared:
-        """Choose and prove the keys; this touches nothing of Blender's and may be done in any thread."""
-        motion = self.motion
-        timing = self._key_options.timing.shortened(motion.way) if self.group.continues else self._key_options.timing
-        animated, limit = self._key_options.animated, self._key_options.max_keys
-        keys = motion.keys(proof, limit, timing) if animated else motion.result(proof)
-        course = motion.course(keys)
-        frames = timing.frames(course)
-        radii = None
-        if self.group.fits(self._key_options):
-            shown = slice(None) if self._shape_keys else slice(-1, None)  # without shape keys the last one only
-            factors = np.array([key.size.factor for key in keys.keys[shown]])
-            fitting = factors * [self._radius(key.points) for key in keys.keys[shown]]
-            radii = eased(fitting, frames[shown], keys.moves[shown])
-            radii = (radii.min() if self._key_options.constant_radius else radii) / factors
-        return Prepared(keys, frames, course, radii)
+    def _move(self, start: Curve, frame: Frame, radius: float | None) -> None:
+        """Move all points, (n, 3) in each object's own coordinates; ``start``: the start with as many vertices.
+
+        Tubes that are to be fitted are given the radius, in the common space.
+        """
+        if self._shown is None or self._shown[0].mesh != start.mesh:
+            self._make_polygons(start)
+        self._shown = start, frame, radius
+        for member, vertices, scale in zip(self.members, self.link.slices(start.mesh), self.link.scales, strict=True):
+            fits = radius is not None and member.fits(self._key_options)
+            member.move(frame[vertices], radius / scale if fits and radius is not None else None)
+
+    def _make_polygons(self, refined: Curve) -> None:
+        """Give all splines the points of the refined link; their positions are left open."""
+        parts = zip(self.members, self.link.split(self.curve), self.link.split(refined), strict=True)
+        for member, drawn, part in parts:
+            member.make_polygons(drawn, part)
+
+    def _mark_pins(self) -> None:
+        """Let the points where the last iterate, which may have fewer vertices, has pins be the pinned ones."""
+        if not self._repinned or (last := self.motion.last) is None:
+            return
+        shown = self.link.to_common(self.motion.start.mesh, self.motion.frame)
+        seen = self.link.to_stored(last.curve.mesh, self.motion.size.of(last.curve.vertices))
+        pins = self.link.to_common(last.curve.mesh, seen)[list(last.pins)]
+        vertices, first = [int(np.linalg.norm(shown - place, axis=1).argmin()) for place in pins], 0
+        for spline in self._splines:
+            chosen = np.isin(np.arange(first, first + len(spline.points)), vertices)
+            first += len(chosen)
+            pin(spline, chosen)
+            unpin(spline, ~chosen)
+
+    @property
+    def in_view(self) -> Curve | None:
+        """The link where it is shown now, which for a single object may be elsewhere; None if there is none."""
+        if self._shown is None or len(self.objects) < len(self.members):
+            return None
+        start, frame, _ = self._shown
+        parts = zip(self._placements, self.link.slices(start.mesh), strict=True)
+        return start.with_vertices(np.concatenate([each.to_world(frame[s].astype(np.float64)) for each, s in parts]))
+
+    def unmoved(self, component: int, point: FloatArray) -> FloatArray:
+        """Where a point in view, shape (3,), would be on a component if no object had been moved."""
+        number = int(np.searchsorted(np.cumsum(self.link.counts), component, side="right"))
+        local = self._placements[number].to_local(point[None])
+        return np.asarray(self.link.placements[number].to_world(local)[0])
+
+    @property
+    def _placements(self) -> list[Placement]:
+        return [Placement.from_matrix(obj.matrix_world) for obj in self.objects]
+
+    # -- its keys ----------------------------------------------------------------------------------------------------
+
+    @property
+    def _shape_keys(self) -> bool:
+        """Whether shape keys are written; an animation that goes on may have them whatever is asked for."""
+        return self._key_options.output is Output.SHAPE_KEYS or self._continues
+
+    @property
+    def _fits(self) -> bool:
+        """Whether any of the objects is drawn as a tube that is to be fitted."""
+        return any(member.fits(self._key_options) for member in self.members)
 
     def _radius(self, frame: Frame) -> float:
         """Radius of the tube, as thick as free of contact allows, in the common space."""
         mesh = self.motion.start.mesh
-        return bevel.fitting_radius(Curve(self.group.link.to_common(mesh, frame), mesh), self._avoided)
+        return bevel.fitting_radius(Curve(self.link.to_common(mesh, frame), mesh), self._avoided)
 
-    def reopen(self) -> None:
-        """Go on after `CurveGroup.discard`; raises MobiusFlowError if the curves are not as they were at first."""
-        changed = Message("{names} changed since the relaxation ended; relax anew", names=self.group.title)
-        objects = self.group.objects
-        if len(objects) < len(self.group.names) or self.surroundings.lost():
-            raise MobiusFlowError(changed)
-        group = CurveGroup(objects, self.group.continues)
-        if not group.equals(self.group):
-            group.discard()
-            raise MobiusFlowError(changed)
-        self.group = group
+    @cached_property
+    def _avoided(self) -> tuple[Obstacle, ...]:
+        return in_common_space(self.task.obstacles, self.link)
+
+    def prepare(self, proof: Proof) -> Prepared:
+        """Choose and prove the keys; this touches nothing of Blender's and may be done in any thread."""
+        motion, options = self.motion, self._key_options
+        timing = options.timing.shortened(motion.way) if self._continues else options.timing
+        keys = motion.keys(proof, options.max_keys, timing) if options.animated else motion.result(proof)
+        course = motion.course(keys)
+        frames = timing.frames(course)
+        radii = None
+        if self._fits:
+            shown = slice(None) if self._shape_keys else slice(-1, None)  # without shape keys the last one only
+            factors = np.array([key.size.factor for key in keys.keys[shown]])
+            fitting = factors * [self._radius(key.points) for key in keys.keys[shown]]
+            radii = eased(fitting, frames[shown], keys.moves[shown])
+            radii = (radii.min() if options.constant_radius else radii) / factors
+        return keys, frames, course, radii
 
     def bake(self, prepared: Prepared) -> Iterator[Report | None]:
-        """Write in short pieces, so that a window can be drawn in between, and report at last; no object may be gone.
+        """Write what was prepared in short pieces, so that a window can be drawn in between, and report at last.
 
-        What is written becomes final with the last piece: until then `CurveGroup.discard` takes all of it back.
+        No object may be gone. What is written becomes final with the last piece: until then `discard` takes it back.
         """
         assert self.outcome is not None, "what is written has ended"
-        keys, frames, radii = prepared.keys, prepared.frames, prepared.radii
-        group, options = self.group, self._key_options
-        group.make_polygons(self.motion.start)
+        keys, frames, course, radii = prepared
+        options, mesh, objects = self._key_options, self.motion.start.mesh, self.objects
+        self._make_polygons(self.motion.start)
         self._mark_pins()
-        yield from group.writing(self.motion.start.mesh, keys, frames, options, radii)
-        self.goals.paint(group.objects, keys, frames, options.timing)
-        group.keep(keys, frames, options, prepared.course)
-        self.goals.hide(group.objects)
-        played = bake.scene_range(group.objects)
-        shown = keys.keys[-1].size.factor * stretch(group.objects[0])
+        for member, vertices, scale in zip(self.members, self.link.slices(mesh), self.link.scales, strict=True):
+            own = None if radii is None else radii / scale
+            yield from member.writing(keys.part(vertices), frames, options, own)
+        self.goals.paint(objects, keys, frames, options.timing)
+        for member in self.members:
+            member.keep(keys, frames, options, course)
+        self.goals.hide(objects)
+        played = bake.scene_range(objects)
+        shown = keys.keys[-1].size.factor * stretch(objects[0])
         yield Report(
-            names=group.names,
+            names=self.names,
             outcome=self.outcome,
             keys=len(keys.keys),
-            kinds=replace(keys, keys=keys.keys[group.continues :]).kinds,
-            continues=group.continues,
-            replaced=group.replaced,
+            kinds=replace(keys, keys=keys.keys[self._continues :]).kinds,
+            continues=self._continues,
+            replaced=max(member.replaced for member in self.members),
             last_frame=float(played[1] if played and options.timing.loop else frames[-1]),
             scene_range=played,
             certified=keys.certified,
             radius=None if radii is None else float(radii[-1]) * shown,
-            modified=group.modified,
+            modified=any(each.show_viewport or each.show_render for obj in objects for each in obj.modifiers),
             avoided=self.surroundings.names,
         )

@@ -22,14 +22,14 @@ def _forget() -> None:
 def _before_undo(run: LiveRun, others: int) -> None:
     """Undo must find the originals; the run goes on only if something else is undone or redone."""
     if others and run.endures:
-        run.group.hide()
+        run.session.hide()
     else:
         run.cancel(Message("Undone; the relaxation of {names} has ended", names=run.name))
 
 
 def _after_undo(run: LiveRun, count: int) -> None:
     drag = registry.history.undo(count)
-    run.group.resume()
+    run.session.resume()
     if drag:
         run.take_back()
 
@@ -38,7 +38,7 @@ def _before_saving(run: LiveRun) -> None:
     """A file holds curves as they were or with all their keys, and nothing in between."""
     run.complete()
     if not run.state.over:
-        run.group.hide()
+        run.session.hide()
 
 
 def _handler(handle: Callable[[LiveRun], None], otherwise: Callable[[], None] = lambda: None) -> Any:
@@ -61,8 +61,8 @@ HANDLERS = {
     "redo_post": _handler(lambda run: _after_undo(run, -1), show_originals),
     "frame_change_post": _handler(lambda run: run.look()),
     "save_pre": _handler(_before_saving),
-    "save_post": _handler(lambda run: run.group.resume()),
-    "save_post_fail": _handler(lambda run: run.group.resume()),
+    "save_post": _handler(lambda run: run.session.resume()),
+    "save_post_fail": _handler(lambda run: run.session.resume()),
 }
 
 

@@ -65,7 +65,7 @@ class Loop:
             if event.shift or event.alt or event.oskey or run.state.name != "RUNNING" or run.shown is None:
                 return False
             # the region of a 3D view that has the mouse, unless a sidebar, a header or the navigation gizmo has it
-            found, curve = [], run.group.in_view
+            found, curve = [], run.session.in_view
             areas = context.window.screen.areas if context.window else []
             for region in (region for area in areas if area.type == "VIEW_3D" for region in area.regions):
                 place, extent = mouse - corner(region), size(region)
@@ -83,7 +83,7 @@ class Loop:
             if view.show_navigate_ui and (corner(region) + size(region) - mouse < gizmo).all():
                 return False
             near = 15.0 * system.ui_scale  # pixels
-            radius = max(stretch(each) * each.data.bevel_depth for each in run.group.objects)
+            radius = max(stretch(each) * each.data.bevel_depth for each in run.session.objects)
             drag = Drag.at(curve, region, mouse - corner(region), near, radius)
             if drag is not None:
                 drag.pins = event.ctrl

@@ -48,7 +48,7 @@ def _draw() -> None:
         _pins(context)
         if run is not None:
             _marks(context, run)
-            curve = run.group.in_view if run.drag is not None else None
+            curve = run.session.in_view if run.drag is not None else None
             if run.drag is not None and curve is not None:
                 # mark the strand that is held, and draw a line from there to the place it is pulled to
                 places = run.drag.held(curve), run.drag.target

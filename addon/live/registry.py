@@ -29,9 +29,9 @@ class ActionCount:
     def push(self, run: "LiveRun") -> None:
         """Make an undo step if there are drags; the originals are in the file for that moment."""
         if run.drags and not self._step and run.endures:
-            run.group.hide()
+            run.session.hide()
             bpy.ops.ed.undo_push(message=iface_("Drag"))
-            run.group.resume()
+            run.session.resume()
             self.others, self.undone, self._seen = self.others + 1, 0, _last_operation()
             self._step = self.others
 

@@ -22,7 +22,6 @@ from ...core.curve import Mesh
 from ...core.driver import TimeLeft
 from ...core.keys.motion import Proof
 from ...core.keys.placement import Spot
-from ..curves.group import CurveGroup
 from ..curves.session import Prepared, Report, Session
 from ..curves.splines import digest
 from ..engine.rest import Target, target_of
@@ -153,32 +152,28 @@ class LiveRun:
         self.drags = 0  # those that may be taken back
         self.trouble: list[Spot] = []  # where it failed or got stuck, if the reason has a place
         self._left: dict[int, bytes] | None = None  # what the objects were at its end, by their identities
-        self._session, self._refresh = session, refresh
+        self.session, self._refresh = session, refresh
         self.avoided = session.surroundings.names
         self.time_left = TimeLeft(session.options)
         try:
-            self._worker = Worker(session.task, session.options, self.group.link, stays, session.goals.curves)
+            self._worker = Worker(session.task, session.options, self.session.link, stays, session.goals.curves)
         except BaseException:
-            self.group.discard()
+            self.session.discard()
             raise
-        self._keys = KeyWriter(self._session, self._worker.is_free)
-
-    @property
-    def group(self) -> CurveGroup:
-        return self._session.group
+        self._keys = KeyWriter(self.session, self._worker.is_free)
 
     @property
     def objects(self) -> list[bpy.types.Object]:
         """The objects that it is about: those that move, and those that they become."""
-        return [*self.group.objects, *self._session.goals.objects]
+        return [*self.session.objects, *self.session.goals.objects]
 
     @property
     def name(self) -> str:
-        return self.group.title
+        return self.session.title
 
     @cached_property
     def target(self) -> Target | None:
-        return target_of(self._session.task, self._session.options)
+        return target_of(self.session.task, self.session.options)
 
     def concerns(self, obj: bpy.types.Object | None) -> bool:
         """Whether it concerns an object: always while in progress, afterwards if the object is as the run left it."""
@@ -189,7 +184,7 @@ class LiveRun:
     @property
     def spots(self) -> dict[bpy.types.Object, Spot]:
         """The places of trouble by object, for the objects that still exist."""
-        found = {self.group.member(spot.member): spot for spot in self.trouble}
+        found = {self.session.members[spot.member].object: spot for spot in self.trouble}
         return {obj: spot for obj, spot in found.items() if obj is not None}
 
     @property
@@ -213,12 +208,12 @@ class LiveRun:
 
     def look(self) -> None:
         """Show the shape that the scene's frame would have if the run ended here, while the timeline is used."""
-        if self.last is None or self.state.over or self.waits or self._session.lost():
+        if self.last is None or self.state.over or self.waits or self.session.lost():
             return
-        there = self._session.at(bpy.context.scene.frame_current_final) if self.endures and looks_back() else None
+        there = self.session.at(bpy.context.scene.frame_current_final) if self.endures and looks_back() else None
         before, self.looked_at = self.looked_at, None if there is None else there.time
         if there is not None and there.time != before:
-            self._session.show(there)
+            self.session.show(there)
             self.shown = None
         elif there is None and self.shown is None:
             self._show()
@@ -230,9 +225,9 @@ class LiveRun:
 
     def pull(self, target: FloatArray) -> None:
         """Pull what is held to a place in view, shape (3,)."""
-        if self.drag is not None and self.group.in_view is not None and np.isfinite(target).all():
+        if self.drag is not None and self.session.in_view is not None and np.isfinite(target).all():
             self.drag.target = target
-            place = self._session.motion.size.undone(self.group.unmoved(self.drag.component, target))
+            place = self.session.motion.size.undone(self.session.unmoved(self.drag.component, target))
             self._worker.tell("move", place.tolist())
 
     def let_go(self, pin: bool = False) -> None:
@@ -257,9 +252,9 @@ class LiveRun:
             return
         self.looked_at = self.drag = None
         self._show()
-        if self._session.outcome is None:
+        if self.session.outcome is None:
             reason = reason or Message("stopped after {count} steps", count=self.last.index)
-            self._session.outcome = Outcome(Status.INTERRUPTED, (reason,))
+            self.session.outcome = Outcome(Status.INTERRUPTED, (reason,))
         self.state = RunState.FINISHING
         self._worker.close()
         self._keys.start()
@@ -275,8 +270,8 @@ class LiveRun:
 
     def recover(self) -> None:
         """Keep what a cancelled run had reached; raises MobiusFlowError if the curves have changed since."""
-        self._session.reopen()
-        self._keys = KeyWriter(self._session, self._worker.is_free)
+        self.session.reopen()
+        self._keys = KeyWriter(self.session, self._worker.is_free)
         self.state, self.message, self.failed, self.shown = RunState.RUNNING, "", False, None
         self.trouble, self._left = [], None
         self.keep()
@@ -295,19 +290,19 @@ class LiveRun:
     def _advance(self, seconds: float | None = None) -> None:
         """Take in some iterates, or write keys for so long, by default a moment; end the run if that fails."""
         try:
-            if reason := self._session.lost():
+            if reason := self.session.lost():
                 # an object was changed from outside; the others are put back
                 ended = Message("{reason}; the relaxation has ended", reason=reason)
                 restored = self._close(RunState.LOST, ended)
                 more = Message("and every curve is as it was" if restored else "and the others are as they were")
-                if restored or len(self.group.names) > 1:
+                if restored or len(self.session.names) > 1:
                     self.message = Message("{ended}, {more}", ended=ended, more=more)
             elif self.state is RunState.RUNNING:
                 self._take()
             elif self.state is RunState.FINISHING:
                 self.report = self._keys.advance(seconds)
                 if self.report is not None and self.last is not None:
-                    self.trouble = self.group.spots(self.report.outcome.place, self.last.curve)
+                    self.trouble = self.session.spots(self.report.outcome.place, self.last.curve)
                     self._close(RunState.DONE, self.report.sentence, discard=False)
         except MobiusFlowError as error:
             self._fail(str(error), error.place if isinstance(error, CurveError) else None)
@@ -325,7 +320,7 @@ class LiveRun:
             try:
                 arrived = self._worker.poll()
             except CurveError as error:
-                raise self._session.reworded(error) from error
+                raise self.session.reworded(error) from error
             except WorkerError as error:
                 if self.last is None:
                     raise
@@ -335,10 +330,10 @@ class LiveRun:
             if arrived is None:
                 break
             if isinstance(arrived, Outcome):
-                self._session.end(arrived)
+                self.session.end(arrived)
                 self.keep()
                 return
-            self._session.take(arrived)
+            self.session.take(arrived)
             self.last = arrived
             self.time_left.add(arrived)
             self.energies[arrived.index :] = [arrived.energy]
@@ -349,13 +344,13 @@ class LiveRun:
 
     def _show(self) -> None:
         if self.last is not None and self.last is not self.shown and self.looked_at is None:
-            self._session.show()
+            self.session.show()
             self.shown = self.last
             self._refresh.shown()
 
     def _fail(self, message: str, place: Place | None = None) -> None:
         self.failed = True
-        self.trouble = self.group.spots(place, self.group.curve)
+        self.trouble = self.session.spots(place, self.session.curve)
         self.cancel(message)
 
     def _close(self, state: RunState, message: str, discard: bool = True) -> bool:
@@ -364,6 +359,6 @@ class LiveRun:
         self._worker.close()
         self._keys.abandon()
         self.on_end()
-        restored = discard and self.group.discard()
-        self._left = {obj.session_uid: digest(obj.data) for obj in self.group.objects}
+        restored = discard and self.session.discard()
+        self._left = {obj.session_uid: digest(obj.data) for obj in self.session.objects}
         return restored

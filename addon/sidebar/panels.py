@@ -156,7 +156,7 @@ def _progress(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         state = Message("{state}, {time}", state=state, time=time_left(seconds))
     elif run.failed and run.state is RunState.CANCELLED:
         state = Message("Failed")
-    value(box, ", ".join(run.group.names), state)
+    value(box, ", ".join(run.session.names), state)
     if run.last is not None:
         value(box, "Energy", f"{run.last.energy:.4f}")
         if run.target is not None:
@@ -164,7 +164,7 @@ def _progress(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         back = run.looked_at
         value(box, "Step", f"{run.last.index}" if back is None else f"{back:.0f} / {run.last.index}")
         proved = run.last.certified if run.report is None else run.report.certified
-        whom = Message("with itself") if len(run.group.names) == 1 else Message("among themselves")
+        whom = Message("with itself") if len(run.session.names) == 1 else Message("among themselves")
         value(box, "Free of contact", whom if proved else Message("not proved"))
         if run.avoided:
             value(box, "Avoided", named(run.avoided))

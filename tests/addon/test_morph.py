@@ -40,7 +40,7 @@ def test_its_goal_is_nothing_to_be_warned_of(operator):
     moving, goal = add_curve([RECTANGLE]), add_curve([ZIGZAG])
     operator.session = lambda _context, values: begin([moving], values, False, True, [goal])
     operator.start()
-    assert goal.name in surroundings.warning(bpy.context, operator.run.group.objects)
+    assert goal.name in surroundings.warning(bpy.context, operator.run.session.objects)
     assert surroundings.warning(bpy.context, operator.run.objects) is None
 
 

@@ -89,7 +89,7 @@ def test_a_stalled_run_shows_where_it_got_stuck(operator):
     operator.start()
     operator.reach(2)
     assert not bpy.ops.curve.mobius_flow_show.poll()
-    session = operator.run._session
+    session = operator.run.session
 
     def stalled(outcome):
         session.outcome = replace(outcome, place=Place((3, 4), tuple(operator.run.last.curve.vertices[3])))

@@ -76,12 +76,12 @@ def moved(place, *by):
 
 
 def on_curve(operator, vertex=0):
-    return operator.run.group.in_view.vertices[vertex]
+    return operator.run.session.in_view.vertices[vertex]
 
 
 def gap(operator, target):
     drag = operator.run.drag
-    return np.linalg.norm(drag.held(operator.run.group.in_view)[:2] - target[:2])
+    return np.linalg.norm(drag.held(operator.run.session.in_view)[:2] - target[:2])
 
 
 @pytest.mark.parametrize("operator", ["thread", "process"], indirect=True)
@@ -163,9 +163,9 @@ def test_ctrl_leaves_a_pin_that_is_kept(operator, size, early):
     operator.until(lambda: operator.run.shown.pins)
     assert pins.count(obj.data) == 1
     (vertex,) = operator.run.shown.pins
-    held = operator.run.group.in_view.vertices[vertex]
+    held = operator.run.session.in_view.vertices[vertex]
     operator.reach(operator.run.last.index + 5)
-    np.testing.assert_array_equal(operator.run.group.in_view.vertices[vertex], held)
+    np.testing.assert_array_equal(operator.run.session.in_view.vertices[vertex], held)
     key(operator, "RET")
     assert operator.until(lambda: False) == {"FINISHED"}
     assert operator.run.report.certified
@@ -220,7 +220,7 @@ def test_an_object_that_is_deleted_in_mid_drag_ends_the_run(operator):
 def test_the_strand_in_front_is_held_where_two_cross(operator):
     add_hopf_link()
     begin(operator)
-    curve = operator.run.group.in_view
+    curve = operator.run.session.in_view
     region = area().regions[0]
     flat, depth, seen = projected(region, curve.vertices)
     assert seen.all()

@@ -227,7 +227,7 @@ def test_the_timeline_shows_any_iterate_while_the_run_goes_on(operator, monkeypa
     operator.given |= {"timing": "ITERATE", "vertices": 0}
     operator.start()
     operator.reach(3)
-    start = operator.run._session.motion.start.vertices.astype(np.float32)
+    start = operator.run.session.motion.start.vertices.astype(np.float32)
 
     def shows_the_last():
         np.testing.assert_array_equal(stored(obj.data), operator.run.last.curve.vertices.astype(np.float32))

@@ -133,8 +133,8 @@ def test_undo_is_about_what_was_done_since(done):
 def test_drags_have_one_step_that_is_made_anew(done, monkeypatch):
     monkeypatch.setattr(registry.bpy.ops.ed, "undo_push", lambda message: None, raising=False)
     hidden = []
-    group = SimpleNamespace(hide=lambda: hidden.append(True), resume=lambda: hidden.append(False))
-    run, past = SimpleNamespace(drags=0, endures=True, group=group), registry.ActionCount()
+    session = SimpleNamespace(hide=lambda: hidden.append(True), resume=lambda: hidden.append(False))
+    run, past = SimpleNamespace(drags=0, endures=True, session=session), registry.ActionCount()
     past.begin()
     past.push(run)
     assert past.others == 0, "nothing was dragged"

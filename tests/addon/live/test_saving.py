@@ -145,7 +145,7 @@ def test_a_file_saved_automatically_has_the_curve_once_it_is_opened(operator, pa
     bpy.context.scene.collection.objects.link(copy)
     shown = stored(copy.data)
     assert not np.array_equal(shown, before)
-    monkeypatch.setattr(operator.run.group, "hide", lambda: None)
+    monkeypatch.setattr(operator.run.session, "hide", lambda: None)
     save(path)
     operator.run.cancel()
     reopen(path)

@@ -108,7 +108,7 @@ def test_a_fitted_tube_is_as_thick_as_free_of_contact_allows_at_every_moment(ope
     for index in (1, 3, 6):
         operator.reach(index)
         depths.append(knot.data.bevel_depth)
-        assert fitting_radius(operator.run.group.in_view) == pytest.approx(2.0 * depths[-1], rel=COARSE)
+        assert fitting_radius(operator.run.session.in_view) == pytest.approx(2.0 * depths[-1], rel=COARSE)
     assert len(set(depths)) > 1
     assert max(depths) > 1.05 * depth, "a flat knot is given room"
     operator.run.cancel()

@@ -30,7 +30,7 @@ def case() -> Steps:
         assert bpy.ops.curve.mobius_flow_grab("INVOKE_DEFAULT") == {"RUNNING_MODAL"}
     yield from until(lambda: run() is not None and run().shown is not None, "a run")
     yield from until(resting, "the clasp to rest", 120)
-    curve = run().group.in_view
+    curve = run().session.in_view
     assert clasped(curve), "the energy does not untie it"
     main = region("WINDOW")
 
@@ -54,7 +54,7 @@ def case() -> Steps:
     last = run().last.index
     yield from until(lambda: run().last.index > last and resting(), "the arcs to come to rest", 120)
     yield from picture(f"clasp-{_PICTURES}", differs_from="clasp-01")
-    assert not clasped(run().group.in_view), "it is untied"
+    assert not clasped(run().session.in_view), "it is untied"
     yield from key("RETURN")
     yield from is_("done")
     assert addon("live.registry").latest().report.certified, state()

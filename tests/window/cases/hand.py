@@ -87,14 +87,14 @@ def resting() -> bool:
 def pixel(vertex: int) -> tuple[int, int]:
     """Where a vertex is seen, in the window."""
     main = region("WINDOW")
-    flat, _, _ = addon("live.drag").projected(main, run().group.in_view.vertices)
+    flat, _, _ = addon("live.drag").projected(main, run().session.in_view.vertices)
     return round(main.x + flat[vertex][0]), round(main.y + flat[vertex][1])
 
 
 def held() -> tuple[float, float]:
     """Where the strand that is held is seen."""
     main, going = region("WINDOW"), run()
-    flat, _, _ = addon("live.drag").projected(main, going.drag.held(going.group.in_view)[None])
+    flat, _, _ = addon("live.drag").projected(main, going.drag.held(going.session.in_view)[None])
     return main.x + flat[0][0], main.y + flat[0][1]
 
 

@@ -26,7 +26,7 @@ def case() -> Steps:
     settings = addon("properties")
     values = {name: getattr(window().scene.mobius_flow, name) for name in settings.SETTINGS}
     options = settings.relax_options(values)
-    worker = addon("engine.worker").Worker(core().Task(curve=latest.group.curve), options, latest.group.link)
+    worker = addon("engine.worker").Worker(core().Task(curve=latest.session.curve), options, latest.session.link)
     started = 0.0
     while not hasattr(arrived := worker.poll(), "status"):
         if arrived is None:
