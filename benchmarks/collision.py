@@ -1,18 +1,34 @@
-"""Times of collision detection: python benchmarks/collision.py [vertices ...]
+"""Times of collision detection and of the repulsion of obstacles, in milliseconds of processor time.
 
-One line per curve: the first contact along a long motion, the proof of a leg two thirds as long, embeddedness, gap, and
-the verifier's filter on that leg, in milliseconds of processor time. Run it with one BLAS thread on a quiet machine.
+    python benchmarks/collision.py curves [VERTICES ...]
+    python benchmarks/collision.py obstacle [VERTICES ...] [--mesh MESH.obj]
+    python benchmarks/collision.py repulsion [VERTICES ...] [--latitudes N]
+    python benchmarks/collision.py motions 105000
+
+``curves``: the first contact along a long motion, the proof of a leg two thirds as long, embeddedness, gap, and the
+verifier's filter on that leg. ``obstacle``: a curve in a mesh, by default a bumpy sphere of 28,560 triangles; first
+contact and proof of the curve alone and with the mesh, clearance, and the filter. ``repulsion``: a torus knot well
+inside a sphere of triangles or the net of their sides, or near it; the simplices, those that an edge sees one by one
+and the clusters it sees, then the tree, the schedule of a curve, the test whether it still suits, and R with its
+derivative; up to 1,000 vertices also the relative error. Run them with one BLAS thread on a quiet machine.
+``motions`` compares so many random and adversarial motions of an edge near a triangle with exact arithmetic: nothing
+may be wrong, and hardly anything timid; it takes ten minutes.
 """
 
-from collections.abc import Callable, Iterator
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
 from time import process_time
 
 import numpy as np
-from mobius_flow.core import Curve
+from mobius_flow.core import Curve, Obstacle, read_obstacle
 from mobius_flow.core.base.types import FloatArray
-from mobius_flow.core.collision import check_embedded, free_motion, is_free, minimal_gap
+from mobius_flow.core.collision import check_clear, check_embedded, free_motion, is_free, minimal_gap
+from mobius_flow.core.energies.repulsion import Repulsion
+from mobius_flow.core.energies.repulsion.repulsion import KEPT
+from mobius_flow.core.energies.repulsion.schedule import Schedule
 from mobius_flow.core.proof.filter import doubtful_pairs
-from words import words
 
 
 def torus_knot(n: int, p: int = 2, q: int = 3) -> FloatArray:
@@ -33,30 +49,31 @@ def ribbon(n: int) -> list[FloatArray]:
     """Two strands a third of an edge apart, twisted around each other."""
     middle = torus_knot(n // 2)
     t = 2 * np.pi * np.arange(n // 2) / (n // 2)
-    tangents = np.roll(middle, -1, axis=0) - np.roll(middle, 1, axis=0)
-    side = np.cross(tangents, [0.0, 0.0, 1.0])
-    up = np.cross(tangents, side)
-    turn = sum(
-        c[:, None] * v / np.linalg.norm(v, axis=1, keepdims=True)
-        for c, v in ((np.cos(5 * t), side), (np.sin(5 * t), up))
+    side = np.cross(np.roll(middle, -1, axis=0) - np.roll(middle, 1, axis=0), [0.0, 0.0, 1.0])
+    up = np.cross(np.roll(middle, -1, axis=0) - np.roll(middle, 1, axis=0), side)
+    side, up = (each / np.linalg.norm(each, axis=1, keepdims=True) for each in (side, up))
+    turn = np.cos(5 * t)[:, None] * side + np.sin(5 * t)[:, None] * up
+    return [middle, middle + 0.3 * float(np.linalg.norm(middle[1] - middle[0])) * turn]
+
+
+def sphere(latitudes: int, bumps: float = 0.0) -> Obstacle:
+    """A surface around the origin by its latitudes and as many longitudes, but for the caps at the poles."""
+    n = latitudes
+    p, q = np.meshgrid(np.pi * (np.arange(n) + 0.5) / n, np.pi * np.arange(n) / (n / 2), indexing="ij")
+    radius = 1 + bumps * np.sin(9 * p) * np.sin(7 * q) * np.sin(p)
+    points = (radius * np.array([np.sin(p) * np.cos(q), np.sin(p) * np.sin(q), np.cos(p)])).reshape(3, -1).T
+    i, j = np.indices((n - 1, n)).reshape(2, -1)
+    a, b = n * i + j, n * i + (j + 1) % n
+    return Obstacle(
+        points, np.concatenate([[a, b, b + n], [a, b + n, a + n]], axis=1).T, "bumpy" if bumps else "sphere"
     )
-    gap = 0.3 * float(np.linalg.norm(middle[1] - middle[0]))
-    return [middle, middle + gap * turn]
 
 
-CURVES: dict[str, Callable[[int], list[FloatArray]]] = {
-    "torus knot (2,3)": lambda n: [torus_knot(n)],
-    "torus knot (7,9)": lambda n: [torus_knot(n, 7, 9)],
-    "tangle": lambda n: [tangle(n)],
-    "ribbon": ribbon,
-}
-
-
-def field(points: FloatArray) -> FloatArray:
-    """A smooth motion of space, of the size of the curve."""
-    rng = np.random.default_rng(8)
-    waves = rng.normal(size=(6, 3))
-    return np.sin(points @ waves.T + rng.uniform(0, 6, size=6)) @ rng.normal(size=(6, 3))
+def field(points: FloatArray, waves: int) -> FloatArray:
+    """A smooth motion of space, of the size of the points."""
+    rng, size = np.random.default_rng(8), np.ptp(points, axis=0).max() / 6.0
+    angles = points @ (rng.normal(size=(waves, 3)) / size).T + rng.uniform(0, 6, size=waves)
+    return np.asarray(size * np.sin(angles) @ rng.normal(size=(waves, 3)))
 
 
 def best(task: Callable[[], object], repetitions: int) -> float:
@@ -69,28 +86,123 @@ def best(task: Callable[[], object], repetitions: int) -> float:
     return 1e3 * min(times)
 
 
-def main(sizes: list[int]) -> None:
-    titles = ("edges", "contact at", "contact", "proof", "embedded", "gap", "verify")
-    print(f"{'curve':18}" + "".join(f"{title:>11}" for title in titles))
+def show(head: str, cells: Sequence[object]) -> None:
+    texts = [f"{cell:12.5g}" if isinstance(cell, float) else f"{cell!s:>12}" for cell in cells]
+    print(f"{head:20}" + "".join(texts), flush=True)
+
+
+def curves(sizes: Sequence[int]) -> None:
+    show("curve", ("edges", "contact at", "contact", "proof", "embedded", "gap", "verify"))
     for n in sizes:
-        for name, make in CURVES.items():
-            times = measure(Curve.from_components(make(n)), 5 if n < 5000 else 1)
-            print(f"{name:18}{n:11d}{next(times):11.5f}" + "".join(f"{time:11.2f}" for time in times), flush=True)
+        repetitions = 5 if n < 5000 else 1
+        knots = {"torus knot (2,3)": [torus_knot(n)], "torus knot (7,9)": [torus_knot(n, 7, 9)]}
+        for name, components in {**knots, "tangle": [tangle(n)], "ribbon": ribbon(n)}.items():
+            curve = Curve.from_components(components)
+            mesh, start, step = curve.mesh, curve.vertices, field(curve.vertices, 6)
+            contact = free_motion(mesh, start, start + step).time
+            end = start + 2 / 3 * contact * step
+            assert is_free(mesh, start, end)
+            tasks = [
+                lambda: free_motion(mesh, start, start + step),  # noqa: B023 (called at once)
+                lambda: is_free(mesh, start, end),  # noqa: B023
+                lambda: check_embedded(curve),  # noqa: B023
+                lambda: minimal_gap(curve),  # noqa: B023
+                lambda: list(doubtful_pairs(start, end, mesh.heads)),  # noqa: B023
+            ]
+            show(name, [n, contact, *(best(task, repetitions) for task in tasks[: 5 if n < 50_000 else 4])])
 
 
-def measure(curve: Curve, repetitions: int) -> Iterator[float]:
-    mesh, start, step = curve.mesh, curve.vertices, field(curve.vertices)
-    contact = free_motion(mesh, start, start + step).time
-    end = start + 2 / 3 * contact * step
-    assert is_free(mesh, start, end)
-    yield contact
-    yield best(lambda: free_motion(mesh, start, start + step), repetitions)
-    yield best(lambda: is_free(mesh, start, end), repetitions)
-    yield best(lambda: check_embedded(curve), repetitions)
-    yield best(lambda: minimal_gap(curve), repetitions)
-    if len(curve) < 50_000:
-        yield best(lambda: list(doubtful_pairs(start, end, mesh.heads)), repetitions)
+def obstacle(sizes: Sequence[int], given: Obstacle) -> None:
+    print(f"{given.name}, {len(given.faces)} triangles")
+    show(
+        "share of the room",
+        ("vertices", "contact at", "alone", "avoiding", "proof alone", "avoiding", "clear", "verify", "obstacle"),
+    )
+    middle = 0.5 * (given.vertices.min(axis=0) + given.vertices.max(axis=0))
+    reach = float(np.linalg.norm(given.vertices - middle, axis=1).min())
+    for n, share in ((n, share) for n in sizes for share in (0.3, 0.6, 0.9)):  # of the largest curve that fits
+        curve = Curve(middle + share * reach * torus_knot(n, 3, 7) / 3.2)
+        mesh, start = curve.mesh, curve.vertices
+        check_clear(curve, (given,))
+        step = field(start, 4)
+        time = free_motion(mesh, start, start + step, (given,)).time
+        end = start + 2 / 3 * time * step
+        tasks = (
+            lambda: free_motion(mesh, start, start + step),  # noqa: B023 (called at once)
+            lambda: free_motion(mesh, start, start + step, (given,)),  # noqa: B023
+            lambda: is_free(mesh, start, end),  # noqa: B023
+            lambda: is_free(mesh, start, end, (given,)),  # noqa: B023
+            lambda: check_clear(curve, (given,)),  # noqa: B023
+            lambda: list(doubtful_pairs(start, end, mesh.heads)),  # noqa: B023
+            lambda: list(doubtful_pairs(start, end, mesh.heads, triangles=given.corners)),  # noqa: B023
+        )
+        show(str(share), [n, time, *(best(task, 5) for task in tasks)])
+
+
+def repulsion(sizes: Sequence[int], surface: Obstacle) -> None:
+    show(
+        "obstacle, knot",
+        ("vertices", "simplices", "single", "clusters", "tree", "schedule", "suits", "R and DR", "error"),
+    )
+    sides = np.sort(np.concatenate([surface.faces[:, [i, i - 1]] for i in range(3)]), axis=1)
+    net = Obstacle(surface.vertices, np.unique(sides, axis=0), "net")
+    for n, shape in ((n, shape) for n in sizes for shape in (surface, net)):
+        for name, radius in (("inside", 0.6), ("near", 0.99)):
+            curve = Curve(radius / 3.0 * torus_knot(n))
+            (term,) = Repulsion.of([shape])
+            frozen = term.frozen_at(curve)
+            schedule = Schedule.of(curve, term.clusters, term.theta)
+            seen = (sum(len(panels) for _, panels in each) / n for each in (schedule.single, schedule.clustered))
+            times = (
+                best(lambda: Repulsion.of([shape]), 1),  # noqa: B023 (called at once)
+                best(lambda: Schedule.of(curve, term.clusters, term.theta), 3),  # noqa: B023
+                best(lambda: schedule.suits(curve, term.clusters, KEPT), 3),  # noqa: B023
+                best(lambda: frozen.value_and_derivative(curve), 3),  # noqa: B023
+            )
+            exact = Repulsion(term.clusters, theta=0.0)
+            error = [abs(term.value(curve) / exact.value(curve) - 1.0)] if n <= 1000 else []
+            show(f"{shape.name}, {name}", [n, len(shape.faces), *seen, *times, *error])
+
+
+def motions(count: int) -> None:
+    sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
+    from exact_decisions import Tally
+    from obstacle_motions import KINDS, free, meets, placed
+
+    for kind in KINDS:
+        rng, tally = np.random.default_rng(20261), Tally(meets)
+        for _ in range(count // len(KINDS)):
+            start, end = placed(rng, kind(rng))
+            tally.add(start, end, free(start, end))
+        print(f"{kind.__name__:12} {tally}", flush=True)
+
+
+SIZES = {
+    "curves": [200, 600, 1000, 10_000, 100_000],
+    "obstacle": [2000],
+    "repulsion": [512, 2048, 8192],
+    "motions": [105_000],
+}
+
+
+def main() -> None:
+    """Print a table."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("table", choices=SIZES)
+    parser.add_argument("sizes", nargs="*", type=int, metavar="VERTICES")
+    parser.add_argument("--mesh", metavar="MESH.obj", help="an obstacle (default: a bumpy sphere)")
+    parser.add_argument("--latitudes", type=int, default=120, metavar="N", help="of spheres (default: 120)")
+    given = parser.parse_args()
+    sizes = given.sizes or SIZES[given.table]
+    if given.table == "curves":
+        curves(sizes)
+    elif given.table == "obstacle":
+        obstacle(sizes, read_obstacle(given.mesh) if given.mesh else sphere(given.latitudes, 0.1))
+    elif given.table == "repulsion":
+        repulsion(sizes, sphere(given.latitudes))
+    else:
+        motions(sizes[0])
 
 
 if __name__ == "__main__":
-    main(words(__doc__, "vertices", [200, 600, 1000, 10_000, 100_000], int))
+    main()

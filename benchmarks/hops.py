@@ -40,61 +40,44 @@ CASES: Mapping[str, tuple[Callable[[], Curve], RelaxOptions]] = {
     "unknot-60-4": (partial(lattice_unknot, 60, 4), PATIENT),
     "haken": (partial(knot, "haken"), replace(PATIENT, mesh="fixed")),
 }
-MOST_VERTICES = 2500  # of a curve whose index is computed: dense matrices of 2 GB
 
 
-def limited(minutes: float, curve: Curve, options: RelaxOptions, trajectory: Trajectory) -> Result:
+def limited(minutes: float, curve: Curve, options: RelaxOptions, trajectory: Trajectory | None = None) -> Result:
     """The end of a run, or the lowest curve when its processor time is up, even in the middle of a hop."""
     signal.signal(signal.SIGPROF, signal.default_int_handler)
     signal.setitimer(signal.ITIMER_PROF, 60.0 * minutes)
     try:
-        return minimize(curve, options, trajectory.add)
+        return minimize(curve, options, trajectory.add if trajectory else None)
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0.0)
 
 
-def at_rest(minutes: float, curve: Curve) -> Result:
-    """The curve relaxed further on its own mesh, with its index unless computing it takes too much memory."""
-    tells = len(curve) <= MOST_VERTICES
-    options = RelaxOptions(mesh="fixed", vertices=len(curve), edge_lengths="keep", stability=tells)
-    return limited(minutes, curve, options, Trajectory())
-
-
-def index(result: Result) -> str:
-    """How many independent ways lead down from a curve at rest; a dash if that is unknown."""
+def at_rest(minutes: float, curve: Curve) -> tuple[str, float]:
+    """Index and energy of the curve relaxed further on its own mesh; of 2,500 vertices matrices would take 2 GB."""
+    options = RelaxOptions(mesh="fixed", vertices=len(curve), edge_lengths="keep", stability=len(curve) <= 2500)
+    result = limited(minutes, curve, options)
     count = result.outcome.negative_eigenvalues
-    return "–" if count is None else str(count)
-
-
-def rest(minutes: float, result: Result) -> str:
-    """The index where a run has come to rest, and energy and index with edges halved; else why it has not."""
-    if result.status is Status.CONVERGED:
-        curve = result.curve
-        finer = at_rest(minutes, subdivide(curve, np.full(len(curve), 2)))
-        return f"{index(at_rest(minutes, curve))} | {finer.final_energy:.2f} ({index(finer)})"
-    return f"{'stuck' if result.status is Status.STALLED else 'cut short'} | –"
-
-
-def hopped(minutes: float, curve: Curve, options: RelaxOptions) -> tuple[Result, bool]:
-    """The end of a run with hops, and whether the verifier accepts all of its trajectory."""
-    trajectory = Trajectory()
-    result = limited(minutes, curve, options, trajectory)
-    with TemporaryDirectory() as directory:
-        path = Path(directory) / "T.npz"
-        trajectory.save(path)
-        return result, result.certified and verify(path).accepted
+    return "–" if count is None else str(count), result.final_energy
 
 
 def row(name: str, hops: int, minutes: float) -> str:
     """The result of one case."""
     make, options = CASES[name]
     began = time.process_time()
-    plain = limited(minutes, make(), options, Trajectory())
-    result, verified = hopped(minutes, make(), replace(options, hops=hops))
+    plain = limited(minutes, make(), options)
+    trajectory = Trajectory()
+    result = limited(minutes, make(), replace(options, hops=hops), trajectory)
     seconds = time.process_time() - began
+    with TemporaryDirectory() as directory:
+        trajectory.save(Path(directory) / "T.npz")
+        verified = result.certified and verify(Path(directory) / "T.npz").accepted
+    rest = f"{'stuck' if plain.status is Status.STALLED else 'cut short'} | –"
+    if plain.status is Status.CONVERGED:
+        index, energy = at_rest(minutes, subdivide(plain.curve, np.full(len(plain.curve), 2)))
+        rest = f"{at_rest(minutes, plain.curve)[0]} | {energy:.2f} ({index})"
     return (
-        f"| {name} | {len(plain.curve)} | {plain.final_energy:.2f} | {rest(minutes, plain)} | "
-        f"{result.final_energy:.2f} | {'yes' if verified else 'NO'} | {seconds:.0f} s |"
+        f"| {name} | {len(plain.curve)} | {plain.final_energy:.2f} | {rest} | {result.final_energy:.2f} | "
+        f"{'yes' if verified else 'NO'} | {seconds:.0f} s |"
     )
 
 

@@ -26,7 +26,7 @@ from mobius_flow.cli import options as relax_options
 from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, Status, minimize
 from mobius_flow.core.knots import HARD_UNKNOTS, KNOTS, knot, scramble, torus_knot
 from mobius_flow.core.knots.diagrams import quick_invariants
-from step_costs import Machine
+from speed import machine
 
 CIRCLE = 4.02  # energy below which an unknot counts as a circle
 
@@ -67,7 +67,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser.error(f"curve {unknown[0]!r} is unknown; choose from {', '.join(curves)}")
     try:
         wanted = relax_options.from_arguments(given)
-        product, width = Machine.measured().product, max(map(len, ["curve", *names]))
+        product, width = machine()["product"], max(map(len, ["curve", *names]))
         print(
             f"{'curve':{width}} {'vertices':>17} {'type':>8} {'energy':>12} {'above':>7} {'steps':>6} {'seconds':>8} "
             f"{'dgemms':>7}  certified  status"

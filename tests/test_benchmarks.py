@@ -4,24 +4,23 @@ import json
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from processes import finished
-from step_costs import Row, exponents
+from soak import flow
+from speed import exponents
 
 BENCHMARKS = Path(__file__).resolve().parents[1] / "benchmarks"
 ARGUMENTS = {
     "batch": ["many", "2"],
-    "collision": ["60"],
-    "drags": ["10"],
+    "collision": ["curves", "60"],
     "hops": ["T34", "--hops", "1"],
     "knots": ["knots", "--only", "3_1,L2a1,unknot-rope", "--tolerance", "1e-2"],
     "morphs": ["--only", "ochiai"],
-    "obstacles": ["--vertices", "60"],
     "passes": ["goeritz"],
-    "repulsion": ["60", "--latitudes", "12"],
     "resolution": ["3_1"],
     "seeded_runs": ["different", "--save", "runs.json"],
-    "soak": ["--flows", "2"],
+    "soak": ["--count", "2"],
     "speed": ["--sizes", "60,80", "--solver", "hierarchical"],
 }
 
@@ -29,18 +28,16 @@ PHASES = ["lists", "energy", "derivative", "metric", "gradient", "retract", "pro
 
 
 def test_every_benchmark_is_tried():
-    assert {path.stem for path in BENCHMARKS.glob("*.py")} - {"step_costs", "words"} == set(ARGUMENTS)
+    assert {path.stem for path in BENCHMARKS.glob("*.py")} - {"hard_curves"} == set(ARGUMENTS)
 
 
 def run(name, *arguments):
     return finished([sys.executable, str(BENCHMARKS / f"{name}.py"), *arguments])
 
 
-QUICK = {"collision", "obstacles"}
-NAMES = [pytest.param(each, marks=() if each in QUICK else pytest.mark.slow) for each in ARGUMENTS]
-
-
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(each, marks=() if each == "collision" else pytest.mark.slow) for each in ARGUMENTS]
+)
 def test_it_runs(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     done = run(name, *ARGUMENTS[name])
@@ -50,11 +47,18 @@ def test_it_runs(name, tmp_path, monkeypatch):
     assert len(done.stdout.splitlines()) >= least
 
 
-@pytest.mark.parametrize("name", ["batch", "collision", pytest.param("passes", marks=pytest.mark.slow)])
-def test_it_explains_itself(name):
-    done = run(name, "--help")
-    assert done.returncode == 0
-    assert done.stdout.startswith(f"usage: {name}.py")
+@pytest.mark.slow
+@pytest.mark.parametrize("words", [["obstacle", "60"], ["repulsion", "60", "--latitudes", "12"], ["motions", "22"]])
+def test_the_other_tables_of_collisions(words):
+    done = run("collision", *words)
+    assert done.returncode == 0, done.stderr
+    assert len(done.stdout.splitlines()) > 3
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("kind", "seed"), [*(("world", k) for k in range(30)), *(("drags", k) for k in range(3))])
+def test_random_flows_among_obstacles_and_drags(kind, seed):
+    assert flow(np.random.default_rng([2, seed]), kind) in ("ok", "refused")
 
 
 @pytest.mark.slow
@@ -88,5 +92,9 @@ def test_figures_of_speed():
 
 def test_exponents_are_those_of_large_sizes_by_solver():
     sizes = {"dense": (200, 1999, 2000, 2500), "hierarchical": (3000, 5000, 9000), "sparse": (1000, 5000)}
-    rows = [Row(n, name, {"iteration": 1e-5 * n**3 + (n < 2000)}, 0, None) for name in sizes for n in sizes[name]]
+    rows = [
+        {"vertices": n, "solver": name, "seconds": {"iteration": 1e-5 * n**3 + (n < 2000)}}
+        for name in sizes
+        for n in sizes[name]
+    ]
     assert exponents(rows) == {"dense": pytest.approx(3.0), "hierarchical": pytest.approx(3.0)}
