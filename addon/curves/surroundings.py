@@ -5,17 +5,15 @@ Objects count with their modifiers and everything they show copies of, as triang
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import chain
 
 import bpy
 import numpy as np
-import numpy.typing as npt
 
 from ...core import CurveError, MobiusFlowError, Obstacle
 from ...core.base.messages import Message
 from ...core.base.types import FloatArray, IntArray
 from ...core.driver.words import named
-from ...core.keys.placement import Frame, Placement
+from ...core.keys.placement import Placement
 from .moving import unsteady, unsteady_object
 from .splines import Reference, read
 
@@ -23,32 +21,6 @@ STAGE = "mobius_flow_stage"  # custom property of objects that only surround cur
 TUBE_OF = "mobius_flow_tube_of"  # custom property of a tube's mesh: the curve object that it was made of
 SOLID = {"CURVE", "MESH", "SURFACE", "META", "FONT"}  # what Blender makes meshes of
 WITHOUT_SHAPE = {"ARMATURE", "CAMERA", "LATTICE", "LIGHT", "LIGHT_PROBE", "SPEAKER"}
-
-
-@dataclass(frozen=True, eq=False)
-class Surface:
-    """Triangles, and edges that belong to none of them, in the world."""
-
-    vertices: FloatArray  # positions, shape (k, 3)
-    triangles: IntArray  # indices of their corners, shape (f, 3)
-    edges: IntArray  # indices of the ends of those edges, shape (e, 2)
-
-    @classmethod
-    def of_mesh(
-        cls, points: Frame, triangles: npt.NDArray[np.int32], edges: npt.NDArray[np.int32], placement: Placement
-    ) -> "Surface":
-        """What a mesh shows at a place: all its triangles, edges (e, 2), and points, (k, 3) in its own coordinates."""
-        faces, ends = triangles.astype(np.intp), edges.astype(np.intp)
-        sides = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-        low, high = np.sort(ends, axis=1).T
-        count = 1 + max(sides.max(initial=0), ends.max(initial=0))
-        loose = ends[~np.isin(low * count + high, sides[:, 0] * count + sides[:, 1])]
-        return cls(placement.to_world(points.astype(np.float64)), faces, loose)
-
-    def equals(self, other: "Surface") -> bool:
-        """Whether both are the same, bit for bit."""
-        pairs = ((self.vertices, other.vertices), (self.triangles, other.triangles), (self.edges, other.edges))
-        return all(np.array_equal(a, b) for a, b in pairs)
 
 
 def avoidable(
@@ -95,10 +67,8 @@ class Surroundings:
         others = [obj for obj in dict.fromkeys(avoided) if obj not in relaxed]
         if reason := unsteady(others, relaxed):
             raise MobiusFlowError(reason)
-        shown = surfaces(bpy.context.evaluated_depsgraph_get(), others, relaxed) if others else []
-        each = (obstacles(obj.name, pieces) for obj, pieces in zip(others, shown, strict=True))
         places = ((Reference(obj), Placement.from_matrix(obj.matrix_world)) for obj in others)
-        return cls(tuple(chain.from_iterable(each)), tuple(places))
+        return cls(tuple(_obstacles(others, relaxed)), tuple(places))
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -126,10 +96,9 @@ def warning(
     """Name what is visible near curve objects, but neither one of them nor avoided by them, or return None."""
     if not (found := near(context, objects, avoided)):
         return None
-    names = named([obj.name for obj in found])
-    if len(found) > 1:
-        return Message("{names} nearby are neither selected nor avoided, and may be crossed", names=names)
-    return Message("{names} nearby is neither selected nor avoided, and may be crossed", names=names)
+    one = "{names} nearby is neither selected nor avoided, and may be crossed"
+    several = "{names} nearby are neither selected nor avoided, and may be crossed"
+    return Message(several if len(found) > 1 else one, names=named([obj.name for obj in found]))
 
 
 def near(
@@ -155,25 +124,25 @@ def near(
     return [obj for obj in others if STAGE not in obj and obj.get(TUBE_OF) not in together and obj.visible_get()]
 
 
-def surfaces(
-    depsgraph: bpy.types.Depsgraph, objects: Sequence[bpy.types.Object], relaxed: Sequence[bpy.types.Object]
-) -> list[list[Surface]]:
-    """What each of some objects shows, piece by piece.
+def _obstacles(objects: Sequence[bpy.types.Object], relaxed: Sequence[bpy.types.Object]) -> Iterator[Obstacle]:
+    """Yield what each of some objects shows in the world, all of its parts together.
 
-    Raises MobiusFlowError if one of them is hidden, or shows what cannot be avoided: something other than faces and
-    edges, or a copy of an object that does not stand still while others are relaxed.
+    These are its triangles, and its edges that belong to none. Raises MobiusFlowError if an object is hidden, or shows
+    nothing, what is not finite, or what cannot be avoided: something other than faces and edges, or a copy of an object
+    that does not stand still while others are relaxed.
     """
-    shown: dict[int, list[Surface]] = {obj.session_uid: [] for obj in objects}
+    # points, triangles and edges of each piece, by their bytes: curves, texts and so on are shown a second time, as the
+    # meshes that are made of them
+    shown: dict[int, dict[bytes, tuple[FloatArray, IntArray, IntArray]]] = {obj.session_uid: {} for obj in objects}
     looked_at: set[int] = set()
     for obj in objects:
         if not obj.visible_get():
             raise MobiusFlowError(Message("'{name}' is hidden; show it first, or leave it out", name=obj.name))
         if obj.mode != "OBJECT":
             raise MobiusFlowError(Message("'{name}' is being edited; go back to Object Mode first", name=obj.name))
-    for instance in depsgraph.object_instances:
+    for instance in bpy.context.evaluated_depsgraph_get().object_instances if objects else ():
         owner = (instance.parent if instance.is_instance else instance.object).original
-        pieces = shown.get(owner.session_uid)
-        if pieces is None or not instance.show_self:
+        if owner.session_uid not in shown or not instance.show_self:
             continue
         source = instance.object.original
         if source.session_uid not in looked_at:
@@ -188,37 +157,33 @@ def surfaces(
             sentence = "'{name}' is of type {type}, which cannot be avoided; convert it to a mesh, or leave it out"
             beside = "'{name}' shows a {type} too, which cannot be avoided; convert it to a mesh, or leave it out"
             raise MobiusFlowError(Message(sentence if kind == source.type else beside, name=source.name, type=title))
-        mesh = evaluated.to_mesh() if kind in SOLID else None
-        if mesh is None:
+        if kind not in SOLID or (mesh := evaluated.to_mesh()) is None:
             continue
         try:
             mesh.calc_loop_triangles()
-            points = read(mesh.vertices, "co", 3)
-            triangles = read(mesh.loop_triangles, "vertices", 3, np.int32)
-            edges = read(mesh.edges, "vertices", 2, np.int32)
-            piece = Surface.of_mesh(points, triangles, edges, Placement.from_matrix(instance.matrix_world))
+            points = read(mesh.vertices, "co", 3).astype(np.float64)
+            piece = (
+                Placement.from_matrix(instance.matrix_world).to_world(points),
+                read(mesh.loop_triangles, "vertices", 3, np.int32).astype(np.intp),
+                read(mesh.edges, "vertices", 2, np.int32).astype(np.intp),
+            )
         finally:
             evaluated.to_mesh_clear()
-        # curves, texts and so on are shown a second time, as the meshes that are made of them
-        if not any(map(piece.equals, pieces)):
-            pieces.append(piece)
-    return [shown[obj.session_uid] for obj in objects]
-
-
-def obstacles(name: str, surfaces: Sequence[Surface]) -> Iterator[Obstacle]:
-    """Yield what an object shows, all of its parts together: its triangles, and its edges that belong to none.
-
-    Raises CurveError if there is nothing, or a coordinate is not finite, or as good as infinite.
-    """
-    ends = np.cumsum([0, *(len(each.vertices) for each in surfaces)])
-    vertices = np.concatenate([np.empty((0, 3)), *(each.vertices for each in surfaces)])
-    kinds = [each.triangles for each in surfaces], [each.edges for each in surfaces]
-    found = [np.concatenate([a + k for a, k in zip(kind, ends, strict=False)]) for kind in kinds if any(map(len, kind))]
-    if not found:
-        raise CurveError(Message("'{name}' shows neither faces nor edges; leave it out of what is avoided", name=name))
-    for simplices in found:
-        used, corners = np.unique(simplices, return_inverse=True)
-        if not (np.abs(vertices[used]) < 1e30).all():  # Blender clamps infinite ones to the largest 32-bit number
-            sentence = "A point of '{name}' is not finite, or further away than anything; repair or delete it"
-            raise CurveError(Message(sentence, name=name))
-        yield Obstacle(vertices[used], corners.reshape(simplices.shape), name)
+        shown[owner.session_uid][b"".join(array.tobytes() for array in piece)] = piece
+    for obj in objects:
+        pieces, first = [(np.empty((0, 3)), np.empty((0, 3), dtype=np.intp), np.empty((0, 2), dtype=np.intp))], 0
+        for points, triangles, edges in shown[obj.session_uid].values():
+            pieces.append((points, triangles + first, edges + first))
+            first += len(points)
+        vertices, triangles, edges = (np.concatenate(arrays) for arrays in zip(*pieces, strict=True))
+        sides = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1) @ [first, 1]
+        loose = edges[~np.isin(np.sort(edges, axis=1) @ [first, 1], sides)]
+        if not len(triangles) + len(loose):
+            sentence = "'{name}' shows neither faces nor edges; leave it out of what is avoided"
+            raise CurveError(Message(sentence, name=obj.name))
+        for simplices in filter(len, (triangles, loose)):
+            used, corners = np.unique(simplices, return_inverse=True)
+            if not (np.abs(vertices[used]) < 1e30).all():  # Blender clamps infinite ones to the largest 32-bit number
+                sentence = "A point of '{name}' is not finite, or further away than anything; repair or delete it"
+                raise CurveError(Message(sentence, name=obj.name))
+            yield Obstacle(vertices[used], corners.reshape(simplices.shape), obj.name)

@@ -35,70 +35,16 @@ CHOICES = {
 }
 
 
-class Reel:
-    """A scene made for one film, which is rendered next to its destination and moved there if it is whole."""
-
-    def __init__(self, scene: bpy.types.Scene, path: Path) -> None:
-        self.path = path
-        self.frames = len(frames_of(scene))
-        self.done, self._began = 0, 0.0  # frames that are written, and when that began
-        self._part = path.with_name(f".{secrets.token_hex(8)}{path.suffix}")
-        self._scene = str(scene.name)
-        # let a scene's animation be written as an MP4 that plays everywhere, without sound
-        settings, video = scene.render.image_settings, scene.render.ffmpeg
-        if hasattr(settings, "media_type"):  # Blender 5.0 and later
-            settings.media_type = "VIDEO"
-        settings.file_format = "FFMPEG"
-        video.format, video.codec = "MPEG4", "H264"
-        video.constant_rate_factor, video.ffmpeg_preset = "HIGH", "GOOD"
-        video.audio_codec = "NONE"
-        scene.render.filepath, scene.render.use_file_extension = str(self._part), False
-
-    def render(self) -> None:
-        """Render the film in this call; raises OSError or RuntimeError if it does not finish."""
-        try:
-            with rendering.quiet():
-                bpy.ops.render.render(animation=True, scene=self._scene)
-        finally:
-            whole = self.finish()
-        if not whole:
-            raise OSError(rendering.NOT_WHOLE)
-
-    def start(self) -> None:
-        """Begin to render in Blender's own window, and return at once; call `finish` when that is over.
-
-        Raises MobiusFlowError.
-        """
-        self._began = time.monotonic()
-        bpy.app.handlers.render_write.append(self._count)
-        try:
-            bpy.ops.render.render("INVOKE_DEFAULT", animation=True, scene=self._scene)
-        except RuntimeError as error:
-            self.finish()
-            raise OutputError(self.path, error) from error
-
-    @property
-    def seconds_left(self) -> float | None:
-        """The time for the missing frames, if they take as long as those before; None before the first."""
-        return (time.monotonic() - self._began) / self.done * (self.frames - self.done) if self.done else None
-
-    def _count(self, scene: bpy.types.Scene, *_: object) -> None:
-        self.done += scene.name == self._scene
-
-    def finish(self) -> bool:
-        """Put the film in its place if it is whole, and return whether it is; leave nothing else behind."""
-        with suppress(ValueError):  # it was not started in a window
-            bpy.app.handlers.render_write.remove(self._count)
-        try:
-            whole = self._part.exists() and length_of(self._part) == self.frames
-            if whole:
-                self._part.replace(self.path)
-        finally:
-            with suppress(OSError):
-                self._part.unlink(missing_ok=True)
-            if not rendering.is_rendering():
-                sweep()
-        return whole
+def _write_to(scene: bpy.types.Scene, path: Path) -> None:
+    """Let a scene's animation be written as an MP4 that plays everywhere, without sound."""
+    settings, video = scene.render.image_settings, scene.render.ffmpeg
+    if hasattr(settings, "media_type"):  # Blender 5.0 and later
+        settings.media_type = "VIDEO"
+    settings.file_format = "FFMPEG"
+    video.format, video.codec = "MPEG4", "H264"
+    video.constant_rate_factor, video.ffmpeg_preset = "HIGH", "GOOD"
+    video.audio_codec = "NONE"
+    scene.render.filepath, scene.render.use_file_extension = str(path), False
 
 
 def render_movie(scene: bpy.types.Scene, path: Path, progress: Progress | None = None) -> None:
@@ -122,7 +68,13 @@ def render_movie(scene: bpy.types.Scene, path: Path, progress: Progress | None =
                 pictures.append(drawn[pose])
                 if progress is not None:
                     progress(k, len(frames))
-            Reel(_spliced(scene, pictures), path).render()
+            reel, part = _spliced(scene, pictures), Path(room) / "film.mp4"
+            _write_to(reel, part)
+            with rendering.quiet():
+                bpy.ops.render.render(animation=True, scene=reel.name)
+            if length_of(part) != len(frames):
+                raise OSError(rendering.NOT_WHOLE)
+            part.replace(path)
     finally:
         sweep()
 
@@ -141,7 +93,7 @@ def length_of(path: Path) -> int:
     """Count a film's frames; Blender does not notice when it cannot write all of them."""
     try:
         clip = bpy.data.movieclips.load(str(path))
-    except RuntimeError:
+    except RuntimeError:  # there is none, or half of one
         return 0
     length = int(clip.frame_duration)
     bpy.data.movieclips.remove(clip)
@@ -166,61 +118,100 @@ def _spliced(scene: bpy.types.Scene, pictures: Sequence[Path]) -> bpy.types.Scen
     return reel
 
 
-class Filming(Reel):
+class Filming:
     """One film of the frames that a scene plays, in the size of its renders, through its camera.
 
-    The scene stays as it is. In the path, Blender's ``//`` is the directory of the open file, and ``.mp4`` is added to
-    a name without suffix. Raises MobiusFlowError if the film cannot be made.
+    The scene stays as it is: a copy is rendered, next to the film's place, and what is whole is moved there. In the
+    path, Blender's ``//`` is the directory of the open file, and ``.mp4`` is added to a name without suffix. Raises
+    MobiusFlowError if the film cannot be made.
     """
 
     def __init__(self, scene: bpy.types.Scene, path: str, look: str = "SCENE", overwrite: bool = False) -> None:
         if look not in CHOICES:
             raise MobiusFlowError(f"{look!r} is not a look for films; {choice(look, CHOICES)}")
-        place = target(path)
-        # say now what would go wrong after minutes of rendering
-        render = scene.render
-        sides = [side * render.resolution_percentage // 100 for side in (render.resolution_x, render.resolution_y)]
-        if is_rendering():
-            raise MobiusFlowError(Message("Blender is rendering; wait until it is done, or stop it with Esc"))
-        if scene.camera is None:
-            raise MobiusFlowError(Message("The scene has no camera; press Set Up Stage first, or add one"))
-        if any(side % 2 for side in sides):
-            sentence = "Frames are {width} × {height} pixels, but films need even numbers; change Size of Pictures"
-            raise MobiusFlowError(Message(sentence, width=sides[0], height=sides[1]))
-        if place.exists() and not overwrite:
-            sentence = "{path} is there already; give the film another name, or let it be overwritten"
-            raise MobiusFlowError(Message(sentence, path=place))
-        if not place.parent.is_dir():
-            sentence = "{path} is not a directory; choose another place for the film"
-            raise MobiusFlowError(Message(sentence, path=place.parent))
-        if not os.access(place if place.exists() else place.parent, os.W_OK):
-            raise MobiusFlowError(Message("{path} cannot be written; choose another place for the film", path=place))
+        place, render = target(path), scene.render
+        width, height = (n * render.resolution_percentage // 100 for n in (render.resolution_x, render.resolution_y))
+        odd = "Frames are {width} × {height} pixels, but films need even numbers; change Size of Pictures"
+        there = "{path} is there already; give the film another name, or let it be overwritten"
+        nowhere = "{path} is not a directory; choose another place for the film"
+        closed = "{path} cannot be written; choose another place for the film"
+        wrong = {  # what would be said after minutes of rendering
+            Message("Blender is rendering; wait until it is done, or stop it with Esc"): is_rendering(),
+            Message("The scene has no camera; press Set Up Stage first, or add one"): scene.camera is None,
+            Message(odd, width=width, height=height): width % 2 or height % 2,
+            Message(there, path=place): place.exists() and not overwrite,
+            Message(nowhere, path=place.parent): not place.parent.is_dir(),
+            Message(closed, path=place): not os.access(place if place.exists() else place.parent, os.W_OK),
+        }
+        if reason := next((reason for reason, found in wrong.items() if found), None):
+            raise MobiusFlowError(reason)
         sweep()
+        self.path, self.frames = place, len(frames_of(scene))
+        self.done, self._began = 0, 0.0  # frames that are written, and when that began
+        self._part = place.with_name(f".{secrets.token_hex(8)}{SUFFIX}")
         self._filmed, copy = str(scene.name), scene.copy()  # with the same objects; `sweep` removes it
         copy.name, copy[_MARK] = "Film", True
-        self._undress = staging.dress(copy, scene, look)
+        self._scene, self._undress = str(copy.name), staging.dress(copy, scene, look)
         if look in LOOKS:
             rendering.look_fine(copy, LOOKS[look])
         elif look == "QUICK":
             rendering.look_plain(copy)
             if direction := staging.key_direction(copy):
                 stage.light_workbench(copy, direction)
-        super().__init__(copy, place)
+        _write_to(copy, self._part)
 
     def render(self) -> None:
         """Render the film in this call; raises MobiusFlowError if it does not finish."""
         try:
-            super().render()
-        except RuntimeError as error:
-            raise OutputError(self.path, error) from error
-        except OSError as error:
+            with rendering.quiet():
+                bpy.ops.render.render(animation=True, scene=self._scene)
+        except BaseException as error:
+            self.finish()
+            if isinstance(error, RuntimeError):
+                raise OutputError(self.path, error) from error
+            raise
+        if not self.finish():
             sentence = "{path}: Blender did not finish rendering the film; is the disk full?"
-            raise MobiusFlowError(Message(sentence, path=self.path)) from error
+            raise MobiusFlowError(Message(sentence, path=self.path))
+
+    def start(self) -> None:
+        """Begin to render in Blender's own window, and return at once; call `finish` when that is over.
+
+        Raises MobiusFlowError.
+        """
+        self._began = time.monotonic()
+        bpy.app.handlers.render_write.append(self._count)
+        try:
+            bpy.ops.render.render("INVOKE_DEFAULT", animation=True, scene=self._scene)
+        except RuntimeError as error:
+            self.finish()
+            raise OutputError(self.path, error) from error
+
+    def _count(self, scene: bpy.types.Scene, *_: object) -> None:
+        self.done += scene.name == self._scene
+
+    @property
+    def seconds_left(self) -> float | None:
+        """The time for the missing frames, if they take as long as those before; None before the first."""
+        return (time.monotonic() - self._began) / self.done * (self.frames - self.done) if self.done else None
 
     def finish(self) -> bool:
-        """Put the film in its place if it is whole; the scene remembers it, for another one may come there."""
+        """Put the film in its place if it is whole, and return whether it is; leave nothing else behind.
+
+        The scene remembers it, for another one may come there.
+        """
         self._undress()
-        whole = super().finish()
+        with suppress(ValueError):  # it was not started in a window
+            bpy.app.handlers.render_write.remove(self._count)
+        whole = False
+        with suppress(OSError):
+            if self._part.exists() and length_of(self._part) == self.frames:
+                self._part.replace(self.path)
+                whole = True
+        with suppress(OSError):
+            self._part.unlink(missing_ok=True)
+        if not is_rendering():
+            sweep()
         if whole and self._filmed in bpy.data.scenes:
             bpy.data.scenes[self._filmed][_FILM] = str(self.path.stat().st_size)
         return whole
