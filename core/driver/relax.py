@@ -75,16 +75,18 @@ def relax(curve: Curve | Task, options: RelaxOptions | None = None, hand: Hand |
             raise OptionError("pins and obstacles break symmetry; leave them out, or the option")
         symmetrised = Symmetrised.of(start.curve, options.symmetry)
         start = replace(start, curve=symmetrised.start)
-    work = BLAS.bounding(iterates(begin(start, options, hand, symmetrised), moves.MOVES))
+    run = begin(start, options)
+    run.hand, run.symmetrised = hand, symmetrised
+    work = BLAS.bounding(iterates(run, moves.MOVES))
     if options.time_limit is None:
         return work
     return within(TimeLimit(options.time_limit, used=time.perf_counter() - began), work)
 
 
-def begin(start: Task, options: RelaxOptions, hand: Hand | None = None, symmetrised: Symmetrised | None = None) -> Run:
+def begin(start: Task, options: RelaxOptions) -> Run:
     """The run of a refined task; a CurveError says what to do where the curve is too degenerate for it."""
     try:
-        return Run(start_problem(start, options), start.curve, options, None, hand, symmetrised)
+        return Run(start_problem(start, options), start.curve, options)
     except np.linalg.LinAlgError as error:
         lengths = start.curve.component_lengths
         shortest, width = int(lengths.argmin()), float(np.ptp(start.curve.vertices, axis=0).max())

@@ -3,6 +3,7 @@
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -14,7 +15,6 @@ from ..descent import METHODS, Method, NoStep, Point, Problem, SearchState, Step
 from ..descent.line_searches import LineSearch
 from ..energies.components import energy_scale
 from ..energies.hierarchy import SampledErrors
-from ..energies.pull import Pull, share_of
 from ..io.trajectory import Iterate, StrandMoves
 from .hand import Hand
 from .options import RelaxOptions
@@ -51,21 +51,15 @@ class Run:
 
     ``iterate`` is the point as users see it, ``method`` takes the next step, ``resolution`` bounds edge lengths where
     the mesh may change, ``sampled_errors`` are the hierarchical solver's errors when last checked, and ``rises`` the
-    increases of the energy.  The options give the limit of iterations unless another one is passed.  A ``hand`` may
-    drag the curve, and ``symmetrised`` is the symmetric curve that it begins with, if it is to be symmetric.
+    increases of the energy.  The options give the ``limit`` of iterations unless another one is passed.  A ``hand``
+    may drag the curve, and ``symmetrised`` is the symmetric curve that it begins with, if it is to be symmetric.
     """
 
-    def __init__(
-        self,
-        problem: Problem,
-        start: Curve,
-        options: RelaxOptions,
-        max_iterations: int | None = None,
-        hand: Hand | None = None,
-        symmetrised: Symmetrised | None = None,
-    ) -> None:
-        self.options, self.hand, self.symmetrised = options.resolved, hand, symmetrised
-        self.max_iterations = options.max_iterations if max_iterations is None else max_iterations
+    def __init__(self, problem: Problem, start: Curve, options: RelaxOptions, limit: int | None = None) -> None:
+        self.options = options.resolved
+        self.max_iterations = options.max_iterations if limit is None else limit
+        self.hand: Hand | None = None
+        self.symmetrised: Symmetrised | None = None
         self.resolution = Resolution(options.vertices, clearance=problem.clearance)
         self.method = METHODS[options.method]
         self.sampled_errors: SampledErrors | None = None
@@ -75,7 +69,7 @@ class Run:
         self.strand_moves: StrandMoves | None = None
         self.energies: deque[float] = deque(maxlen=LOOKING_BACK + 1)  # of the last iterates
         self.point = problem.at_curve(start).anchored
-        self._certified = problem.certifiable  # an embedded start, and so far no motion
+        self.certified = problem.certifiable  # an embedded start, and so far no motion
         self.iterate = self.described(0)
 
     @property
@@ -118,7 +112,7 @@ class Run:
             gradient_norm=point.gradient_norm,
             step_size=step_size,
             path=path,
-            certified=self._certified,
+            certified=self.certified,
             edge_length_error=constraints.length_error(point.curve),
             grown=constraints.grown,
             method=self.method.name,
@@ -149,7 +143,7 @@ class Run:
     ) -> Iterate:
         """The next iterate: at a point, after straight motions whose ends are given, or none onto another mesh."""
         self.point = point.anchored
-        self._certified &= certified
+        self.certified &= certified
         self.iterate = self.described(self.iterate.index + 1, step_size, path)
         return self.iterate
 
@@ -168,11 +162,6 @@ class Run:
     def view(self, point: Point) -> None:
         """Go on from another view of the same curve, of which the method remembers nothing."""
         self.point, self.memory = point.anchored, SearchState(None, self.memory.last_step)
-
-    def go_back(self, point: Point, iterate: Iterate) -> None:
-        """Go on from an earlier point, and the iterate there, as if nothing after it had happened."""
-        self.iterate, self._certified = iterate, iterate.certified
-        self.view(point)
 
     def restart(self) -> None:
         """Go on with the requested method, which remembers nothing."""
@@ -197,10 +186,8 @@ class Run:
             self.iterate = self.described(before.index)
             return
         if pull is not None:  # by the hand at the same place, to the same target
-            old, new, component = self.problem.units, point.problem.units, int(self.problem.mesh.component[pull.vertex])
-            place, target = (new.from_user(old.to_user(x)) for x in (self.point.vertices[pull.vertex], pull.target))
-            pull = Pull.at(point.curve, component, share_of(point.curve, component, place), pull.strength)
-            point = point.changing(objective=point.problem.objective.pulled(replace(pull, target=target)))
+            old, new = self.problem.units, point.problem.units
+            point = point.pulled(pull.on(self.point.curve, point.curve, lambda x: new.from_user(old.to_user(x))))
         self.memory = SearchState(None, self.memory.last_step)
         self.rises.change(before, self.go(point))
         yield self.iterate
@@ -255,10 +242,11 @@ class Move:
 
     A subclass overrides the methods for the events that concern it, or ``__call__`` for all at once.  Each returns the
     event as later moves are to see it, or a change, after which these are not asked, or None, which leaves the
-    event as it is.  Settings are fields.
+    event as it is.  Settings are fields.  Where the run goes on as from a start moves are made again, unless they last.
     """
 
     run: Run
+    lasts: ClassVar[bool] = False
 
     def __call__(self, event: Event) -> Event | Change:
         answer: Event | Change | None
@@ -293,10 +281,6 @@ class Move:
         """Where it would end at rest."""
         return None
 
-    def anew(self) -> "Move":
-        """The move for a run that goes on as from a start."""
-        return replace(self)
-
     def summarised(self, outcome: Outcome) -> Outcome:
         """The outcome of the whole run with clauses about what the move did."""
         return outcome
@@ -324,7 +308,7 @@ def iterates(run: Run, moves: Sequence[Callable[[Run], Move]]) -> Relaxation:
                 answer = said
             if change is not None and run.allows(change):
                 yield from run.change(change)
-                made = [move.anew() for move in made] if change.anew else made
+                made = [replace(move) if change.anew and not move.lasts else move for move in made]
                 if change.anew or run.problem.mesh is not mesh:
                     event = Start()
                     continue

@@ -1,6 +1,7 @@
 """Terms besides the energy: bending, and the pull of a hand, a spring from a short stretch of a curve to a point."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -40,6 +41,12 @@ class Pull:
         weights *= curve.mesh.scatter(curve.edge_lengths, curve.edge_lengths)
         weights /= weights.sum()
         return cls(weights, weights @ curve.vertices, strength)
+
+    def on(self, old: Curve, new: Curve, rescaled: Callable[[FloatArray], FloatArray]) -> "Pull":
+        """The pull of a curve on another mesh and in other units: at the same place, to the same target."""
+        component = int(old.mesh.component[self.vertex])
+        pull = Pull.at(new, component, share_of(new, component, rescaled(old.vertices[self.vertex])), self.strength)
+        return replace(pull, target=rescaled(self.target))
 
     @property
     def vertex(self) -> int:

@@ -10,9 +10,9 @@ from itertools import pairwise, product
 
 import numpy as np
 
-from ..base.deadline import check_time
 from ..base.types import FloatArray
 from ..collision import is_free, survives_rounding
+from ..collision.walk import walk
 from ..curve import Curve, Mesh
 from ..curve.alignment import Alignment, Freedom, alignments
 from ..curve.measures import bending
@@ -20,8 +20,6 @@ from ..curve.obstacle import Obstacle
 from ..curve.refine import refined_alike
 from ..driver.moves.balance import MoebiusImages, least_bending, turn
 from ..io.trajectory import Iterate
-
-TRIES = 8  # to join two curves, the best alignment first
 
 
 def images(end: Iterate, obstacles: Sequence[Obstacle]) -> list[list[Iterate]]:
@@ -53,6 +51,7 @@ def meeting(
     """
     # similarities that may be tried: open components are held at their ends, and walls may be in the way
     curve = ours[0][0].curve
+    tries = 8  # to join two curves, the best alignment first
     still = Freedom(np.zeros(3), fixed=np.zeros(3))
     freedoms: tuple[Freedom, ...] = (still,)
     if curve.mesh.all_closed:
@@ -65,11 +64,11 @@ def meeting(
         (alignment, way, other)
         for way, other in product(ours, theirs)
         for freedom in freedoms
-        for alignment in alignments(way[-1].curve, other[-1].curve, freedom)[:TRIES]
+        for alignment in alignments(way[-1].curve, other[-1].curve, freedom)[:tries]
     ]
     # to save a leg of a Möbius map shapes may be further apart by so many radii of gyration
     pairs.sort(key=lambda each: each[0].cost + 3e-4 * (len(each[1]) + len(each[2])))
-    for alignment, way, other in pairs[:TRIES]:
+    for alignment, way, other in pairs[:tries]:
         renamed = [rename(each, alignment) for each in other]
         joint = _join(way[-1], renamed[-1], alignment, obstacles)
         if joint is not None:
@@ -108,19 +107,16 @@ def prove_legs(
 
     ``stride`` is the largest share of a leg; where legs are not free, they are halved.
     """
-    legs, share, longest = [start.vertices], 0.0, stride
-    while share < 1.0:
-        check_time()
-        further = min(share + stride, 1.0)
-        end = at(further)
-        if is_free(start.mesh, legs[-1], end, obstacles):
-            legs.append(end)
-            share, stride = further, min(2.0 * stride, longest)
-        elif stride < 1e-4:  # of the motion
-            return None
-        else:
-            stride *= 0.5
-    return legs[1:]
+    legs, reached = [start.vertices], 0.0
+
+    def moved(share: float, stride: float) -> FloatArray | None:
+        end = at(min(share + stride, 1.0))
+        return end if is_free(start.mesh, legs[-1], end, obstacles) else None
+
+    for share, end in walk(moved, 1.0, stride, 5e-5):
+        reached = share
+        legs.append(end)
+    return legs[1:] if reached >= 1.0 else None
 
 
 def follow(before: Iterate, legs: Sequence[FloatArray]) -> Iterator[Iterate]:

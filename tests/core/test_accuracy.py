@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hard_curves import bent_trefoil
 from mobius_flow.core import Curve, RelaxOptions, Result, minimize
-from mobius_flow.core.energies.hierarchy import HierarchicalMoebiusEnergy, fields
+from mobius_flow.core.energies.hierarchy import HierarchicalMoebiusEnergy, SampledErrors, fields
 from mobius_flow.core.knots import knot, overhand
 from mobius_flow.core.knots.shapes import least_energies
 
@@ -96,16 +96,15 @@ def test_a_defect_is_noticed(defect, monkeypatch: pytest.MonkeyPatch) -> None:  
 
 @pytest.mark.slow
 def test_every_mesh_and_the_end_are_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
-    from mobius_flow.core.driver.moves import fallback
 
     looked_at: list[int] = []
-    original = fallback.SampledErrors.at
+    original = SampledErrors.at
 
     def at(energy, curve, *rest):  # type: ignore[no-untyped-def]
         looked_at.append(len(curve))
         return original(energy, curve, *rest)
 
-    monkeypatch.setattr(fallback.SampledErrors, "at", at)
+    monkeypatch.setattr(SampledErrors, "at", at)
     short(1700)
     assert looked_at == [1700, 1700]
     looked_at.clear()

@@ -4,14 +4,12 @@ from collections.abc import Callable, Sequence
 
 from ..run import Move, Run
 from .balance import Balance
-from .fallback import CheckAccuracy, Fallback
 from .grow import Grow
 from .hold import AwaitHand, Hold
 from .hops import ON_A_FIXED_MESH, Hops
-from .links import Composite, SplitLinks
-from .remesh import CoarseStart, FinerMesh, Remesh
-from .rest import EscapeSaddle, Settle
-from .starts import OpenKnots, SymmetricStart
+from .links import Composite, OpenKnots, SplitLinks
+from .remesh import CoarseStart, FinerMesh, Remesh, SymmetricStart
+from .rest import CheckAccuracy, EscapeSaddle, Fallback, Settle
 from .untangling import Untangling
 
 MOVES: Sequence[Callable[[Run], Move]] = (

@@ -22,6 +22,7 @@ from ..run import Change, Event, Move, Run
 class Hold(Move):
     """Carries out the instructions of a hand, if there is one."""
 
+    lasts = True  # what was grabbed before can still be undone
     _before: list[tuple[Point, Iterate]] = field(default_factory=list, init=False)  # each grab that may be undone
 
     def __call__(self, event: Event) -> Event | Change:
@@ -40,10 +41,6 @@ class Hold(Move):
                 return Change()  # the event came before the instructions
             return awaiting(self.run, event) if self._pull is not None else event
         return event
-
-    def anew(self) -> "Hold":
-        """The same: what was grabbed before can still be undone."""
-        return self
 
     def grab(self, component: int, share: float) -> None:
         run, curve = self.run, self.run.point.curve
@@ -82,8 +79,11 @@ class Hold(Move):
             run.view(run.point.changing(constraints=replace(held, pins=pins, lengths=lengths)))
 
     def undo(self) -> None:
+        run = self.run
         if self._before:
-            self.run.go_back(*self._before.pop())
+            point, run.iterate = self._before.pop()
+            run.certified = run.iterate.certified
+            run.view(point)
             self._recount()
 
     @property

@@ -22,8 +22,8 @@ from ...knots import knot_type
 from ...knots.diagrams import quick_invariants
 from ..outcome import Outcome
 from ..run import Change, Move, Run, iterates
-from .fallback import CheckAccuracy, Fallback
 from .links import SplitLinks
+from .rest import CheckAccuracy, Fallback
 
 IS_UNKNOT = Message("the curve is an unknot, and a circle has less energy")
 MAY_BE_UNKNOT = Message(
@@ -164,6 +164,7 @@ class Hops(Move):
     minimum has.  A run stopped between two iterates therefore has the lowest curve so far.
     """
 
+    lasts = True  # hops are counted from the start on
     motions: Sequence[RandomMotion] = MOTIONS  # with which hops begin, in turn
     # relative decrease of the objective that counts: vertices sliding along a curve change it by about as much
     gain: float = number(1e-3, most=1)
@@ -172,10 +173,6 @@ class Hops(Move):
 
     def __post_init__(self) -> None:
         self._rng = np.random.default_rng(self.run.options.seed)
-
-    def anew(self) -> "Hops":
-        """The same: hops are counted from the start on."""
-        return self
 
     def ended(self, outcome: Outcome) -> Change | None:
         """Try until a hop leads lower; None if none does, or if nothing is lower."""

@@ -1,6 +1,9 @@
-"""Links of several parts: unlinked parts would drift apart, and composite links have no shape of least energy."""
+"""What a flow does to links: unlinked parts drift apart, composite ones pull tight, and open knots come undone."""
 
+import logging
+from collections import Counter
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -8,6 +11,8 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
 from ...base.arguments import checked_fields, number
+from ...base.errors import MobiusFlowError
+from ...base.messages import COMPONENT, Message
 from ...base.types import FloatArray
 from ...curve import Curve
 from ...curve.distances import STRAND_RATIO, arc_distance_of_pairs, near_by_octave
@@ -15,6 +20,7 @@ from ...curve.obstacle import Obstacle
 from ...descent import Step
 from ...energies.barrier import near_pairs
 from ...energies.hierarchy import moebius_energy
+from ...knots import Effort, knot_type
 from ...knots.composite import Ball, is_searchable, knotted_ball
 from ...solve.constraints import Barycenters, Parts
 from ..outcome import Outcome
@@ -29,6 +35,9 @@ HELD = (
     "unlinked parts, which would drift apart without limit, are held in place; their own energies add up to "
     "{energy:.6g}"
 )
+DIRECTIONS = np.array([[3, 1, 2], [-2, 3, 1], [1, -2, 3], [-3, -1, 2], [2, -3, -1]]) / np.sqrt(14)
+EFFORT = Effort(vertices=5000, views=3, work=100_000)
+_log = logging.getLogger(__name__)
 
 
 @checked_fields
@@ -151,3 +160,55 @@ def _may_shrink(run: Run) -> list[Curve]:
         # less than any composite has: two trefoils (74.4 each) less a circle make 144.8, two Hopf links (47.5 each) 91
         if moebius_energy(part)[0] >= (140.0 if len(part.mesh.component_sizes) == 1 else 90.0)
     ]
+
+
+@dataclass(eq=False)
+class OpenKnots(Move):
+    """Warn where an open component is knotted and has a free end, and add what became of it."""
+
+    lasts = True  # what the run began with counts
+
+    def __post_init__(self) -> None:
+        curve, pins = self.run.iterate.curve, set(self.run.iterate.pins)
+        self._before, last_ones = open_knots(curve), np.cumsum(curve.mesh.component_sizes)
+        for k, name in self._before.items():
+            last = int(last_ones[k])
+            if not pins >= {last - len(curve.components[k]), last - 1}:
+                _log.warning(
+                    "component %d is open and knotted (%s, if its ends are joined far away): its ends are free, so "
+                    "that it straightens and loses the knot; pin both ends, or close it, to keep the knot",
+                    k + 1,
+                    name,
+                )
+
+    def summarised(self, outcome: Outcome) -> Outcome:
+        """The outcome with a clause for each knot that is lost."""
+        after = open_knots(self.run.iterate.curve) if self._before else {}
+        for k, name in self._before.items():
+            if after.get(k) != name:
+                lost = "{component}, which is open, was {type} if its ends are joined far away, and is not any more"
+                outcome = outcome.adding(lost, component=Message(COMPONENT, number=k + 1), type=name)
+        return outcome
+
+
+def open_knots(curve: Curve) -> dict[int, str]:
+    """The types of open components, by their indices, with their ends joined far out: those of most directions.
+
+    Each is taken by itself.  Trivial ones are left out, and those that are not identified.
+    """
+    found: dict[int, str] = {}
+    for k, (points, closed) in enumerate(zip(curve.components, curve.mesh.closed, strict=True)):
+        if closed or curve.dimension != 3 or len(points) < 4:
+            continue
+        # eight radii of the curve away, where nearly parallel lines lead
+        middle = points.mean(axis=0)
+        far = 8.0 * np.linalg.norm(points - middle, axis=1).max() * DIRECTIONS
+        names = Counter[str]()
+        for place in far:
+            with suppress(MobiusFlowError):  # an end points there: it is closed along itself
+                kind = knot_type(Curve(np.vstack([points, middle + place])), EFFORT)
+                names[str(kind) if kind.names else "unknot"] += 1
+        name, times = next(iter(names.most_common(1)), ("unknot", 0))
+        if 2 * times > len(far) and name != "unknot":
+            found[k] = name
+    return found

@@ -4,7 +4,6 @@ A curve of many vertices is untangled with few of them, which is faster, and get
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -31,15 +30,18 @@ from ...curve.refine import (
 )
 from ...descent import Leg, NoStep, Point, Problem, Step
 from ...descent.hessian import BULK
+from ...descent.step import leg
 from ...descent.task import check_refined
 from ...energies import is_moebius_invariant
 from ...energies.components import energy_scale
 from ..outcome import Outcome
-from ..prepare import equal_lengths
+from ..prepare import equal_lengths, target_lengths
 from ..run import Change, Move
 from .links import is_unresolved, shrinking_ball
 
 ADVICE = Message("a finer or an adaptive mesh may help")
+KEPT = "symmetry {group} was kept, which the start missed by {distance:.2g} times its size"
+NONE = "symmetry {group}, so that there was none to keep"
 UNRESOLVED = "strands are closer than this mesh resolves: a finer one would reach a lower energy"
 
 
@@ -213,6 +215,31 @@ def split_edges(problem: Problem, curve: Curve, pieces: IntArray) -> Point | Non
         return None
 
 
+@dataclass(eq=False)
+class SymmetricStart(Move):
+    """Go from the start to the nearest symmetric curve, whose symmetry is kept from there on."""
+
+    def started(self) -> Change | None:
+        run = self.run
+        symmetrised = run.symmetrised
+        if symmetrised is None or not len(symmetrised.symmetry) or run.iterate.index > 0:
+            return None
+        way = leg(run.point, run.problem.at_curve(symmetrised.end))
+        lengths = target_lengths(symmetrised.mean, run.problem.constraints.pins.vertices, (), run.options)
+        point = run.problem.on(symmetrised.mean, lengths, symmetrised.symmetry)
+        return Change((Step((way,), 0.0, None),), point, anew=True)
+
+    def summarised(self, outcome: Outcome) -> Outcome:
+        """The outcome with a clause about the group."""
+        symmetrised = self.run.symmetrised
+        if symmetrised is None:
+            return outcome
+        group = symmetrised.group
+        if len(symmetrised.symmetry):
+            return outcome.adding(KEPT, group=group.name, distance=group.distance)
+        return outcome.adding(NONE, group=group.name)
+
+
 @checked_fields
 @dataclass(eq=False)
 class CoarseStart(Move):
@@ -285,28 +312,23 @@ class CoarseStart(Move):
         """The motion to a smooth curve through the coarse vertices, as far as free; on the constraints if possible."""
         if self._coarse is None:
             return None
-        start = self.run.iterate.curve
-        pins = self.run.problem.constraints.pins
+        problem, start = self.run.problem, self.run.iterate.curve
+        pins = problem.constraints.pins
         old = pins.on(self._coarse).vertices
         way = smoothed(self._coarse, start.mesh, old, pins.vertices).vertices - start.vertices
         way[pins.vertices] = 0.0
         self._coarse = None
-        # back on the constraints, unless that is too far
-        restored = self._motion(way, lambda end: end.retract(end.vertices, np.zeros_like(end.residual)))
-        return restored or self._motion(way, lambda end: end)
-
-    def _motion(self, way: FloatArray, ending: Callable[[Point], Point | None]) -> Change | None:
-        """The longest part of a way, with its end as ``ending`` makes it, that is free; None if that is hardly any."""
-        problem, start = self.run.problem, self.run.iterate.curve
-        share = 1.0
-        while share > self.min_share:
-            end = ending(problem.at_curve(start.with_vertices(start.vertices + share * way)))
-            if end is None:
-                return None
-            proof = problem.free_motion(start.vertices, end.placed)
-            if proof.time == 1.0:
-                return Change((Step((Leg(end, proof),), 0.0, None),))
-            share *= min(0.9, proof.time)
+        for restores in (True, False):  # back on the constraints, unless that is too far
+            share = 1.0
+            while share > self.min_share:
+                there = problem.at_curve(start.with_vertices(start.vertices + share * way))
+                end = there.retract(there.vertices, np.zeros_like(there.residual)) if restores else there
+                if end is None:
+                    break
+                proof = problem.free_motion(start.vertices, end.placed)
+                if proof.time == 1.0:
+                    return Change((Step((Leg(end, proof),), 0.0, None),))
+                share *= min(0.9, proof.time)
         return None
 
 

@@ -1,8 +1,10 @@
 """The end of a relaxation: to the last digits by second derivatives, with the index of the critical point.
 
-A saddle is left downhill, where that is wanted.
+A saddle is left downhill, where that is wanted.  Where the method finds no step another one takes over for a while, and
+expansions of the hierarchical solver get a higher order where they do not suffice.
 """
 
+import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -10,22 +12,28 @@ import numpy as np
 
 from ...base.arguments import checked_fields, number
 from ...base.messages import Message
-from ...curve import Curve
+from ...curve import Curve, Mesh
 from ...curve.symmetry import NO_SYMMETRY
-from ...descent import METHODS, Point, Step
+from ...descent import METHODS, Method, NoStep, Point, Step
 from ...descent.hessian import SoftModes, smooth_starts, soft_modes
 from ...descent.line_searches import on_target
 from ...descent.second_order import Curvature, Escape, Newton
+from ...energies.barrier import replaced_pairs
 from ...energies.components import energy_scale
+from ...energies.hierarchy import HierarchicalMoebiusEnergy, SampledErrors
 from ...solve.metrics import MoebiusMetric
 from ...solve.saddle.indefinite import FactorisedHessian
 from ..outcome import Outcome
-from ..run import Change, Move
+from ..run import Change, Event, Move
 from .links import is_unresolved
 
 MINIMUM = "a minimum"
 SADDLE = "a saddle of index {index}"
 AMONG = "{kind} among curves of symmetry {group}, {whole} among all"
+INACCURATE = (
+    "the hierarchical solver misses the requested accuracy: against dense sums over a sample its relative errors are "
+    "up to {energy:.1g} in the energy and {norm:.1g} in the gradient norm; the dense solver has no such error"
+)
 ILL_CONDITIONED = "the Hessian is too ill-conditioned to tell a minimum from a saddle"
 
 
@@ -167,3 +175,79 @@ class EscapeSaddle(Move):
             return None
         step = self.search.step(self.run.point, found.modes.vectors[0], float(found.modes.values[0]))
         return Change((step,)) if isinstance(step, Step) else outcome.adding("no step down from it was found")
+
+
+@checked_fields
+@dataclass(eq=False)
+class Fallback(Move):
+    """Hand over to another method where no step is found, and back after some steps."""
+
+    # its metric does not see how near strands are, and so does not hold them together
+    method: Method = METHODS["flow-h3-2"]
+    steps: int = number(10)  # number of steps it takes
+    progress: float = number(1e-6, most=1)  # relative decrease of the energy without which another attempt is pointless
+    _until: int = field(default=0, init=False)  # iterate at which the fallback hands back
+    _tried_at: float = field(default=math.inf, init=False)  # energy at the last attempt on the present mesh
+
+    def __post_init__(self) -> None:
+        self._asked_for, self._mesh = self.run.method, self.run.problem.mesh
+
+    def __call__(self, event: Event) -> Event | Change:
+        run = self.run
+        if run.problem.mesh is not self._mesh:
+            self._mesh, self._tried_at = run.problem.mesh, math.inf
+        stuck = isinstance(event, NoStep)
+        if run.method is not self._asked_for:
+            return Change(method=self._asked_for) if stuck or run.iterate.index >= self._until else event
+        if not stuck or run.point.energy >= (1.0 - self.progress) * self._tried_at:
+            return event
+        most = run.problem.solver.of_metric(self.method.metric).most_vertices
+        helps = run.problem.geometry.prescribes and self._asked_for.name not in (self.method.name, "paper")
+        if not helps or len(run.point.vertices) > most:
+            return event
+        self._until, self._tried_at = run.iterate.index + self.steps, run.point.energy
+        return Change(method=self.method)
+
+
+@dataclass(eq=False)
+class CheckAccuracy(Move):
+    """Sample the hierarchical solver's errors on every mesh and at the end; raise its order if they are too large."""
+
+    _seen: Mesh | None = field(default=None, init=False)
+
+    def __call__(self, event: Event) -> Event | Change:
+        problem = self.run.problem
+        energy = problem.objective.energy
+        ends = isinstance(event, NoStep | Outcome)
+        if not isinstance(energy, HierarchicalMoebiusEnergy) or not (ends or problem.mesh is not self._seen):
+            return event
+        self._seen = problem.mesh
+        self.run.sampled_errors = None
+        if energy.block_list(self.run.point.curve).mostly_near:
+            return event
+        point, accurate = self.run.point, energy
+        while True:  # until the order is accurate enough, or the highest
+            # near pairs, which the barrier replaces, are exact
+            replaced = problem.objective.barrier is not None
+            far = accurate.leaving_out(replaced_pairs(point.curve)) if replaced else accurate
+            errors = SampledErrors.at(far, point.curve, point.energy, point.gradient, point.gradient_norm)
+            self.run.sampled_errors, tighter = errors, accurate.tightened
+            if tighter is None or errors.within(self.run.options.accuracy):
+                break
+            accurate = tighter
+        if accurate is energy:
+            return event
+        return Change(point=point.changing(objective=replace(problem.objective, energy=accurate)))
+
+    def summarised(self, outcome: Outcome) -> Outcome:
+        """The outcome with the sampled errors and clauses about them."""
+        errors = self.run.sampled_errors
+        if errors is None:
+            return outcome
+        outcome = replace(outcome, sampled_errors=errors)
+        if errors.order > HierarchicalMoebiusEnergy.order:
+            tightened = "far-field expansions were raised to order {order} for the requested accuracy"
+            outcome = outcome.adding(tightened, order=errors.order)
+        if errors.within(self.run.options.accuracy):
+            return outcome
+        return outcome.adding(INACCURATE, energy=errors.energy.bound, norm=errors.gradient_norm.bound)

@@ -5,7 +5,7 @@ import logging
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, Mesh, RelaxOptions, Task, minimize, relax
-from mobius_flow.core.driver.moves.starts import DIRECTIONS, open_knots
+from mobius_flow.core.driver.moves.links import DIRECTIONS, open_knots
 from mobius_flow.core.knots import knot, overhand
 
 LOST = "component 1, which is open, was 3_1 if its ends are joined far away, and is not any more"
