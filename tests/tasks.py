@@ -1,8 +1,11 @@
-"""Tasks and options from one list of settings, as the command line has them."""
+"""Tasks and options from one list of settings, as the command line has them, and runs that others have checked."""
 
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
-from mobius_flow.core import Curve, RelaxOptions, Task
+from mobius_flow.core import Curve, Iterate, RelaxOptions, Result, Task, Trajectory, minimize
+from mobius_flow.core.proof import verify
 
 
 def wanted(curve: Curve, **settings: Any) -> tuple[Task, RelaxOptions]:
@@ -10,3 +13,25 @@ def wanted(curve: Curve, **settings: Any) -> tuple[Task, RelaxOptions]:
     obstacles, pins = settings.pop("avoid", ()), settings.pop("pins", ())
     tangents = settings.pop("pin_tangents", False)
     return Task(curve=curve, obstacles=obstacles, pins=pins, pin_tangents=tangents), RelaxOptions(**settings)
+
+
+def proved(curve: Curve, **settings: Any) -> tuple[Result, list[Iterate]]:
+    """The result of a run, and its iterates; all of it is certified, and the independent check agrees."""
+    iterates: list[Iterate] = []
+    task, options = wanted(curve, **settings)
+    result = minimize(task, options, iterates.append)
+    assert result.certified
+    check(iterates, task)
+    return result, iterates
+
+
+def check(iterates: list[Iterate], task: Task | None = None) -> None:
+    """Have the independent check accept the iterates of a run."""
+    trajectory = Trajectory(obstacles=() if task is None else task.obstacles)
+    for iterate in iterates:
+        trajectory.add(iterate)
+    with TemporaryDirectory() as room:
+        trajectory.save(Path(room, "T.npz"))
+        verdict = verify(Path(room, "T.npz"))
+    assert verdict.accepted, str(verdict)
+    assert verdict.obstacles == (0 if task is None else len(task.obstacles))

@@ -101,7 +101,7 @@ PLUGINS = {
         "turning.py",
         "core/driver/moves/__init__.py",
         (
-            Line("from .starts import ", "from .turning import Turning"),
+            Line("from .rest import ", "from .turning import Turning"),
             Line("    Untangling,", "    Turning,"),
         ),
     ),

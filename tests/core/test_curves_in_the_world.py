@@ -5,25 +5,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, Result, Status, Trajectory, minimize, read_curve, read_obstacle
+from mobius_flow.core import Curve, Status, minimize, read_curve, read_obstacle
 from mobius_flow.core.knots import overhand
 from mobius_flow.core.knots.knot_type import knot_type
-from mobius_flow.core.proof import verify
-from tasks import wanted
+from tasks import proved, wanted
 
 SCENES = Path(os.environ.get("MOBIUS_FLOW_SCENES", "scenes"))
 needs_scenes = pytest.mark.skipif(not SCENES.is_dir(), reason="MOBIUS_FLOW_SCENES names no directory of scenes")
-
-
-def proved(tmp_path: Path, curve: Curve, **options: object) -> Result:
-    task, settings = wanted(curve, **options)
-    trajectory = Trajectory(obstacles=task.obstacles)
-    result = minimize(task, settings, trajectory.add)
-    trajectory.save(tmp_path / "path.npz")
-    assert result.certified
-    assert verify(tmp_path / "path.npz").accepted
-    assert settings.grow != 1.0 or result.energies[-1] <= result.energies[0]
-    return result
 
 
 def ends(curve: Curve) -> tuple[int, ...]:
@@ -31,33 +19,27 @@ def ends(curve: Curve) -> tuple[int, ...]:
 
 
 @needs_scenes
-def test_arcs_in_a_duct_come_to_rest_there(tmp_path: Path) -> None:
+def test_arcs_in_a_duct_come_to_rest_there() -> None:
     """Their lengths, if evened out, would press them against its walls."""
     curve, duct = read_curve(SCENES / "paths-center.obj"), read_obstacle(SCENES / "h-shape.obj")
-    result = proved(tmp_path, curve, pins=ends(curve), avoid=(duct,))
+    result, _ = proved(curve, pins=ends(curve), avoid=(duct,))
     assert result.status is Status.CONVERGED
 
 
 @needs_scenes
-def test_an_arc_with_pins_and_tangents(tmp_path: Path) -> None:
+def test_an_arc_with_pins_and_tangents() -> None:
     curve = read_curve(SCENES / "curve.obj")
-    result = proved(tmp_path, curve, pins=(*ends(curve), 44, 88), pin_tangents=True)
+    result, _ = proved(curve, pins=(*ends(curve), 44, 88), pin_tangents=True)
     assert result.status is Status.CONVERGED
 
 
 @needs_scenes
 @pytest.mark.parametrize(("name", "surface"), [("circle", "bunny"), ("square-loop-smaller", "round-cup")])
-def test_loops_in_containers(tmp_path: Path, name: str, surface: str) -> None:
-    result = proved(tmp_path, read_curve(SCENES / f"{name}.obj"), avoid=(read_obstacle(SCENES / f"{surface}.obj"),))
-    assert result.status is Status.CONVERGED
-
-
-@needs_scenes
-@pytest.mark.parametrize(("name", "surface"), [("circle", "bunny"), ("square-loop-smaller", "round-cup")])
-def test_loops_grow_in_containers(tmp_path: Path, name: str, surface: str) -> None:
+def test_loops_come_to_rest_and_grow_in_containers(name: str, surface: str) -> None:
     """To twenty times their length, without more vertices than there is time for."""
     curve, container = read_curve(SCENES / f"{name}.obj"), read_obstacle(SCENES / f"{surface}.obj")
-    result = proved(tmp_path, curve, avoid=(container,), grow=20.0, max_iterations=100)
+    assert proved(curve, avoid=(container,))[0].status is Status.CONVERGED
+    result, _ = proved(curve, avoid=(container,), grow=20.0, max_iterations=100)
     assert result.last.grown == pytest.approx(20.0, rel=1e-12)
     assert len(result.curve) < 2500
 
@@ -81,10 +63,10 @@ def closed_far_away(arc: Curve) -> Curve:
 
 
 @pytest.mark.parametrize("pin_tangents", [False, True])
-def test_descent_keeps_the_knot_of_an_arc_with_pinned_ends(tmp_path: Path, pin_tangents: bool) -> None:
+def test_descent_keeps_the_knot_of_an_arc_with_pinned_ends(pin_tangents: bool) -> None:
     """Nothing but its energy does: strands may go round the ends, as hops find out."""
     arc = overhand(60)
-    result = proved(tmp_path, arc, pins=(0, 59), pin_tangents=pin_tangents)
+    result, _ = proved(arc, pins=(0, 59), pin_tangents=pin_tangents)
     assert result.status is Status.CONVERGED
     assert result.final_energy > 50.0
     assert knot_type(closed_far_away(arc)).names == knot_type(closed_far_away(result.curve)).names == ("3_1",)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from dense_stability import lagrangian_hessian_matrix
 from descent_contracts import point_on
-from mobius_flow.core import Curve, Iterate, MobiusFlowError, RelaxOptions, Task, Trajectory, minimize
+from mobius_flow.core import Curve, Iterate, MobiusFlowError, RelaxOptions, Status, Task, minimize
 from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.curve import Mesh, refine
 from mobius_flow.core.curve.pins import Pins, arcs, ends_of, spans
@@ -15,18 +15,11 @@ from mobius_flow.core.descent.geometries import Constrained
 from mobius_flow.core.descent.hessian import lagrangian_hessian
 from mobius_flow.core.driver.moves.rest import stability
 from mobius_flow.core.knots import knot, torus_knot
-from mobius_flow.core.proof import verify
-from mobius_flow.lab.compare.comparison import compare
 from shapes import regular_polygon, torus_trefoil
-from tasks import wanted
+from tasks import proved, wanted
 from taylor import taylor_slope
 
 SLOW = [pytest.param(mesh, marks=pytest.mark.slow) for mesh in ("fixed", "finer")]
-
-
-def rough(curve: Curve) -> Curve:
-    rng = np.random.default_rng(71)
-    return curve.with_vertices(curve.vertices + 0.02 * rng.normal(size=curve.vertices.shape))
 
 
 def test_arcs_go_from_pin_to_pin_round_the_end() -> None:
@@ -70,6 +63,7 @@ SQUARE = Curve([[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0]])
 
 
 def test_straight_arcs_are_held_also_where_vertices_are_inserted() -> None:
+    """A corner between pins leaves slack."""
     fine = subdivide(SQUARE, np.array([4, 4, 4, 4]))
     pins = Pins.at(fine, SQUARE.vertices[[0, 1]])
     assert pins.vertices.tolist() == [0, 1, 2, 3, 4]
@@ -77,49 +71,23 @@ def test_straight_arcs_are_held_also_where_vertices_are_inserted() -> None:
     assert pins.on(finer).vertices.tolist() == list(range(13))
     np.testing.assert_array_equal(pins.on(finer).positions[::3], pins.positions)
     assert [span.taut for span in spans(fine, np.array([0, 4]))] == [True, False]
-
-
-def test_a_corner_between_pins_leaves_slack() -> None:
-    fine = subdivide(SQUARE, np.array([4, 4, 4, 4]))
     assert Pins.at(fine, SQUARE.vertices[[0, 2]]).vertices.tolist() == [0, 8]
-
-
-def test_neighbours_are_pinned_with_tangents() -> None:
     pins = Pins.of(torus_trefoil(40), np.array([0, 20])).with_neighbours(torus_trefoil(40))
-    assert pins.vertices.tolist() == [0, 1, 19, 20, 21, 39]
+    assert pins.vertices.tolist() == [0, 1, 19, 20, 21, 39], "with tangents"
 
 
 BENT = torus_trefoil(90).with_vertices(torus_trefoil(90).vertices * [1.0, 1.3, 1.1])
-FAR = BENT.with_vertices(BENT.vertices * 0.37 + [1e4, -3e3, 7.0])
 PINS = (3, 30, 62)
 
 
 def checked(curve: Curve, **options: object) -> tuple[list[Iterate], str]:
-    """The iterates of a run, at every one of which all pins of the start are found among the vertices, and held."""
-    iterates: list[Iterate] = []
-    task, settings = wanted(curve, **{"pins": PINS, **options})
-    result = minimize(task, settings, iterates.append)
+    """The iterates of a proved run, at every one of which all pins of the start are found among the vertices."""
+    options = {"pins": PINS, **options}
+    result, iterates = proved(curve, **options)
+    pinned = {tuple(v) for v in curve.vertices[list(options["pins"])].tolist()}
     for iterate in iterates:
-        vertices = iterate.curve.vertices[list(iterate.pins)]
-        pinned = curve.vertices[list(task.pins)]
-        assert {tuple(v) for v in pinned.tolist()} <= {tuple(v) for v in vertices.tolist()}
+        assert pinned <= {tuple(v) for v in iterate.curve.vertices[list(iterate.pins)].tolist()}
     return iterates, result.message
-
-
-@pytest.mark.parametrize("curve", [BENT, FAR], ids=["near", "far"])
-@pytest.mark.parametrize(
-    "method",
-    ["lbfgs", "cg", "trust-region", "flow-l2", "flow-h3-2", "implicit-h1", "penalty-lbfgs", "penalty-nesterov"],
-)
-def test_pins_are_held_to_the_last_digit_by_every_kind_of_method(method: str, curve: Curve) -> None:
-    iterates, _ = checked(curve, method=method, vertices=len(curve), mesh="fixed", max_iterations=5)
-    assert len(iterates) > 3
-    assert all(iterate.pins == PINS for iterate in iterates)
-    assert iterates[-1].energy < iterates[0].energy
-    for iterate in iterates:
-        for between in iterate.path:
-            np.testing.assert_array_equal(between[list(PINS)], curve.vertices[list(PINS)])
-    assert np.abs(iterates[-1].curve.vertices - curve.vertices).max() > 1e-3
 
 
 def test_pins_are_held_by_the_hierarchical_solver_too() -> None:
@@ -132,9 +100,7 @@ def test_pins_are_held_by_the_hierarchical_solver_too() -> None:
 @pytest.mark.parametrize("mesh", [*SLOW, "adaptive", "auto"])
 def test_pins_survive_every_mesh(mesh: str) -> None:
     """Coarse input with near strands: vertices are inserted at the start, and later on split and left out."""
-    curve = knot("ochiai-1")
-    iterates, message = checked(curve, pins=(1, 8, 20), mesh=mesh, max_iterations=60)
-    assert all(iterate.certified for iterate in iterates)
+    iterates, message = checked(knot("ochiai-1"), pins=(1, 8, 20), mesh=mesh, max_iterations=60)
     assert all(len(iterate.pins) == 3 for iterate in iterates)
     assert mesh in ("fixed", "finer", "auto") or len({len(iterate.curve) for iterate in iterates}) > 1
     assert iterates[-1].energy < 0.5 * iterates[0].energy, message
@@ -150,7 +116,6 @@ def test_pins_survive_a_coarse_start(count: int, pins: tuple[int, ...]) -> None:
     assert min(len(iterate.curve) for iterate in iterates) < 900
     assert message.startswith("converged")
     assert iterates[-1].pins == pins
-    assert all(iterate.certified for iterate in iterates)
     assert iterates[-1].energy < 74.42  # 74.412 without pins
 
 
@@ -164,14 +129,12 @@ def test_arcs_keep_their_lengths_spread_evenly() -> None:
 
 
 def test_pinned_tangents_stay_on_finer_meshes() -> None:
-    curve = knot("ochiai-1")
-    pins = (1, 8)
-    start = minimize(*wanted(curve, pins=pins, pin_tangents=True, max_iterations=0)).last
-    end, _ = checked(curve, pins=pins, pin_tangents=True, mesh="adaptive", max_iterations=60)
+    curve, pins = knot("ochiai-1"), (1, 8)
+    (start, *_, end), _ = checked(curve, pins=pins, pin_tangents=True, mesh="adaptive", max_iterations=60)
     assert len(start.pins) == 6
-    assert len(end[-1].curve) != len(start.curve)
+    assert len(end.curve) != len(start.curve)
     for vertex in curve.vertices[list(pins)]:
-        before, after = (directions(each, vertex) for each in (start.curve, end[-1].curve))
+        before, after = (directions(each.curve, vertex) for each in (start, end))
         np.testing.assert_allclose(after, before, atol=1e-12)
 
 
@@ -182,27 +145,18 @@ def directions(curve: Curve, vertex: FloatArray) -> FloatArray:
     return curve.edge_vectors[edges] / curve.edge_lengths[edges, None]
 
 
-def test_a_plane_loop_converges_and_its_path_is_accepted(tmp_path) -> None:
-    """A star with pinned corners, in space as in the plane, down to a small gradient."""
+@pytest.mark.parametrize("dimension", [2, 3, 4])
+def test_loops_converge_in_every_dimension(dimension: int) -> None:
+    """A star with pinned corners, down to a small gradient; in four dimensions nothing is proved."""
     angle = np.linspace(0.0, 2.0 * np.pi, 16, endpoint=False)
     radius = np.where(np.arange(16) % 2 == 0, 1.0, 0.45)
-    star = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1)
-    for curve in (Curve(star), Curve(np.insert(star, 2, 0.1, axis=1))):
-        iterates, message = checked(curve, pins=(0, 4, 8, 12), tolerance=1e-6, vertices=160)
-        assert message.startswith("converged")
-        assert iterates[-1].gradient_norm <= 1e-6 * np.sqrt(iterates[-1].energy)
-        trajectory = Trajectory()
-        for iterate in iterates:
-            trajectory.add(iterate)
-        trajectory.save(tmp_path / "path.npz")
-        assert verify(tmp_path / "path.npz").accepted
-
-
-def test_four_dimensions_are_no_exception() -> None:
-    curve = rough(regular_polygon(40, dimension=4))
-    iterates, message = checked(curve, pins=(0, 13), vertices=80)
-    assert message.startswith("converged")
-    assert iterates[-1].energy < iterates[0].energy
+    star = np.full((16, dimension), 0.1)
+    star[:, :2] = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1)
+    pinned = {"pins": (0, 4, 8, 12), "tolerance": 1e-6, "vertices": 160}
+    result = minimize(*wanted(Curve(star), **pinned)) if dimension == 4 else proved(Curve(star), **pinned)[0]
+    assert result.status is Status.CONVERGED
+    assert result.last.gradient_norm <= 1e-6 * np.sqrt(result.last.energy)
+    np.testing.assert_array_equal(result.curve.vertices[list(result.last.pins)], star[[0, 4, 8, 12]])
 
 
 def test_nothing_moves_where_everything_is_pinned() -> None:
@@ -275,22 +229,13 @@ def test_target_lengths_must_reach_from_pin_to_pin(change: tuple[slice, float], 
         minimize(task, replace(kept, edge_lengths=tuple(lengths)))
 
 
-def test_lists_and_arrays_name_pins_too() -> None:
-    assert [Task(curve=BENT, pins=pins).pins for pins in ([3, 5], np.array([3, 5]))] == [(3, 5), (3, 5)]  # type: ignore
-
-
 def test_the_report_tells_the_pins_of_the_result() -> None:
+    assert [Task(curve=BENT, pins=pins).pins for pins in ([3, 5], np.array([3, 5]))] == [(3, 5), (3, 5)]  # type: ignore
     result = minimize(*wanted(BENT, pins=PINS, vertices=180, max_iterations=2))
     pins = result.report()["pins"]
     assert isinstance(pins, list)
     np.testing.assert_array_equal(result.curve.vertices[pins], BENT.vertices[list(PINS)])
     assert minimize(BENT, RelaxOptions(max_iterations=0)).report()["pins"] == []
-
-
-def test_methods_are_compared_with_the_pins_of_the_input() -> None:
-    task, options = wanted(BENT, pins=PINS, pin_tangents=True, vertices=150, max_iterations=4, edge_lengths="keep")
-    (history,) = compare(task, ["lbfgs"], options, 60.0)
-    assert history.energy == minimize(task, options).energies
 
 
 def test_the_kernel_at_a_minimum_has_no_rotations_that_pins_forbid() -> None:
