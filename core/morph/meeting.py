@@ -12,7 +12,7 @@ import numpy as np
 
 from ..base.types import FloatArray
 from ..collision import is_free, survives_rounding
-from ..collision.walk import walk
+from ..collision.motion import walk
 from ..curve import Curve, Mesh
 from ..curve.alignment import Alignment, Freedom, alignments
 from ..curve.measures import bending
