@@ -196,7 +196,6 @@ class Recording:
         if limit is not None and not every:  # as evenly spread over an even motion as can be
             evenly = self._course.evenly[places]
             chosen = np.interp(np.linspace(0, 1, max(limit, 2)), evenly, np.arange(len(evenly))).round().astype(int)
-            chosen[0], chosen[-1] = 0, len(evenly) - 1
             number = np.arange(len(chosen))
             later = np.maximum.accumulate(chosen - number) + number
             places = [places[k] for k in np.minimum(later, len(evenly) - len(chosen) + number)]

@@ -139,6 +139,19 @@ def braid_closure(word: Sequence[int], vertices: int | None = None, *, strands: 
     for letter, column in zip(letters, places, strict=True):
         i, sign = abs(letter) - 1, 1 if letter > 0 else -1
         moves[column, i], moves[column, i + 1] = (1, sign), (-1, sign)
+
+    def profile(track: IntArray, theta: FloatArray) -> FloatArray:
+        """Distance from the axis and height of one component at angles (k,); shape (k, 2)."""
+        along = np.asarray(theta, dtype=np.float64) / (2 * math.pi) * max(width, 1)
+        # The clip keeps the closing angle 2π·turns in the last column instead of past it.
+        column = np.clip(np.floor(along).astype(np.intp), 0, track.shape[1] - 1)
+        place, move, sign = track[:, column]
+        x = along - column
+        angle = math.pi * (x * x * (3.0 - 2.0 * x))
+        radius = inner + place + 0.5 * move * (1 - np.cos(angle))
+        # The strand moving outwards passes over in a positive crossing and under in a negative one.
+        return np.stack([scale * radius, scale * 0.5 * move * sign * np.sin(angle)], axis=1)
+
     rings = []
     for cycle in cycles(letters, count):
         # for every column, turn after turn: the place before it, the move, and the crossing's sign
@@ -148,8 +161,7 @@ def braid_closure(word: Sequence[int], vertices: int | None = None, *, strands: 
                 move, sign = moves.get((column, place), (0, 0))
                 rows.append((place, move, sign))
                 place += move
-        track = np.array(rows, dtype=np.intp).T
-        rings.append(Ring(len(cycle), partial(_braid_profile, track, max(width, 1), inner, scale)))
+        rings.append(Ring(len(cycle), partial(profile, np.array(rows, dtype=np.intp).T)))
     return _polygon(rings, scale, max(60, 2 * count * width), vertices)
 
 
@@ -222,49 +234,24 @@ def _polygon(rings: Sequence[Ring], gap: float, detail: int, vertices: int | Non
     if vertices is None:
         # edges of 0.7 gaps: tilted strands are a little nearer than the gap
         vertices = min(max(math.ceil(lengths.sum() / (0.7 * gap)), detail), MAX_VERTICES)
-    angles = []
+    curves = []
     for ring, count in zip(rings, shares(vertices, lengths), strict=True):
-        theta = np.linspace(0.0, ring.period, count + 1)
+        ends = np.linspace(0.0, ring.period, count + 1)
         for _ in range(20):  # to nearly equal edges
-            along = arc_lengths(ring.points(theta))
-            theta = np.interp(np.linspace(0.0, along[-1], count + 1), along, theta)
-        angles.append(theta[:-1])
-    if any(_deviation(ring, theta) >= gap / 2 for ring, theta in zip(rings, angles, strict=True)):
-        raise too_few(vertices)
-    return Curve.from_components([ring.points(theta) for ring, theta in zip(rings, angles, strict=True)])
-
-
-def _deviation(ring: Ring, theta: FloatArray) -> float:
-    """Largest distance between polygon and curve within a half plane; infinite if an edge goes backwards or too far.
-
-    Where this stays below half the gap, moving every point straight from the curve to the polygon within its
-    half plane lets no two strands meet: polygon and curve are the same closed braid.
-    """
-    ends = np.append(theta, ring.period)
-    steps = np.diff(ends)
-    if steps.min() <= 0 or steps.max() > 0.9 * math.pi:
-        return math.inf
-    fractions = np.arange(1, 8) / 8  # each edge is compared in so many half planes
-    pages = theta[:, None] + steps[:, None] * fractions
-    points = ring.points(ends)
-    tails, edges = points[:-1, None], np.diff(points, axis=0)[:, None]
-    normal = np.stack([-np.sin(pages), np.cos(pages), np.zeros_like(pages)], axis=2)
-    s = -(tails * normal).sum(axis=2) / (edges * normal).sum(axis=2)
-    hits = tails + s[:, :, None] * edges
-    within = np.stack([np.hypot(hits[:, :, 0], hits[:, :, 1]), hits[:, :, 2]], axis=2)
-    smooth = ring.at(pages.ravel()).reshape(within.shape)
-    return float(np.linalg.norm(within - smooth, axis=2).max())
-
-
-def _braid_profile(track: IntArray, width: int, inner: float, scale: float, theta: FloatArray) -> FloatArray:
-    """Distance from the axis and height of one component at angles (k,); shape (k, 2)."""
-    along = np.asarray(theta, dtype=np.float64) / (2 * math.pi) * width
-    # The clip keeps the closing angle 2π·turns in the last column instead of past it.
-    column = np.clip(np.floor(along).astype(np.intp), 0, track.shape[1] - 1)
-    place, move, sign = track[:, column]
-    x = along - column
-    angle = math.pi * (x * x * (3.0 - 2.0 * x))
-    radius = inner + place + 0.5 * move * (1 - np.cos(angle))
-    # The strand moving outwards passes over in a positive crossing and under in a negative one.
-    height = 0.5 * move * sign * np.sin(angle)
-    return np.stack([scale * radius, scale * height], axis=1)
+            along = arc_lengths(ring.points(ends))
+            ends = np.interp(np.linspace(0.0, along[-1], count + 1), along, ends)
+        points, steps = ring.points(ends), np.diff(ends)
+        if steps.min() <= 0 or steps.max() > 0.9 * math.pi:  # an edge goes backwards or too far
+            raise too_few(vertices)
+        # Where the distance between polygon and curve within a half plane stays below half the gap, moving every point
+        # straight from one to the other lets no two strands meet: polygon and curve are the same closed braid.
+        pages = ends[:-1, None] + steps[:, None] * np.arange(1, 8) / 8  # each edge is compared in so many half planes
+        tails, edges = points[:-1, None], np.diff(points, axis=0)[:, None]
+        normal = np.stack([-np.sin(pages), np.cos(pages), np.zeros_like(pages)], axis=2)
+        s = -(tails * normal).sum(axis=2) / (edges * normal).sum(axis=2)
+        hits = tails + s[:, :, None] * edges
+        within = np.stack([np.hypot(hits[:, :, 0], hits[:, :, 1]), hits[:, :, 2]], axis=2)
+        if np.linalg.norm(within - ring.at(pages.ravel()).reshape(within.shape), axis=2).max() >= gap / 2:
+            raise too_few(vertices)
+        curves.append(points[:-1])
+    return Curve.from_components(curves)

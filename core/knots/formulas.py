@@ -11,10 +11,11 @@ from ..base.arguments import checked
 from ..base.errors import CurveError
 from ..base.types import FloatArray
 from ..curve import Curve, Mesh
+from ..curve.distances import nearest_strands
 from ..curve.refine import cubic_spline, evenly
 from ..curve.tube import normals, turned
 from .diagrams import linking_numbers
-from .inscribed import arc_steps, inscribed, strand_gap
+from .inscribed import arc_steps, inscribed
 
 
 @checked
@@ -37,10 +38,9 @@ def lissajous_knot(
     if not all(map(math.isfinite, phases)):
         raise CurveError(f"phases are {phases[0]} and {phases[1]}; they must be finite")
     t = 2 * np.pi * np.arange(count := 160 * max(frequencies)) / count  # in each period of the fastest cosine 160
-    curve = Curve(
-        np.stack([np.cos(f * t + phase) for f, phase in zip(frequencies, (*phases, 0.0), strict=True)], axis=1)
-    )
-    if (gap := strand_gap(curve)) < least_gap:
+    waves = [np.cos(f * t + phase) for f, phase in zip(frequencies, (*phases, 0.0), strict=True)]
+    curve = Curve(np.stack(waves, axis=1))
+    if (gap := nearest_strands(curve, 2.0)) < least_gap:
         raise CurveError(f"strands of this Lissajous curve meet, or are only {gap:.1g} apart; change a phase a little")
     return inscribed(curve, vertices)
 
@@ -105,19 +105,15 @@ def cable(companion: Curve, p: int, q: int, vertices: int | None = None, *, room
     Raises CurveError if a number is not allowed, the companion is no knot, or the vertices are too few.
     """
     if not (2 <= p <= MAX_STRANDS and abs(q) <= MAX_TURNS):
-        raise CurveError(
-            f"a cable of {p} strands with {q} turns is of no use; strands are 2 to {MAX_STRANDS}, "
-            f"turns -{MAX_TURNS} to {MAX_TURNS}"
-        )
+        allowed = f"strands are 2 to {MAX_STRANDS}, turns -{MAX_TURNS} to {MAX_TURNS}"
+        raise CurveError(f"a cable of {p} strands with {q} turns is of no use; {allowed}")
     tube, parts = SolidTorus.around(companion), math.gcd(p, q)
-    radius = tube.radius(room)
-    turns = p // parts
+    radius, turns = tube.radius(room), p // parts
     count = tube.samples(turns * tube.length + 2 * math.pi * radius * abs(q) / parts)
     t = turns * np.arange(count) / count
     angles = [2 * math.pi * (q * t + k) / p for k in range(parts)]
-    return inscribed(
-        Curve.from_components([tube.points(t, radius * np.cos(a), radius * np.sin(a)) for a in angles]), vertices
-    )
+    strands = [tube.points(t, radius * np.cos(a), radius * np.sin(a)) for a in angles]
+    return inscribed(Curve.from_components(strands), vertices)
 
 
 @checked
@@ -130,9 +126,8 @@ def double(
     Twists are full, right-handed, and counted from the longitude that does not link the knot.  Otherwise as `cable`.
     """
     if abs(twists) > MAX_TURNS or clasp not in (1, -1):
-        raise CurveError(
-            f"twists is {twists} and clasp {clasp}; twists are -{MAX_TURNS} to {MAX_TURNS}, and a clasp 1 or -1"
-        )
+        allowed = f"twists are -{MAX_TURNS} to {MAX_TURNS}, and a clasp 1 or -1"
+        raise CurveError(f"twists is {twists} and clasp {clasp}; {allowed}")
     tube = SolidTorus.around(companion)
     radius = tube.radius(room)
     # half the length of the clasp, and how far its hooks reach past each other

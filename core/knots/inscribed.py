@@ -23,7 +23,7 @@ def inscribed(curve: Curve, vertices: int | None, least: int = 120) -> Curve:
     strands are apart, and there are at least ``least``.  Raises CurveError if the curve meets itself, or nearly does,
     or the vertices are too few or too many.
     """
-    gap = strand_gap(curve)
+    gap = nearest_strands(curve, 2.0)  # between vertices twice as far apart along the curve, also across a bend
     if vertices is None:
         vertices = max(least, math.ceil(curve.length / (0.5 * gap)) if gap > 0 else MAX_VERTICES + 1)
     sizes = shares(vertices, curve.component_lengths)
@@ -55,11 +55,6 @@ def shares(vertices: int, lengths: FloatArray) -> list[int]:
     if counts.min() < 3:
         raise CurveError(f"{vertices} vertices are too few for {counted(len(lengths), 'component')}; give more")
     return [int(count) for count in counts]
-
-
-def strand_gap(curve: Curve) -> float:
-    """Least distance between vertices twice as far apart along the curve: strands, and the two sides of a bend."""
-    return nearest_strands(curve, 2.0)
 
 
 def is_isotopic(first: Curve, first_at: Sequence[FloatArray], second: Curve, second_at: Sequence[FloatArray]) -> bool:

@@ -6,13 +6,12 @@ comes near them, the polygons before and after are isotopic: this is the element
 """
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
 from ..base.arguments import checked
 from ..base.errors import CurveError
-from ..base.types import FloatArray, IntArray
+from ..base.types import FloatArray
 from ..collision.planes import closest_chord
 from ..curve import Curve, check_closed
 
@@ -54,43 +53,34 @@ def scramble(
         raise CurveError(f"gap is {gap}; it must be at least {least:g} of the curve's radius, {radius:g}")
     if not 0 < least_angle < math.pi:
         raise CurveError(f"least_angle is {least_angle}; it must be above 0 and below π")
-    polygons = Polygons(curve.vertices.copy(), curve.mesh.anticycle, curve.mesh.heads, gap, least_angle)
+    points, before, after = curve.vertices.copy(), curve.mesh.anticycle, curve.mesh.heads
+
+    def can_move(vertex: int, position: FloatArray) -> bool:
+        """Whether the straight move of a vertex keeps its edges away from all others, and the next angles open."""
+        old, a, b = points[vertex], before[vertex], after[vertex]
+        tails, heads = points, points[after]
+        for pivot, beyond in ((a, before[a]), (b, after[b])):
+            here = points[pivot]
+            if angle_to_sector(points[beyond] - here, old - here, position - here) < least_angle:
+                return False
+            triangle = np.stack([here, old, position])  # swept by the edge from the pivot to the vertex
+            low, high = triangle.min(axis=0) - gap, triangle.max(axis=0) + gap
+            near = ((np.minimum(tails, heads) <= high) & (np.maximum(tails, heads) >= low)).all(axis=1)
+            near[[vertex, a, pivot, before[pivot]]] = False
+            if near.any() and triangle_distances(triangle, tails[near], heads[near]).min() < gap:
+                return False
+        return True
+
     rng = np.random.default_rng(seed)
     for _ in range(moves):
         vertex = int(rng.integers(len(curve)))
         step = rng.normal(size=3)
         # Lengths spread over a decade: long moves get stuck first, short ones go on finding room.
         step *= reach * 10.0 ** -rng.random() / np.linalg.norm(step)
-        position = polygons.points[vertex] + step
-        if np.linalg.norm(position - center) <= radius and polygons.can_move(vertex, position):
-            polygons.points[vertex] = position
-    return curve.with_vertices(polygons.points)
-
-
-class Polygons(NamedTuple):
-    """Polygons in motion: positions that change, the neighbours of each vertex, and the bounds that moves must keep."""
-
-    points: FloatArray
-    before: IntArray
-    after: IntArray
-    gap: float
-    least_angle: float
-
-    def can_move(self, vertex: int, position: FloatArray) -> bool:
-        """Whether the straight move of a vertex keeps its edges away from all others, and the next angles open."""
-        old, a, b = self.points[vertex], self.before[vertex], self.after[vertex]
-        tails, heads = self.points, self.points[self.after]
-        for pivot, beyond in ((a, self.before[a]), (b, self.after[b])):
-            here = self.points[pivot]
-            if angle_to_sector(self.points[beyond] - here, old - here, position - here) < self.least_angle:
-                return False
-            triangle = np.stack([here, old, position])  # swept by the edge from the pivot to the vertex
-            low, high = triangle.min(axis=0) - self.gap, triangle.max(axis=0) + self.gap
-            near = ((np.minimum(tails, heads) <= high) & (np.maximum(tails, heads) >= low)).all(axis=1)
-            near[[vertex, a, pivot, self.before[pivot]]] = False
-            if near.any() and triangle_distances(triangle, tails[near], heads[near]).min() < self.gap:
-                return False
-        return True
+        position = points[vertex] + step
+        if np.linalg.norm(position - center) <= radius and can_move(vertex, position):
+            points[vertex] = position
+    return curve.with_vertices(points)
 
 
 def triangle_distances(triangle: FloatArray, tails: FloatArray, heads: FloatArray) -> FloatArray:
@@ -106,7 +96,8 @@ def triangle_distances(triangle: FloatArray, tails: FloatArray, heads: FloatArra
 
 def angle_to_sector(direction: FloatArray, first: FloatArray, second: FloatArray) -> float:
     """Least angle between a direction (3,) and any between ``first`` and ``second``, the short way; radians."""
-    least = min(_angle(direction, first), _angle(direction, second))
+    crosses = [(np.cross(direction, each), direction @ each) for each in (first, second)]
+    least = min(float(np.arctan2(np.sqrt(w @ w), product)) for w, product in crosses)
     normal = np.cross(first, second)
     size = np.sqrt(normal @ normal)
     if size <= 1e-300:
@@ -116,8 +107,3 @@ def angle_to_sector(direction: FloatArray, first: FloatArray, second: FloatArray
         return least
     height = abs(direction @ normal) / (size * np.sqrt(direction @ direction))
     return float(np.arcsin(min(height, 1.0)))
-
-
-def _angle(u: FloatArray, v: FloatArray) -> float:
-    w = np.cross(u, v)
-    return float(np.arctan2(np.sqrt(w @ w), u @ v))
