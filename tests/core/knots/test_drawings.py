@@ -32,23 +32,14 @@ def circle(x: float, y: float = 0.0, radius: float = 1.0, points: int = 40) -> n
     return np.column_stack([x + radius * np.cos(t), y + radius * np.sin(t)])
 
 
-def test_a_drawn_trefoil_is_a_trefoil() -> None:
+def test_a_drawn_trefoil_is_a_trefoil_and_changed_crossings_unknot_or_mirror_it() -> None:
     drawing = Drawing.of(flat(torus_knot(2, 3, 60)))
     assert len(drawing.crossings) == 3
-    found = knot_invariants(drawing.lifted().vertices)
+    found, mirrored = (knot_invariants(drawing.lifted(changed).vertices) for changed in ([], [1, 2, 3]))
     assert (found.genus, found.fibered, abs(found.tau)) == (1, True, 1)
-
-
-@pytest.mark.parametrize("number", [1, 2, 3])
-def test_one_changed_crossing_unknots_it(number: int) -> None:
-    drawing = Drawing.of(flat(torus_knot(2, 3, 60)))
-    assert knot_invariants(drawing.lifted([number]).vertices) == UNKNOT
-
-
-def test_changing_all_crossings_mirrors() -> None:
-    drawing = Drawing.of(flat(torus_knot(2, 5)))
-    one, other = (knot_invariants(drawing.lifted(changed).vertices) for changed in ([], [1, 2, 3, 4, 5]))
-    assert one.tau == -other.tau != 0
+    assert mirrored.tau == -found.tau
+    for number in (1, 2, 3):
+        assert knot_invariants(drawing.lifted([number]).vertices) == UNKNOT
 
 
 @pytest.mark.parametrize("name", ["4_1", "6_2", "7_7", "8_18"])
@@ -74,52 +65,37 @@ def test_components_side_by_side_and_within_each_other_are_drawn() -> None:
     assert not lifted.components[3][:, 2].any()
 
 
-def as_drawn(drawing: Drawing, changed: list[int]) -> None:
-    """The lifted curve is embedded, with the drawn crossings, and the upper strands told."""
-    lifted = drawing.lifted(changed)
-    check_embedded(lifted)
-    size = np.ptp(drawing.curve.vertices)
-    generic = lifted.vertices + 1e-7 * size * np.random.default_rng(1).normal(size=(len(lifted), 3))
-    found = plane_crossings(lifted.mesh, generic)
-    first, second = (
-        lifted.vertices[e] + at[:, None] * lifted.edge_vectors[e] for e, at in zip(found.edges, found.at, strict=True)
-    )
-    assert len(first) == len(drawing.crossings)
-    for number, crossing in enumerate(drawing.crossings, 1):
-        k = int(np.linalg.norm(first[:, :2] - crossing, axis=1).argmin())
-        assert np.linalg.norm(first[k, :2] - crossing) < 1e-4 * size
-        assert (first[k, 2] > second[k, 2]) == (drawing.first_over[number - 1] ^ (number in changed))
-
-
-def clear_scribbles(count: int) -> list[Drawing]:
-    """The first random scribbles that are no unclear drawings."""
-    found: list[Drawing] = []
-    for seed in range(2 * count):
-        with suppress(CurveError):
-            found.append(Drawing.of(scribble(seed)))
-    return found[:count]
-
-
-SCRIBBLES = clear_scribbles(16)
+SCRIBBLES: list[Drawing] = []  # the first random ones that are no unclear drawings
+for seed in range(32):
+    with suppress(CurveError):
+        SCRIBBLES.append(Drawing.of(scribble(seed)))
 
 
 def test_most_scribbles_are_clear() -> None:
-    assert len(SCRIBBLES) == 16
-    assert sum(len(drawing.crossings) > 2 for drawing in SCRIBBLES) > 8
+    assert len(SCRIBBLES) >= 16
+    assert sum(len(drawing.crossings) > 2 for drawing in SCRIBBLES[:16]) > 8
 
 
-@pytest.mark.parametrize("drawing", SCRIBBLES)
+@pytest.mark.parametrize("drawing", SCRIBBLES[:16])
 def test_scribbles_have_the_drawn_crossings_and_no_others(drawing: Drawing) -> None:
-    as_drawn(drawing, [])
-    as_drawn(drawing, list(range(1, len(drawing.crossings) + 1, 2)))
-
-
-@pytest.mark.parametrize("drawing", [drawing for drawing in SCRIBBLES if len(drawing.crossings)])
-def test_along_the_curve_over_and_under_take_turns(drawing: Drawing) -> None:
+    """Along the curve over and under take turns; the lifted curve is embedded, with the upper strands told."""
     order = np.argsort(drawing.passes.ravel())
     over = np.stack([drawing.first_over, ~drawing.first_over], axis=1).ravel()[order]
     assert (over[1:] != over[:-1]).all()
-    assert over[0]
+    assert over[:1].all()
+    size = np.ptp(drawing.curve.vertices)
+    for changed in ([], list(range(1, len(drawing.crossings) + 1, 2))):
+        lifted = drawing.lifted(changed)
+        check_embedded(lifted)
+        generic = lifted.vertices + 1e-7 * size * np.random.default_rng(1).normal(size=(len(lifted), 3))
+        found = plane_crossings(lifted.mesh, generic)
+        pairs = zip(found.edges, found.at, strict=True)
+        first, second = (lifted.vertices[e] + at[:, None] * lifted.edge_vectors[e] for e, at in pairs)
+        assert len(first) == len(drawing.crossings)
+        for number, crossing in enumerate(drawing.crossings, 1):
+            k = int(np.linalg.norm(first[:, :2] - crossing, axis=1).argmin())
+            assert np.linalg.norm(first[k, :2] - crossing) < 1e-4 * size
+            assert (first[k, 2] > second[k, 2]) == (drawing.first_over[number - 1] ^ (number in changed))
 
 
 def test_strands_keep_apart_in_proportion_to_the_room_there() -> None:

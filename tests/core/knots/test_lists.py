@@ -1,6 +1,5 @@
 """Knots from other programs: their objects, and the lists that people download."""
 
-import sys
 from types import SimpleNamespace
 
 import numpy as np
@@ -58,16 +57,19 @@ def test_lists_as_people_download_them(kind, tmp_path):
         assert type_of.names
 
 
-@pytest.mark.parametrize("text", ["", "x,y,z\n1,2,3\n", "name,color\na,b\n", "\n\n"])
+NO_LISTS = {
+    "": "empty",
+    "\n\n": "empty",
+    "x,y,z\n1,2,3\n": "no code in any line",
+    "name,color\na,b\n": "no column named",
+}
+NO_LISTS['name,pd_notation\n3_1,"' + "1" * 200_000] = "field larger .* quotation mark is not closed"
+
+
+@pytest.mark.parametrize("text", NO_LISTS, ids=range(len(NO_LISTS)))
 def test_what_is_no_list(text, tmp_path):
     (tmp_path / "list.csv").write_text(text)
-    with pytest.raises(CurveFileError, match=r"list\.csv"):
-        knot_list(tmp_path / "list.csv")
-
-
-def test_a_quotation_mark_that_is_not_closed(tmp_path):
-    (tmp_path / "list.csv").write_text('name,pd_notation\n3_1,"' + "1" * 200_000)
-    with pytest.raises(CurveFileError, match=r"list\.csv: field larger .* quotation mark is not closed"):
+    with pytest.raises(CurveFileError, match=rf"list\.csv: .*{NO_LISTS[text]}"):
         knot_list(tmp_path / "list.csv")
 
 
@@ -90,12 +92,16 @@ def test_a_list_becomes_files(tmp_path, capsys):
     assert "--smooth is for names of the table" in capsys.readouterr().err
 
 
-def test_links_of_spherogram():
+def test_links_of_spherogram_and_manifolds_of_snappy():
     spherogram = pytest.importorskip("spherogram")
     assert knot_type(Curve.of(spherogram.Link("8_20"))).names == ("8_20",)
-    link = spherogram.Link(braid_closure=[1, 1, 1])
-    assert set(knot_type(Curve.of(link)).names) <= {"3_1", "m3_1"}
+    assert set(knot_type(Curve.of(spherogram.Link(braid_closure=[1, 1, 1]))).names) <= {"3_1", "m3_1"}
     assert len(Curve.of(spherogram.Link("L6a4")).components) == 3
+    snappy = pytest.importorskip("snappy")
+    assert set(knot_type(Curve.of(snappy.Manifold("K3a1"))).names) <= {"3_1", "m3_1"}
+    with pytest.raises(CurveError, match=r"m004.* has no link"):
+        Curve.of(snappy.Manifold("m004"))
+    assert knot_type(knot(str(snappy.Manifold("8_20")))).names == ("8_20",)
 
 
 def test_objects_of_others():
@@ -115,11 +121,6 @@ def test_objects_of_others():
             Curve.of(odd)
 
 
-def test_no_list_is_read_for_a_name(monkeypatch):
-    monkeypatch.setitem(sys.modules, "spherogram", None)
-    assert knot_type(knot("3_1")).names == ("3_1",)
-
-
 def test_one_knot_of_knoodles_is_a_curve(tmp_path):
     (tmp_path / "sum.tsv").write_text(f"k\ns\n{TREFOIL}s\n{TREFOIL}")
     assert knot_type(read_curve(tmp_path / "sum.tsv")).names == ("m3_1#m3_1",)
@@ -133,11 +134,3 @@ def test_one_knot_of_knoodles_is_a_curve(tmp_path):
         (tmp_path / "odd.tsv").write_text(text)
         with pytest.raises(CurveFileError, match=reason):
             read_curve(tmp_path / "odd.tsv")
-
-
-def test_manifolds_without_a_link():
-    snappy = pytest.importorskip("snappy")
-    assert set(knot_type(Curve.of(snappy.Manifold("K3a1"))).names) <= {"3_1", "m3_1"}
-    with pytest.raises(CurveError, match=r"m004.* has no link"):
-        Curve.of(snappy.Manifold("m004"))
-    assert knot_type(knot(str(snappy.Manifold("8_20")))).names == ("8_20",)

@@ -87,29 +87,36 @@ def test_unknown_names_list_close_and_known_ones(name: str, hint: str) -> None:
     assert len(str(caught.value)) < 350
 
 
-@pytest.mark.parametrize(
-    "name", ["T(0,3)", "T(2,99999)", "T(1000000,1000001)", "braid(0)", "braid(1,9999999)", "0_1#T(0,1)", "mT(200,300)"]
-)
-def test_numbers_that_are_not_allowed(name: str) -> None:
-    with pytest.raises(CurveError, match=r"^(T\(\S+\) |letter|the braid has .* strands)"):
-        knot(name)
-
-
-def test_braids_may_have_strands_of_their_own() -> None:
-    assert len(knot("BR[4,{1,1,1}]").mesh.component_sizes) == 3
-    with pytest.raises(CurveError, match="the braid has 2 strands, but its letters need 3"):
-        knot("BR[2,{1,2}]")
-
-
 @pytest.mark.parametrize("name", ["K11n34", "11n_34", "k11n34", "12a_0003", "L8n1", "L10a100"])
 def test_names_of_larger_tables_are_spherograms(name: str) -> None:
     theirs = Link({"11n_34": "K11n34", "k11n34": "K11n34", "12a_0003": "K12a3"}.get(name, name))
     assert jones(braid_diagram(braid_word(name))) == jones(diagram_of(theirs.PD_code()))
 
 
-@pytest.mark.parametrize("name", ["K11n999", "L99a1", "m11a_0"])
-def test_names_that_no_table_has(name: str) -> None:
-    with pytest.raises(MobiusFlowError, match=r"no knot (or link )?is called"):
+NOT_MADE = {
+    "T(0,3)": r"^T\(0,3\) ",
+    "T(2,99999)": r"^T\(2,99999\) ",
+    "T(1000000,1000001)": r"^T\(1000000,1000001\) ",
+    "0_1#T(0,1)": r"^T\(0,1\) ",
+    "mT(200,300)": r"^T\(200,300\) ",
+    "braid(0)": "^letter",
+    "braid(1,9999999)": "^the braid has .* strands",
+    "BR[2,{1,2}]": "the braid has 2 strands, but its letters need 3",
+    "braid(" + ",".join(["1,499"] * 9000) + ")": "too many",
+    "plat(1,0)": "letter 2",
+    "plat(1": "no closing bracket",
+    "plat(a)": "whole number",
+    "plat(" + ",".join("12" * 600) + ")": "at most 1000",
+    "K11n999": "no knot or link is called",
+    "L99a1": "no knot or link is called",
+    "m11a_0": "no knot is called",
+    5000 * "m": "no knot is called",
+}
+
+
+@pytest.mark.parametrize("name", NOT_MADE, ids=lambda name: name[:20])
+def test_what_is_not_made(name: str) -> None:
+    with pytest.raises(MobiusFlowError, match=NOT_MADE[name]):
         knot(name)
 
 
@@ -119,6 +126,40 @@ def test_larger_tables_are_an_extra(monkeypatch: pytest.MonkeyPatch) -> None:
         knot("11n_34")
 
 
+def test_words_are_plain_tuples_also_of_mirror_images_of_mirror_images() -> None:
+    assert braid_word("granny") == KNOTS["3_1"] + (2, 2, 2)
+    assert braid_word("m4_1") == (-1, 2, -1, 2)
+    assert braid_word("mm3_1") == braid_word("3_1") == braid_word("m m 3_1")
+    assert braid_word("mmm3_1") == braid_word(5001 * "m" + "3_1") == braid_word("m3_1")
+    assert len(knot("BR[4,{1,1,1}]").mesh.component_sizes) == 3
+
+
+# Conway's C(a, b, c, …): twists by turns of the middle strands and of those on a side, crossings alternating
+CONWAY = {"3_1": (3,), "4_1": (2, 1, 1), "5_2": (3, 1, 1), "6_2": (3, 1, 2), "7_7": (2, 1, 1, 1, 2), "L4a1": (4,)}
+PLATS = {
+    name: ([letter for k, count in enumerate(twists) for letter in [(2, -1)[k % 2]] * count], {name, f"m{name}"})
+    for name, twists in CONWAY.items()
+}
+PLATS |= {
+    "no letter": ([], {"0_1"}),
+    "a loop": ([1, 1], {"0_1"}),
+    "circles": ([3, -3], {"0_1 ⊔ 0_1"}),
+    "L2a1": ([2, 2], {"L2a1"}),
+    "L5a1": ([2, -1, 2, -1, 2], {"L5a1"}),
+    "a chain": ([2, 2, 4, 4], {"L2a1#L2a1"}),
+}
+
+
+@pytest.mark.parametrize("name", PLATS)
+def test_rational_knots_and_others_are_plats(name: str) -> None:
+    word, names = PLATS[name]
+    found = knot_type(knot(f"plat({','.join(map(str, word))})"))
+    assert found.proved
+    assert set(found.names) <= names
+    assert found.diagram is not None
+    assert name not in CONWAY or found.diagram.crossings == sum(CONWAY[name])
+
+
 def test_listed_names_are_names() -> None:
     names = knot_names()
     assert {"3_1", "L5a1", "figure-eight", "haken"} < set(names)
@@ -126,16 +167,9 @@ def test_listed_names_are_names() -> None:
     assert all(name in no_words or braid_word(name) for name in names)
 
 
-@pytest.mark.parametrize("name", ["3_1", "10_123", "T(3,7)", "whitehead"])
-@pytest.mark.parametrize("vertices", [-5, 0, 2, 3])
-def test_too_few_vertices(name: str, vertices: int) -> None:
-    with pytest.raises(CurveError, match="too few"):
-        knot(name, vertices)
-
-
 MAKERS = {
-    "braid": lambda n: knot("3_1", n),
-    "torus": lambda n: knot("T(2,3)", n),
+    "braid": lambda n: knot("whitehead", n),
+    "torus": lambda n: knot("T(3,3)", n),
     "diagram": lambda n: knot("goeritz", n),
     "smooth": lambda n: smooth_knot("3_1", n),
     "lissajous": lambda n: lissajous_knot((3, 2, 7), vertices=n),
@@ -143,17 +177,15 @@ MAKERS = {
 
 
 @pytest.mark.parametrize("make", MAKERS.values(), ids=MAKERS)
-@pytest.mark.parametrize("vertices", [300.5, 300.0, "300"])
-def test_vertices_are_counted_in_whole_numbers(make: Callable[[object], Curve], vertices: object) -> None:
-    with pytest.raises(MobiusFlowError, match=f"^vertices is {vertices!r}; give a whole number"):
-        make(vertices)
-    assert len(make(np.int64(300))) == 300
-
-
-@pytest.mark.parametrize("vertices", [90, 101, 1000])
-def test_the_number_of_vertices_is_the_one_asked_for(vertices: int) -> None:
-    for name in ("3_1", "T(3,3)", "whitehead", "0_1"):
-        assert len(knot(name, vertices)) == vertices
+def test_vertices_are_as_many_as_asked_for_and_counted_in_whole_numbers(make: Callable[[object], Curve]) -> None:
+    for vertices in (300.5, 300.0, "300"):
+        with pytest.raises(MobiusFlowError, match=f"^vertices is {vertices!r}; give a whole number"):
+            make(vertices)
+    for vertices in (np.int64(300), 301, 1000):
+        assert len(make(vertices)) == vertices
+    for vertices, said in ((-5, "too few"), (0, "too few"), (3, "too few"), (10**9, "too many")):
+        with pytest.raises(CurveError, match=said):
+            make(vertices)
 
 
 def test_coarse_polygons_are_the_right_knot_or_refused() -> None:
@@ -168,60 +200,3 @@ def test_coarse_polygons_are_the_right_knot_or_refused() -> None:
             accepted += 1
             assert knot_invariants(curve.vertices) == expected
         assert accepted >= 2
-
-
-def test_words_are_plain_tuples() -> None:
-    assert braid_word("granny") == KNOTS["3_1"] + (2, 2, 2)
-    assert braid_word("m4_1") == (-1, 2, -1, 2)
-
-
-def test_too_many_vertices() -> None:
-    for name, vertices in (("3_1", 10**9), ("braid(" + ",".join(["1,499"] * 9000) + ")", None)):
-        with pytest.raises(CurveError, match="too many"):
-            knot(name, vertices)
-
-
-def test_mirror_images_of_mirror_images() -> None:
-    assert braid_word("mm3_1") == braid_word("3_1") == braid_word("m m 3_1")
-    assert braid_word("mmm3_1") == braid_word("m3_1")
-    with pytest.raises(UnknownKnotError, match="no knot is called"):
-        knot(5000 * "m")
-    assert braid_word(5001 * "m" + "3_1") == braid_word("m3_1")
-
-
-CONWAY = {"3_1": (3,), "4_1": (2, 1, 1), "5_2": (3, 1, 1), "6_2": (3, 1, 2), "7_7": (2, 1, 1, 1, 2), "L4a1": (4,)}
-
-
-@pytest.mark.parametrize("name", CONWAY)
-def test_rational_knots_are_plats(name: str) -> None:
-    """Conway's C(a, b, c, …): twists by turns of the middle strands and of those on a side, crossings alternating."""
-    word = [letter for k, count in enumerate(CONWAY[name]) for letter in [(2, -1)[k % 2]] * count]
-    found = knot_type(knot(f"plat({','.join(map(str, word))})"))
-    assert found.proved
-    assert set(found.names) <= {name, f"m{name}"}
-    assert found.diagram is not None
-    assert found.diagram.crossings == sum(CONWAY[name])
-
-
-@pytest.mark.parametrize(
-    ("plat", "names", "parts"),
-    [
-        ("plat()", ("0_1",), 1),
-        ("plat(1,1)", ("0_1",), 1),
-        ("plat(3,-3)", ("0_1 ⊔ 0_1",), 2),
-        ("plat(4,4,4)", None, 2),
-        ("plat(2,2)", ("L2a1",), 2),
-        ("plat(2,-1,2,-1,2)", ("L5a1",), 2),
-        ("plat(2,2,4,4)", ("L2a1#L2a1",), 3),
-    ],
-)
-def test_plats_of_few_letters(plat: str, names: tuple[str, ...] | None, parts: int) -> None:
-    curve = knot(plat)
-    assert len(curve.components) == parts
-    assert names is None or knot_type(curve).names == names
-
-
-@pytest.mark.parametrize("plat", ["plat(1,0)", "plat(1", "plat(a)", "plat(" + ",".join("12" * 600) + ")"])
-def test_what_is_no_plat(plat: str) -> None:
-    with pytest.raises(MobiusFlowError):
-        knot(plat)

@@ -15,24 +15,17 @@ from mobius_flow.core.knots.diagrams.rerouting import without_nugatory
 from mobius_flow.core.knots.planar import drawn, grid_drawing
 
 RIGHT_TREFOIL = [(1, 5, 2, 4), (3, 1, 4, 6), (5, 3, 6, 2)]
-LEFT_TREFOIL = [(1, 4, 2, 5), (3, 6, 4, 1), (5, 2, 6, 3)]
-FIGURE_EIGHT = [(4, 2, 5, 1), (8, 6, 1, 5), (6, 3, 7, 4), (2, 7, 3, 8)]
+CODES = {
+    "3_1": RIGHT_TREFOIL,
+    "m3_1": [(1, 4, 2, 5), (3, 6, 4, 1), (5, 2, 6, 3)],
+    "4_1": [(4, 2, 5, 1), (8, 6, 1, 5), (6, 3, 7, 4), (2, 7, 3, 8)],
+    **{name: diagram([knot(name).vertices]).pd_code() for name in ("5_2", "6_3", "7_7", "8_19", "9_42")},
+}
 
 
-@pytest.mark.parametrize(
-    ("code", "name"),
-    [(RIGHT_TREFOIL, "3_1"), (LEFT_TREFOIL, "m3_1"), (FIGURE_EIGHT, "4_1")],
-    ids=["3_1", "m3_1", "4_1"],
-)
-def test_small_codes(code: list[tuple[int, int, int, int]], name: str) -> None:
-    assert knot_invariants(diagram_knot(code).vertices) == knot_invariants(knot(name).vertices)
-
-
-@pytest.mark.parametrize("name", ["5_2", "6_3", "7_7", "8_19", "9_42"])
-def test_codes_read_off_other_polygons(name: str) -> None:
-    curve = knot(name)
-    code = diagram([curve.vertices]).pd_code()
-    assert knot_invariants(diagram_knot(code).vertices) == knot_invariants(curve.vertices)
+@pytest.mark.parametrize("name", CODES)
+def test_small_codes_and_codes_read_off_other_polygons(name: str) -> None:
+    assert knot_invariants(diagram_knot(CODES[name]).vertices) == knot_invariants(knot(name).vertices)
 
 
 LONG = ("ochiai-4", "haken", "ochiai-2", "ochiai-3")
@@ -86,18 +79,14 @@ def test_bad_codes_are_one_sentence(code: list[tuple[int, int, int, int]], said:
         diagram_knot(code)
 
 
-def test_codes_that_fall_apart_and_nugatory_crossings() -> None:
+def test_links_codes_that_fall_apart_and_nugatory_crossings() -> None:
+    link = diagram_knot([(6, 1, 7, 2), (8, 3, 5, 4), (2, 5, 3, 6), (4, 7, 1, 8)])
+    assert len(link.components) == 2
+    assert abs(quick_invariants(link).linking[0]) == 2
     two = diagram_knot([*RIGHT_TREFOIL, *[tuple(10 + e for e in crossing) for crossing in RIGHT_TREFOIL]])
     assert [knot_invariants(part) for part in two.components] == 2 * [knot_invariants(knot("3_1").vertices)]
     assert np.ptp(two.vertices, axis=0).max() == pytest.approx(2.0)
     assert len(diagram_knot([(1, 2, 2, 3), (3, 1, 4, 4)])) == 12
-
-
-def test_links() -> None:
-    code = [(6, 1, 7, 2), (8, 3, 5, 4), (2, 5, 3, 6), (4, 7, 1, 8)]
-    curve = diagram_knot(code)
-    assert len(curve.components) == 2
-    assert abs(quick_invariants(curve).linking[0]) == 2
 
 
 @pytest.mark.parametrize(

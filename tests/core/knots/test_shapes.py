@@ -8,25 +8,15 @@ import numpy as np
 import pytest
 from curve_checks import strand_distance
 from families import family
-from jones import jones
-from knot_diagrams import pairwise_linking, simplified
 from knot_type import knot_invariants
 from mobius_flow.core import Curve, CurveError, knots
 from mobius_flow.core.collision import is_free
 from mobius_flow.core.curve.fourier import FourierCurve
 from mobius_flow.core.curve.refine import subdivide
-from mobius_flow.core.knots import ALIASES, KNOTS, UnknownKnotError, knot, smooth_knot
+from mobius_flow.core.knots import ALIASES, KNOTS, UnknownKnotError, smooth_knot
 from mobius_flow.core.knots.inscribed import equal_steps, is_isotopic
 from mobius_flow.core.knots.shapes import FILE, QUANTUM, least_energies, shapes
 from mobius_flow.lab.smooth.rest import energy_of
-
-_LINES = (Path(__file__).parent / "known_knots.txt").read_text(encoding="utf-8").splitlines()
-KNOWN = {line.split()[0]: line.split()[1:] for line in _LINES if not line.startswith("#")}
-LINKS = [name for name in KNOTS if name not in KNOWN]
-
-
-def integers(text: str) -> tuple[int, ...]:
-    return tuple(map(int, text.split(",")))
 
 
 def test_every_name_of_the_table_has_a_shape() -> None:
@@ -34,29 +24,10 @@ def test_every_name_of_the_table_has_a_shape() -> None:
     assert FILE.stat().st_size < 80_000
 
 
-@pytest.mark.parametrize("name", family(KNOWN))
-def test_every_shape_has_the_type_of_its_name(name: str) -> None:
-    """Knot Floer homology and the Jones polynomial together tell all knots of the table apart, but for four pairs."""
-    genus, fibered, tau, alexander, lowest, coefficients = KNOWN[name]
-    points = smooth_knot(name).vertices
-    found = knot_invariants(points)
-    assert found.alexander == integers(alexander)
-    assert (found.genus, found.fibered, found.tau) == (int(genus), fibered == "yes", int(tau))
-    expected = {2 * (int(lowest) + i): c for i, c in enumerate(integers(coefficients)) if c}
-    assert jones(simplified([points])) == expected
-
-
-@pytest.mark.parametrize("name", family(LINKS, every=4))
-def test_every_link_has_the_type_of_its_name(name: str) -> None:
-    found, expected = (smooth_knot(name), knot(name))
-    assert pairwise_linking(found.components) == pairwise_linking(expected.components)
-    assert jones(simplified(found.components)) == jones(simplified(expected.components))
-    for part, other in zip(found.components, expected.components, strict=True):
-        assert knot_invariants(part) == knot_invariants(other)
-
-
 @pytest.mark.parametrize("name", family(KNOTS))
-def test_shapes_are_flat_and_fill_their_room(name: str) -> None:
+def test_shapes_are_flat_fill_their_room_and_have_little_more_than_the_least_energy(name: str) -> None:
+    least, _ = least_energies()[name]
+    assert least * (1.0 - 1e-6) < energy_of(shapes()[name]) < 1.03 * least
     curve = smooth_knot(name)
     widths = np.ptp(curve.vertices, axis=0)
     assert widths.max() == pytest.approx(2.0, abs=0.03)
@@ -68,25 +39,16 @@ def test_shapes_are_flat_and_fill_their_room(name: str) -> None:
     assert strand_distance(curve, apart=8) > 0.028
 
 
-@pytest.mark.parametrize("name", family(KNOTS))
-def test_shapes_have_little_more_than_the_least_energy(name: str) -> None:
-    least, _ = least_energies()[name]
-    assert least * (1.0 - 1e-6) < energy_of(shapes()[name]) < 1.03 * least
-
-
-def test_other_spellings_and_mirror_images() -> None:
+def test_other_spellings_mirror_images_and_names_without_a_shape() -> None:
     assert np.array_equal(smooth_knot("Trefoil Knot").vertices, smooth_knot("3_1").vertices)
     assert np.array_equal(smooth_knot("m m trefoil").vertices, smooth_knot("3_1").vertices)
     assert np.array_equal(smooth_knot("m3_1").vertices, smooth_knot("3_1").vertices * [1, 1, -1])
     assert knot_invariants(smooth_knot("m3_1").vertices).tau == -1
     assert all(len(smooth_knot(name)) >= 64 for name, meant in ALIASES.items() if "#" not in meant)
-
-
-@pytest.mark.parametrize("vertices", [40, 101, 1000])
-def test_the_number_of_vertices_is_the_one_asked_for(vertices: int) -> None:
-    for name in ("3_1", "L6n1", "0_1"):
-        assert len(smooth_knot(name, vertices)) == vertices
-    assert knot_invariants(smooth_knot("3_1", vertices).vertices) == knot_invariants(smooth_knot("3_1").vertices)
+    missing = dict.fromkeys(("granny", "T(2,3)", "goeritz"), "none of the table")
+    for name, said in (missing | {"trefol": "did you mean trefoil", "": "known are"}).items():
+        with pytest.raises(UnknownKnotError, match=re.escape(said)):
+            smooth_knot(name)
 
 
 def test_coarse_shapes_are_the_right_knot_or_refused() -> None:
@@ -107,26 +69,6 @@ def test_a_motion_through_itself_is_not_isotopic() -> None:
     curve, mirrored = smooth_knot("3_1"), smooth_knot("m3_1")
     assert is_isotopic(curve, equal_steps(curve), curve, equal_steps(curve))
     assert not is_isotopic(curve, equal_steps(curve), mirrored, equal_steps(mirrored))
-
-
-@pytest.mark.parametrize(
-    ("name", "said"),
-    [
-        ("trefol", "did you mean trefoil"),
-        ("granny", "none of the table"),
-        ("T(2,3)", "none of the table"),
-        ("goeritz", "none of the table"),
-        ("", "known are"),
-    ],
-)
-def test_names_without_a_shape(name: str, said: str) -> None:
-    with pytest.raises(UnknownKnotError, match=re.escape(said)):
-        smooth_knot(name)
-
-
-def test_too_many_vertices_of_shapes() -> None:
-    with pytest.raises(CurveError, match="too many"):
-        smooth_knot("3_1", 10**9)
 
 
 def sharpest(curve):

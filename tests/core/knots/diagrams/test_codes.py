@@ -11,7 +11,6 @@ from mobius_flow.core.knots.diagrams import Diagram, diagram_of, jones, realized
 from mobius_flow.core.knots.diagrams.codes import MAX_CROSSINGS, diagram_from_code, gauss_text, is_code
 from spherogram import Link
 
-TREFOIL = {2: 1, 6: 1, 8: -1}
 TREFOILS = [
     "PD[X[1,5,2,4],X[3,1,4,6],X[5,3,6,2]]",
     "PD: [(1,5,2,4),(3,1,4,6),(5,3,6,2)]",
@@ -57,49 +56,29 @@ HOPFS = [
 HOPF = ((0, True), (1, False)), ((0, False), (1, True))
 
 
-@pytest.mark.parametrize("code", TREFOILS)
-def test_spellings_of_the_trefoil(code: str) -> None:
+SPELLINGS = {
+    **{code: (1, {2: 1, 6: 1, 8: -1}) for code in TREFOILS},
+    **{code: (2, {1: -1, 5: -1}) for code in HOPFS},
+    **{code: (1, {0: 1}) for code in ("PD[]", "DT: []", "Gauss: []", "Gauss: 1 -1", "PD[X[2,1,1,2]]", "DT: 2")},
+}
+
+
+@pytest.mark.parametrize("code", SPELLINGS)
+def test_spellings_of_the_trefoil_the_hopf_link_and_unknots(code: str) -> None:
     assert is_code(code)
-    assert jones(diagram_from_code(code)) == TREFOIL
-
-
-@pytest.mark.parametrize("code", HOPFS)
-def test_spellings_of_the_hopf_link(code: str) -> None:
     diagram = diagram_from_code(code)
-    assert len(diagram.passes) == 2
-    assert jones(diagram) == {1: -1, 5: -1}
+    assert (len(diagram.passes), jones(diagram)) == SPELLINGS[code]
 
 
-@pytest.mark.parametrize(
-    "diagram",
-    [
-        Diagram(((),), ()),
-        Diagram(((), ()), ()),
-        Diagram((*HOPF, ()), (1, 1)),
-        Diagram(((), *HOPF), (1, 1)),
-        Diagram(HOPF, (-1, -1)),
-    ],
-)
-def test_gauss_codes_come_back_with_their_circles(diagram: Diagram) -> None:
-    assert diagram_from_code(gauss_text(diagram)) == diagram
-
-
-@pytest.mark.parametrize("code", ["[1 -2] / [2 -1] / []", "[] / [1 -2] / [2 -1]"])
-def test_circles_do_not_matter_to_codes_without_signs(code: str) -> None:
-    whole, hopf = diagram_from_code(f"Gauss: {code}"), diagram_from_code("Gauss: 1 -2 / 2 -1")
-    assert sorted(piece.crossings for piece in whole.pieces()) == [0, 2]
-    assert whole.signs == hopf.signs
-
-
-@pytest.mark.parametrize("code", ["PD[]", "DT: []", "Gauss: []", "Gauss: 1 -1", "PD[X[2,1,1,2]]", "DT: 2"])
-def test_unknots(code: str) -> None:
-    assert jones(diagram_from_code(code)) == {0: 1}
-
-
-@pytest.mark.parametrize("code", ["[(4,6,8,2)]", "[(4,8,10,2,6)]", "[(6,8),(2,4)]", "[(4,8,-12,2,-14,-16,-6,-10)]"])
-def test_dt_codes_are_read_as_spherogram_does(code: str) -> None:
-    theirs = diagram_of(Link(f"DT: {code}").PD_code())
-    assert jones(diagram_from_code(f"DT: {code}")) == jones(theirs)
+def test_gauss_codes_come_back_with_their_circles_and_find_them_without_signs() -> None:
+    for parts, signs in (((),), ()), (((), ()), ()), ((*HOPF, ()), (1, 1)), (((), *HOPF), (1, 1)), (HOPF, (-1, -1)):
+        diagram = Diagram(parts, signs)
+        assert diagram_from_code(gauss_text(diagram)) == diagram
+    hopf = diagram_from_code("Gauss: 1 -2 / 2 -1")
+    for code in ("[1 -2] / [2 -1] / []", "[] / [1 -2] / [2 -1]"):
+        whole = diagram_from_code(f"Gauss: {code}")
+        assert sorted(piece.crossings for piece in whole.pieces()) == [0, 2]
+        assert whole.signs == hopf.signs
 
 
 @pytest.mark.parametrize("name", ["K3a1", "K11n34", "K12n242", "L8n1", "L10a100"])
@@ -112,6 +91,12 @@ def test_codes_that_spherogram_and_snappy_write(name: str) -> None:
     mirrored = {-power: c for power, c in theirs.items()}
     for code in (parts, link.DT_code(DT_alpha=True), f"DT:{parts}"):
         assert jones(diagram_from_code(str(code))) in (theirs, mirrored)
+
+
+@pytest.mark.parametrize("code", ["[(4,6,8,2)]", "[(4,8,10,2,6)]", "[(6,8),(2,4)]", "[(4,8,-12,2,-14,-16,-6,-10)]"])
+def test_dt_codes_are_read_as_spherogram_does(code: str) -> None:
+    theirs = diagram_of(Link(f"DT: {code}").PD_code())
+    assert jones(diagram_from_code(f"DT: {code}")) == jones(theirs)
 
 
 @pytest.mark.parametrize("name", [name for name in KNOTS if name != "0_1"][::7])

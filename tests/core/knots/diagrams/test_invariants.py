@@ -1,13 +1,12 @@
 """Invariants of diagrams against independent computations, and against tables."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from braid_words import burau_alexander
 from families import family
 from hard_curves import hard_unknot, spiral
 from jones import jones as slow_jones
+from known_knots import KNOWN
 from mobius_flow.core import Curve, CurveError
 from mobius_flow.core.knots import KNOTS, braid_word, knot, scramble, torus_knot
 from mobius_flow.core.knots.braids import braid_diagram
@@ -26,21 +25,17 @@ from mobius_flow.core.knots.diagrams.invariants import FIELDS, MAX_CROSSINGS, al
 from shapes import hopf_link, regular_polygon
 from spherogram import Link
 
-_KNOWN = Path(__file__).parents[1] / "known_knots.txt"
-ROWS = {row[0]: row for line in _KNOWN.read_text().splitlines() if line[0] != "#" and (row := line.split())}
-CIRCLE = Diagram(((),), ())
+CIRCLE, FIELD = Diagram(((),), ()), FIELDS[0]
 # Signatures that are not −2τ, from KnotInfo, for the handedness of the table.
 SIGNATURES = {"9_42": 2, "10_132": 0, "10_136": 2, "10_139": -6, "10_145": 2, "10_152": -6, "10_154": -4, "10_161": -4}
 
 
-@pytest.mark.parametrize("name", family(ROWS))
+@pytest.mark.parametrize("name", family(KNOWN))
 def test_invariants_of_the_table(name: str) -> None:
     diagram = braid_diagram(KNOTS[name])
-    _, _, _, tau, polynomial, lowest, coefficients = ROWS[name]
-    assert alexander(diagram) == tuple(map(int, polynomial.split(",")))
-    known = {2 * (int(lowest) + k): int(c) for k, c in enumerate(coefficients.split(",")) if c != "0"}
-    assert jones(diagram) == known
-    assert signature(diagram) == SIGNATURES.get(name, -2 * int(tau))
+    assert alexander(diagram) == KNOWN[name].alexander
+    assert jones(diagram) == KNOWN[name].jones
+    assert signature(diagram) == SIGNATURES.get(name, -2 * KNOWN[name].tau)
 
 
 @pytest.mark.parametrize("name", ["L2a1", "L5a1", "L6a4", "L7n2", "3_1#m4_1", "T(3,4)", "braid(1,1,3,3)", "braid(1,3)"])
@@ -51,11 +46,19 @@ def test_links_have_the_jones_polynomial_of_slow_sums(name: str) -> None:
     assert jones(diagram) == slow_jones(link)
 
 
-@pytest.mark.parametrize("word", [(1, 2, 1, -3, 2, 2, 1), (1, 1, 2, -1, 3, 2, -3, 1, 2, 2, -1)])
+WORDS = [(1, 2, 1, -3, 2, 2, 1), (1, 1, 2, -1, 3, 2, -3, 1, 2, 2, -1), (1, 1, 1), (1, -2) * 5, (1, 2, 3, -4) * 9]
+LONG = [(1, -2) * 25, (1, -2, 3) * 19, (1,) * 59]  # with coefficients above half a prime
+
+
+@pytest.mark.parametrize("word", [*WORDS, *LONG])
 def test_alexander_polynomials_of_any_word(word: tuple[int, ...]) -> None:
-    diagram = braid_diagram(word)
+    """Against another matrix; |Δ(−1)| also by elimination modulo a prime."""
+    diagram, expected = braid_diagram(word), burau_alexander(word, max(map(abs, word)) + 1)
     assert len(diagram.passes) == 1
-    assert alexander(diagram) == burau_alexander(word, max(map(abs, word)) + 1)
+    assert alexander(diagram) == expected
+    value = int(alexander_values(diagram, np.array([FIELD.prime - 1]), FIELD)[0])
+    determinant = abs(sum((-1) ** k * c for k, c in enumerate(expected))) % FIELD.prime
+    assert value in (determinant, FIELD.prime - determinant)
 
 
 @pytest.mark.parametrize("name", ["3_1", "m3_1", "4_1", "6_2", "9_42"])
@@ -102,13 +105,6 @@ def test_what_is_too_large_is_not_computed() -> None:
     assert jones(braid_diagram(tuple(range(1, 24)) * 24)) is None
 
 
-@pytest.mark.parametrize("word", [(1, -2) * 25, (1, -2, 3) * 19, (1,) * 59])
-def test_coefficients_above_half_a_prime(word: tuple[int, ...]) -> None:
-    assert alexander(braid_diagram(word)) == burau_alexander(word, max(map(abs, word)) + 1)
-
-
-FIELD = FIELDS[0]
-
 DETERMINANTS = {"0_1": 1, "3_1": 3, "4_1": 5, "5_1": 5, "5_2": 7, "6_1": 9, "6_2": 11, "6_3": 13, "7_7": 21, "8_19": 3}
 
 
@@ -118,18 +114,14 @@ def test_determinants(name):
     assert min(value, FIELD.prime - value) == DETERMINANTS[name]
 
 
-def test_trefoil_at_a_root_of_unity():
+def test_quick_invariants_tell_knots_apart_and_are_kept_by_scrambles_and_turns():
     """Δ = t − 1 + t⁻¹ is −2 at a cube root of unity."""
     assert quick_invariants(knot("3_1")).alexander[0][1] == 2
-
-
-def test_knots_of_the_same_determinant_differ():
     assert quick_invariants(knot("4_1")) != quick_invariants(knot("5_1"))
     assert quick_invariants(knot("3_1")) != quick_invariants(knot("8_19"))
     assert not quick_invariants(torus_knot(3, 5)).is_trivial  # determinant 1
-
-
-def test_scrambles_and_turns_keep_it():
+    assert [abs(x) for x in quick_invariants(hopf_link(20)).linking] == [1]
+    assert quick_invariants(knot("L6a4")).linking == (0, 0, 0)
     curve = knot("6_2")
     expected = quick_invariants(curve)
     assert quick_invariants(scramble(curve, seed=5)) == expected
@@ -145,26 +137,10 @@ def test_unknots(curve):
     assert quick_invariants(curve).is_trivial
 
 
-def test_linking_numbers():
-    assert [abs(x) for x in quick_invariants(hopf_link(20)).linking] == [1]
-    assert quick_invariants(knot("L6a4")).linking == (0, 0, 0)
-
-
-def test_strands_that_nearly_touch_are_told_apart():
+def test_strands_that_nearly_touch_are_told_apart_and_no_others():
     gap = 1e-12
     curve = Curve([[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.0, gap], [0.0, 1.0, gap]])
     assert quick_invariants(curve).is_trivial
-
-
-def test_curves_that_touch_themselves_have_none():
     once = knot("3_1").vertices
     with pytest.raises(CurveError, match="no view of the curve shows which one is in front"):
         quick_invariants(Curve(np.concatenate([once, once])))
-
-
-@pytest.mark.parametrize("word", [(1, 1, 1), (1, -2) * 5, (1, 2, 3, -4) * 9])
-def test_determinants_by_elimination_are_those_of_burau(word):
-    """|Δ(−1)| by elimination modulo the prime, against the polynomial from another matrix."""
-    value = int(alexander_values(braid_diagram(word), np.array([FIELD.prime - 1]), FIELD)[0])
-    expected = sum((-1) ** k * c for k, c in enumerate(burau_alexander(word, max(map(abs, word)) + 1)))
-    assert min(value, FIELD.prime - value) == abs(expected) % FIELD.prime

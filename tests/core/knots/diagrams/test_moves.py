@@ -45,6 +45,9 @@ def test_reidemeisters_moves_undo_loops_and_bigons_but_no_clasps() -> None:
     assert reduced(bigon) == Diagram(((), ()), ())
     hopf = braid_diagram((1, 1))
     assert reduced(hopf) == hopf
+    # two nugatory crossings look like a bigon that goes round the sphere: a strand over another one twice, equal signs
+    nugatory = diagram_from_code("Gauss: O1-O2-O4-U3-O5-U4-O3-U5-U2-U1-")
+    assert jones(reduced(nugatory)) == jones(nugatory) == jones(braid_diagram((-1, -1, -1)))
 
 
 def test_bigons_are_undone_whichever_way_their_strands_run() -> None:
@@ -53,12 +56,6 @@ def test_bigons_are_undone_whichever_way_their_strands_run() -> None:
     opposite = diagram_from_code("Gauss: O1+O2-U5-O4-U3-O5-U2-U1+U4-O3-")  # a trefoil, a strand of it under another
     assert reduced(opposite).crossings == 3
     assert jones(reduced(opposite)) == jones(braid_diagram((-1, -1, -1)))
-
-
-def test_what_hangs_between_two_nugatory_crossings_stays() -> None:
-    """They look like a bigon that goes round the sphere: a strand over another one twice, with equal signs."""
-    diagram = diagram_from_code("Gauss: O1-O2-O4-U3-O5-U4-O3-U5-U2-U1-")
-    assert jones(reduced(diagram)) == jones(diagram) == jones(braid_diagram((-1, -1, -1)))
 
 
 @pytest.mark.parametrize("seed", [1, 3, 5])
@@ -74,12 +71,6 @@ def test_factors(name: str, sizes: list[int]) -> None:
     assert sorted(factor.crossings for factor in factors(piece)) == sizes
 
 
-def test_pieces_are_what_no_crossing_joins() -> None:
-    whole = braid_diagram((1, 1, 3, 3, 3))
-    assert sorted((len(piece.passes), piece.crossings) for piece in whole.pieces()) == [(1, 3), (2, 2)]
-    assert [piece.passes for piece in Diagram(((), ()), ()).pieces()] == [((),), ((),)]
-
-
 def test_alternating_diagrams_have_the_least_number_of_crossings() -> None:
     assert is_least(braid_diagram((1, -2, 1, -2)))
     assert is_least(Diagram(((),), ()))
@@ -90,6 +81,16 @@ def test_alternating_diagrams_have_the_least_number_of_crossings() -> None:
     assert not is_least(cut)
 
 
+def test_faces_tell_what_is_planar_and_pieces_what_no_crossing_joins() -> None:
+    trefoil = braid_diagram((1, 1, 1))
+    assert len(trefoil.faces) == 5
+    assert trefoil.is_planar
+    assert not Diagram(trefoil.passes, (1, 1, -1)).is_planar
+    whole = braid_diagram((1, 1, 3, 3, 3))
+    assert sorted((len(piece.passes), piece.crossings) for piece in whole.pieces()) == [(1, 3), (2, 2)]
+    assert [piece.passes for piece in Diagram(((), ()), ()).pieces()] == [((),), ((),)]
+
+
 @pytest.mark.parametrize("letter", [3, -3])
 def test_nugatory_crossings_are_left_out(letter: int) -> None:
     plain, with_one = braid_diagram((1, 1, 1, 2, 2, 2)), braid_diagram((1, 1, 1, 2, 2, 2, letter))
@@ -98,13 +99,6 @@ def test_nugatory_crossings_are_left_out(letter: int) -> None:
     between = braid_diagram((1, 1, 1, 2, -3, -3, -3))
     assert jones(without_nugatory(between)) == jones(between)
     assert without_nugatory(between).crossings == 6
-
-
-def test_faces_tell_what_is_planar() -> None:
-    trefoil = braid_diagram((1, 1, 1))
-    assert len(trefoil.faces) == 5
-    assert trefoil.is_planar
-    assert not Diagram(trefoil.passes, (1, 1, -1)).is_planar
 
 
 def test_views_of_flat_curves_and_of_strands_in_contact() -> None:
