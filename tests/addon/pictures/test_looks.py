@@ -56,6 +56,17 @@ def test_nodes_are_linked_and_a_single_component_has_its_gradient(look):
     assert scene.camera.data.dof.use_dof
 
 
+def test_files_with_a_stage_are_saved_without_a_warning(tmp_path, capfd):
+    add_trefoil().data.bevel_depth = 0.1
+    bpy.ops.curve.mobius_flow_set_up_stage()
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "staged.blend"))
+    said = "".join(capfd.readouterr())
+    assert "staged.blend" in said
+    assert "clipboard" not in said, (
+        "assets saved by bpy.data.libraries.write() are marked as copied; save them as a file"
+    )
+
+
 def test_colours_run_along_a_component_by_its_length_not_by_its_points():
     crowded = regular_polygon(400).vertices[np.r_[0:200, 200:400:20]]
     composed(Curve(crowded), "PAPER")
