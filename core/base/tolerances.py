@@ -56,4 +56,4 @@ tests/core/proof/test_filter.py
 """
 
 SIEVE_UNDERFLOW = 1e-290
-"""What products may lose below 2⁻¹⁰²², with much to spare.  tests/core/proof/test_trajectory.py"""
+"""What products may lose below 2⁻¹⁰²², with much to spare.  tests/core/proof/test_files.py"""

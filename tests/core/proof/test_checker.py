@@ -12,11 +12,12 @@ from pathlib import Path
 import degenerate_motions
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, Mesh, Task, Trajectory, relax
+from mobius_flow.core import Curve, Task, Trajectory, relax
 from mobius_flow.core.driver import RelaxOptions
 from mobius_flow.core.knots import knot
-from mobius_flow.core.proof import checker, verify
+from mobius_flow.core.proof import checker
 from solids import box, rod
+from trajectory_files import checked, trajectory
 
 CHECKER = Path(checker.__file__)
 
@@ -47,10 +48,10 @@ def ring():
 def test_runs_are_accepted_forwards_and_backwards(name, tmp_path):
     task, settings = RUNS[name]
     task = task()
-    trajectory = Trajectory(obstacles=task.obstacles)
+    record = Trajectory(obstacles=task.obstacles)
     for iterate in relax(task, RelaxOptions(**settings)):
-        trajectory.add(iterate)
-    arrays = trajectory.arrays()
+        record.add(iterate)
+    arrays = record.arrays()
     last = sum(key.startswith("stage_") for key in arrays) - 1
     backwards = {}
     for key, array in arrays.items():
@@ -58,26 +59,21 @@ def test_runs_are_accepted_forwards_and_backwards(name, tmp_path):
         turned = array[::-1] if kind == "stage" else array
         backwards[f"{kind}_{last - int(number):03d}" if kind.startswith(("stage", "component")) else key] = turned
     for each in (arrays, backwards):
-        np.savez_compressed(tmp_path / "T.npz", **each)
-        verdict = verify(tmp_path / "T.npz")  # and the checker, see above
+        verdict = checked(tmp_path, each, np.savez_compressed)  # by the checker alone, too, see above
         assert verdict.accepted, str(verdict)
 
 
 def test_crossings_that_were_tuned_to_be_overlooked_are_refused(tmp_path):
     rng = np.random.default_rng(51)
-    arcs = degenerate_motions.ARCS
     for _ in range(5):
-        frames = np.stack(degenerate_motions.tied_windows(rng))
-        mesh = Mesh((2,) * arcs, closed=(False,) * arcs)
-        arrays = {"component_sizes_000": np.array(mesh.component_sizes), "component_closed_000": np.array(mesh.closed)}
-        np.savez(tmp_path / "T.npz", stage_000=frames, **arrays)
-        assert not verify(tmp_path / "T.npz").accepted
+        frames = degenerate_motions.tied_windows(rng)
+        assert not checked(tmp_path, trajectory(([2] * degenerate_motions.ARCS, frames), opened=True)).accepted
 
 
 def test_the_command_says_which_and_why(tmp_path):
     square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
-    np.savez(tmp_path / "good.npz", stage_000=np.stack([square, 2 * square]), component_sizes_000=[4])
-    np.savez(tmp_path / "bad.npz", stage_000=np.stack([square, -square]), component_sizes_000=[4])
+    np.savez(tmp_path / "good.npz", **trajectory([square, 2 * square]))
+    np.savez(tmp_path / "bad.npz", **trajectory([square, -square]))
     for names, status in ((["good"], 0), (["good", "bad"], 1), ([], 1)):
         paths = [f"{name}.npz" for name in names]
         done = subprocess.run([sys.executable, "-I", CHECKER, *paths], cwd=tmp_path, capture_output=True, text=True)

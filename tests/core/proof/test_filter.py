@@ -1,11 +1,15 @@
 """The floating-point filter allows for rounding and clearance, and looks at everything; see `test_decisions`, too."""
 
+from itertools import product
+
 import numpy as np
+import pytest
+from exact_decisions import meet_triangle
 from mobius_flow.core import Mesh
 from mobius_flow.core.base.types import IntArray
 from mobius_flow.core.proof import filter as leg_filter
 from motions import Array
-from shapes import torus_trefoil
+from shapes import regular_polygon, torus_trefoil
 
 
 def doubtful_pairs(start: Array, end: Array, heads: IntArray, clearance: float = 0.0) -> Array:
@@ -20,6 +24,10 @@ def test_clearance() -> None:
     assert doubtful_pairs(link, link, heads).size == 0
     assert doubtful_pairs(link, link, heads, clearance=1e-7).size == 0
     assert doubtful_pairs(link, link, heads, clearance=1e-6).size > 0
+    wall = square[None, :3] + np.array([0.3, 0.2, -1e-6])
+    for clearance in (0.0, 1e-7, 1e-6):
+        batches = leg_filter.doubtful_pairs(square, square, Mesh((4,)).heads, clearance, wall)
+        assert any(len(batch) == 3 for batch in batches) == (clearance == 1e-6)
 
 
 def test_an_end_on_an_edge_is_doubtful_whichever_way_is_rounded() -> None:
@@ -43,3 +51,30 @@ def test_all_pairs_are_looked_at() -> None:
     points = np.zeros((30, 3))
     pairs = doubtful_pairs(points, points, Mesh((30,)).heads)
     assert pairs.shape == (4, 30 * 27 // 2)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_overlapping_boxes_are_found_exactly_once(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    low, others = (rng.integers(0, 9, size=(n, 3)).astype(float) for n in (30, 50))
+    first, second = (low, low + rng.integers(0, 3, size=low.shape)), (others, others + rng.integers(0, 3, size=(50, 3)))
+    found = [
+        pair for i, j in leg_filter.overlapping(first, second) for pair in zip(i.tolist(), j.tolist(), strict=True)
+    ]
+    meet = (first[0][:, None] <= second[1]).all(axis=2) & (second[0] <= first[1][:, None]).all(axis=2)
+    assert len(found) == len(set(found))
+    assert set(found) == set(zip(*(k.tolist() for k in np.nonzero(meet)), strict=True))
+
+
+@pytest.mark.parametrize("n", [3, 16, 40])
+def test_filters_lose_no_edge_that_meets_a_triangle(n: int) -> None:
+    """All edges against all triangles, exactly, with motions that graze and slide."""
+    rng, curve = np.random.default_rng(n), regular_polygon(n)
+    start, end = (curve.vertices + rng.integers(-2, 3, size=(n, 3)) for _ in range(2))
+    triangles = rng.integers(-2, 3, size=(6, 3, 3)).astype(float)
+    found = leg_filter.doubtful_pairs(start, end, curve.mesh.heads, triangles=triangles)
+    doubtful = {tuple(pair) for batch in found for pair in batch.T.tolist()}
+    for tail, k in product(range(n), range(6)):
+        head = int(curve.mesh.heads[tail])
+        if meet_triangle(*([*points[[tail, head]], *triangles[k]] for points in (start, end))):
+            assert (tail, head, k) in doubtful

@@ -14,7 +14,8 @@ from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.collision import check_embedded
 from mobius_flow.core.knots import knot
 from mobius_flow.core.knots.diagrams import quick_invariants
-from mobius_flow.core.proof import verify
+from mobius_flow.core.proof import Verdict
+from trajectory_files import checked, trajectory
 
 Stages = list[tuple[Mesh, FloatArray]]
 
@@ -37,19 +38,16 @@ SEEDS = range(5)
 def run(name: str) -> Stages:
     """The stages of a run."""
     kind, options = RUNS[name]
-    trajectory = Trajectory()
+    record = Trajectory()
     for iterate in relax(knot(kind), options):
-        trajectory.add(iterate)
-    arrays = trajectory.arrays()
+        record.add(iterate)
+    arrays = record.arrays()
     count = len(arrays) // 2
     return [(Mesh(tuple(arrays[f"component_sizes_{k:03d}"].tolist())), arrays[f"stage_{k:03d}"]) for k in range(count)]
 
 
-def write(path: Path, stages: Stages) -> Path:
-    arrays = {f"stage_{k:03d}": frames for k, (_, frames) in enumerate(stages)}
-    sizes = {f"component_sizes_{k:03d}": np.array(mesh.component_sizes) for k, (mesh, _) in enumerate(stages)}
-    np.savez(path, **arrays, **sizes)
-    return path
+def verdict_on(folder: Path, stages: Stages) -> Verdict:
+    return checked(folder, trajectory(*((mesh.component_sizes, frames) for mesh, frames in stages)))
 
 
 def finger(curve: Curve, rng: np.random.Generator) -> FloatArray:
@@ -92,7 +90,7 @@ def mutated(stages: Stages, rng: np.random.Generator) -> tuple[Stages, int, int]
 @pytest.mark.parametrize("name", RUNS)
 def test_the_runs_themselves_are_accepted(tmp_path: Path, name: str) -> None:
     stages = run(name)
-    verdict = verify(write(tmp_path / "T.npz", stages))
+    verdict = verdict_on(tmp_path, stages)
     assert verdict.accepted, str(verdict)
     assert verdict.legs == sum(len(frames) - 1 for _, frames in stages) > 2
     assert (len(stages) > 1) == (RUNS[name][1].mesh == "adaptive")
@@ -102,10 +100,6 @@ def test_the_runs_themselves_are_accepted(tmp_path: Path, name: str) -> None:
 @pytest.mark.parametrize("name", RUNS)
 def test_a_strand_moved_through_another_is_refused(tmp_path: Path, name: str, seed: int) -> None:
     stages, stage, frame = mutated(run(name), np.random.default_rng([seed, len(name)]))
-    verdict = verify(write(tmp_path / "T.npz", stages))
+    verdict = verdict_on(tmp_path, stages)
     assert (verdict.accepted, verdict.stage, verdict.frame) == (False, stage, frame)
     assert "meet" in verdict.reason
-
-
-def test_there_are_fifty() -> None:
-    assert len(RUNS) * len(SEEDS) >= 50

@@ -8,30 +8,28 @@ import pytest
 from exact_decisions import meet
 from mobius_flow.core import Mesh
 from mobius_flow.core.base.types import FloatArray
-from mobius_flow.core.proof import verify
+from mobius_flow.core.proof import Verdict
 from mobius_flow.core.proof.checker import RefusedError, straightened
+from trajectory_files import checked, trajectory
 
 DENORMAL = 5e-324
 UNITS = (DENORMAL, 2.0**-52, 2.0**-20)
 
 
-def write(path: Path, bent: FloatArray, straight: FloatArray, strand: FloatArray) -> Path:
-    np.savez(
-        path,
-        stage_000=np.concatenate([bent, strand])[None],
-        component_sizes_000=np.array([len(bent), len(strand)]),
-        stage_001=np.concatenate([straight, strand])[None],
-        component_sizes_001=np.array([len(straight), len(strand)]),
-    )
-    return path
+def changed(folder: Path, bent: FloatArray, strand: FloatArray) -> Verdict:
+    """On a polygon that loses vertex 1 beside a strand."""
+    stages = [
+        ([len(part), len(strand)], [np.concatenate([part, strand])]) for part in (bent, np.delete(bent, 1, axis=0))
+    ]
+    return checked(folder, trajectory(*stages))
 
 
-def test_a_change_too_small_for_doubles_is_checked(tmp_path: Path) -> None:
-    """Half of the smallest number is the way from the bent edge to the straight one, and a strand is in between."""
-    u = DENORMAL
-    bent = np.array([[-1, 0, 0], [0, 0, 0], [1, u, 0], [1, 5, 0], [-1, 5, 0]], dtype=float)
-    strand = np.array([[0, 0, -1], [0, u, 3], [0, -5, 3], [0, -5, -1]], dtype=float)
-    verdict = verify(write(tmp_path / "T.npz", bent, np.delete(bent, 1, axis=0), strand))
+@pytest.mark.parametrize(("y", "u"), [(0.0, DENORMAL), (1.0, 2.0**-52)])
+def test_a_change_too_small_for_doubles_is_checked(tmp_path: Path, y: float, u: float) -> None:
+    """Half of a last place is the way from the bent edge to the straight one, and a strand is in between."""
+    bent = np.array([[-1, y, 0], [0, y, 0], [1, y + u, 0], [1, 5, 0], [-1, 5, 0]], dtype=float)
+    strand = np.array([[0, y, -1], [0, y + u, 3], [0, -5, 3], [0, -5, -1]], dtype=float)
+    verdict = changed(tmp_path, bent, strand)
     assert not verdict.accepted
     assert "meet" in verdict.reason
 
@@ -39,7 +37,7 @@ def test_a_change_too_small_for_doubles_is_checked(tmp_path: Path) -> None:
 def test_the_smallest_doubles_have_last_places_that_are_as_large(tmp_path: Path) -> None:
     bent = DENORMAL * np.array([[-1000.0, 0, 0], [0, 3, 0], [1000, 0, 0], [0, 1000, 0]])
     strand = DENORMAL * np.array([[5000.0, 0, 0], [6000, 0, 0], [5000, 1000, 0]])
-    assert verify(write(tmp_path / "T.npz", bent, np.delete(bent, 1, axis=0), strand)).accepted
+    assert changed(tmp_path, bent, strand).accepted
 
 
 def crosses(bent: FloatArray, strand: FloatArray) -> bool:
@@ -72,7 +70,7 @@ def test_random_transitions(tmp_path: Path, unit: float) -> None:
             expected = crosses(bent, strand)
         except RefusedError:
             continue
-        verdict = verify(write(tmp_path / "T.npz", bent, np.delete(bent, 1, axis=0), strand))
+        verdict = changed(tmp_path, bent, strand)
         assert verdict.accepted == (not expected), (bent.tolist(), strand.tolist(), str(verdict))
         seen[expected] += 1
     assert min(seen.values()) > 1

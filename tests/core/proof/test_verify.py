@@ -1,26 +1,20 @@
-"""Trajectory files: real ones are accepted, wrong ones refused with the place."""
+"""Legs, stages, obstacles and pins of trajectories: what is true is accepted, what is not is refused with the place."""
 
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 import pytest
-from mobius_flow.core import Curve, Mesh
+from mobius_flow.core import Curve, Obstacle, RelaxOptions, Trajectory, relax
 from mobius_flow.core.collision import free_motion
 from mobius_flow.core.proof import Verdict, verify
 from shapes import hopf_link, regular_polygon, torus_trefoil
+from solids import box, plate, rod, sphere
+from tasks import wanted
+from trajectory_files import Arrays, Stage, checked, trajectory
 
 Array = npt.NDArray[np.float64]
-Sizes = tuple[int, ...]
-
-
-def write(path: Path, *stages: tuple[Sizes, list[Array]], compressed: bool = False) -> Path:
-    arrays = {}
-    for k, (sizes, frames) in enumerate(stages):
-        arrays[f"stage_{k:03d}"] = np.stack(frames)
-        arrays[f"component_sizes_{k:03d}"] = np.array(sizes)
-    (np.savez_compressed if compressed else np.savez)(path, **arrays)
-    return path
+PINNED = torus_trefoil(40)
 
 
 def walk(curve: Curve, steps: int, seed: int = 3) -> list[Array]:
@@ -35,179 +29,188 @@ def walk(curve: Curve, steps: int, seed: int = 3) -> list[Array]:
     return frames
 
 
-def refined(frame: Array, parameters: tuple[float, ...]) -> Array:
+def refined(frame: Array, *parameters: float) -> Array:
     """Every edge cut at the parameters, at rounded points."""
     following = np.roll(frame, -1, axis=0)
     return np.stack([(1 - t) * frame + t * following for t in (0.0, *parameters)], axis=1).reshape(-1, frame.shape[1])
 
 
+def rising(steps: int, top: float) -> list[Array]:
+    """A trefoil, of heights within ±1, that rises."""
+    return [torus_trefoil(60).vertices + np.array([0.0, 0.0, top * k / steps]) for k in range(steps + 1)]
+
+
 @pytest.mark.parametrize("offset", [0.0, 1e5])
-@pytest.mark.parametrize("compressed", [False, True])
-def test_accepts_a_free_motion(tmp_path: Path, compressed: bool, offset: float) -> None:
-    trefoil = torus_trefoil(60)
-    frames = [frame + offset for frame in walk(trefoil, 12)]
-    verdict = verify(write(tmp_path / "T.npz", ((60,), frames), compressed=compressed))
+@pytest.mark.parametrize("save", [np.savez, np.savez_compressed])
+def test_free_motions(tmp_path: Path, save, offset: float) -> None:
+    verdict = checked(tmp_path, trajectory([frame + offset for frame in walk(torus_trefoil(60), 12)]), save)
     assert verdict == Verdict(True, 1, 12)
     assert str(verdict) == "accepted: no contact on 12 legs in 1 stage"
 
 
-def test_accepts_links_and_plane_curves(tmp_path: Path) -> None:
-    link = hopf_link(30)
-    assert verify(write(tmp_path / "L.npz", (link.mesh.component_sizes, walk(link, 6)))).accepted
-    plane = regular_polygon(30, dimension=2)
-    assert verify(write(tmp_path / "P.npz", ((30,), walk(plane, 6)))).accepted
+def test_links_and_plane_curves(tmp_path: Path) -> None:
+    assert checked(tmp_path, trajectory(([30, 30], walk(hopf_link(30), 6)))).accepted
+    assert checked(tmp_path, trajectory(walk(regular_polygon(30, dimension=2), 6))).accepted
 
 
-@pytest.mark.parametrize("frame", [2, 7])
-def test_refuses_a_strand_moved_through_another(tmp_path: Path, frame: int) -> None:
-    """After the mutation each frame is an embedded curve again; only the leg into it is wrong."""
-    link = hopf_link(40)
-    frames = walk(link, 10)
-    for k in range(frame + 1, len(frames)):
-        frames[k] = frames[k].copy()
-        frames[k][40:] += [5.0, 0.0, 0.0]
-    verdict = verify(write(tmp_path / "T.npz", ((40, 40), frames)))
-    assert (verdict.accepted, verdict.stage, verdict.frame, verdict.legs) == (False, 0, frame, frame + 1)
+def test_a_strand_moved_through_another(tmp_path: Path) -> None:
+    """Every frame is an embedded curve; only the leg into it is wrong."""
+    frames = np.stack(walk(hopf_link(40), 10))
+    frames[8:, 40:] += [5.0, 0.0, 0.0]
+    verdict = checked(tmp_path, trajectory(([40, 40], frames)))
+    assert (verdict.accepted, verdict.stage, verdict.frame, verdict.legs) == (False, 0, 7, 8)
     assert verdict.edges is not None
-    i, j = sorted(verdict.edges)
-    assert i < 40 <= j
-    assert str(verdict) == f"rejected: stage 0, frame {frame}: {verdict.reason}"
-    assert f"edges {verdict.edges[0] + 1} and {verdict.edges[1] + 1}" in verdict.reason
+    i, j = verdict.edges
+    assert min(i, j) < 40 <= max(i, j)
+    assert str(verdict) == f"rejected: stage 0, frame 7: edges {i + 1} and {j + 1} (counted from 1) meet"
 
 
-def test_refuses_a_knot_that_jumps(tmp_path: Path) -> None:
-    trefoil = torus_trefoil(60).vertices
-    mirror = trefoil * [1, 1, -1]
-    for frames in ([trefoil, mirror], [trefoil, 0 * trefoil, mirror], [trefoil, trefoil[::-1]]):
-        assert not verify(write(tmp_path / "T.npz", ((60,), frames))).accepted
-
-
-def test_refuses_a_single_frame_that_touches_itself(tmp_path: Path) -> None:
-    eight = np.array([[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]])
-    verdict = verify(write(tmp_path / "T.npz", ((4,), [eight])))
+def test_a_single_frame_that_touches_itself(tmp_path: Path) -> None:
+    verdict = checked(tmp_path, trajectory([np.array([[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]])]))
     assert (verdict.accepted, verdict.edges, verdict.frame) == (False, (0, 2), 0)
 
 
-def test_a_triangle_may_turn_over_but_not_collapse(tmp_path: Path) -> None:
+def test_a_triangle_may_turn_over_in_space(tmp_path: Path) -> None:
     triangle = np.array([[0.0, 0.0], [1.0, 0.0], [0.3, 1.0]])
-    flipped = triangle * [1, -1]
-    verdict = verify(write(tmp_path / "T.npz", ((3,), [triangle, flipped])))
-    assert not verdict.accepted
-    assert "triangle collapses" in verdict.reason
-    lifted = [np.concatenate([p, np.zeros((3, 1))], axis=1) for p in (triangle, flipped)]
-    assert not verify(write(tmp_path / "S.npz", ((3,), lifted))).accepted
-    upright = lifted[0][:, [0, 2, 1]]
-    assert verify(write(tmp_path / "S.npz", ((3,), [lifted[0], upright, lifted[1]]))).accepted
+    flat, turned = (np.column_stack([triangle * [1, sign], np.zeros(3)]) for sign in (1, -1))
+    assert checked(tmp_path, trajectory([flat, flat[:, [0, 2, 1]], turned])).accepted
+    for frames in ([flat, turned], [triangle, triangle * [1, -1]]):
+        assert "a triangle collapses at vertex" in checked(tmp_path, trajectory(frames)).reason
 
 
 @pytest.mark.parametrize("offset", [0.0, 1e4])
-def test_accepts_refinement_and_coarsening(tmp_path: Path, offset: float) -> None:
-    first = [frame + offset for frame in walk(torus_trefoil(40), 3)]
-    fine = refined(first[-1], (0.3, 0.7000001))
-    second = walk(Curve(fine - offset), 2)
-    second = [fine, *[frame + offset for frame in second[1:]]]
-    last = np.roll(second[-1].copy(), 5, axis=0)
-    stages = [
-        ((40,), first),
-        ((120,), second),
-        ((120,), [last]),
-        ((360,), [refined(last, (0.25, 0.5))]),
-        ((120,), [last]),
-    ]
-    verdict = verify(write(tmp_path / "T.npz", *stages))
+def test_refinement_and_coarsening(tmp_path: Path, offset: float) -> None:
+    first = walk(torus_trefoil(40), 3)
+    fine = refined(first[-1] + offset, 0.3, 0.7000001)
+    second = [fine, *(frame + offset for frame in walk(Curve(fine - offset), 2)[1:])]
+    last = np.roll(second[-1], 5, axis=0)
+    stages = [frame + offset for frame in first], second, [last], [refined(last, 0.25, 0.5)], [last]
+    verdict = checked(tmp_path, trajectory(*stages))
     assert verdict.accepted, str(verdict)
     assert (verdict.stages, verdict.legs) == (5, 5)
 
 
-def test_refinement_of_a_link(tmp_path: Path) -> None:
-    link = hopf_link(20)
-    parts = [link.vertices[:20], refined(link.vertices[20:], (0.1, 0.4, 0.9))]
-    stages = [((20, 20), [link.vertices]), ((20, 80), [np.concatenate(parts)])]
-    assert verify(write(tmp_path / "T.npz", *stages)).accepted
-
-
-def changed(frame: Array, kind: str) -> tuple[Sizes, list[Array]]:
-    fine = refined(frame, (0.5,))
-    sizes: Sizes = (len(fine),)
-    if kind == "off the edge":
-        fine[3] += 1e-9
-    elif kind == "out of order":
-        fine = refined(frame, (0.6, 0.4))
-        sizes = (len(fine),)
-    elif kind == "moved":
-        fine = fine + 1e-12
-    elif kind == "reversed":
-        fine = fine[::-1]
-    elif kind == "another component":
-        sizes = (len(fine) // 2, len(fine) // 2)
-    elif kind == "other dimension":
-        fine = fine[:, :2]
-    return sizes, [fine]
-
-
-KINDS = {
-    "off the edge": "not on the edge",
-    "out of order": "not on the edge",
-    "moved": "only 0 vertices are kept",
-    "reversed": "not in the same order",
-    "another component": "another number of components",
-    "other dimension": "another dimension",
-}
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_refuses_wrong_transitions(tmp_path: Path, kind: str) -> None:
-    frame = torus_trefoil(30).vertices
-    verdict = verify(write(tmp_path / "T.npz", ((30,), [frame]), changed(frame, kind)))
-    assert not verdict.accepted
-    assert (verdict.stage, verdict.frame) == (1, None)
-    assert KINDS[kind] in verdict.reason
-
-
-@pytest.mark.parametrize("between", [True, False])
-def test_rounding_of_inserted_vertices_is_checked_for_contact(tmp_path: Path, between: bool) -> None:
-    """A strand passes so near that the rounding of an inserted vertex moves the edge through it."""
-    unit = np.array([0.0, 2.0**-50, 0.0])
-    edge = np.array([[0.0, 0.0, 1.0], [1.0, 0.25, 1.0], [1.0, 0.25, 2.0], [0.0, 0.0, 2.0]])
-    inserted = 0.5 * (edge[0] + edge[1]) + 2 * unit
-    through = 0.5 * (edge[0] + edge[1]) + (1 if between else 3) * unit
-    strand = through + np.array([[0.0, 0.0, -0.25], [0.0, 0.0, 0.25], [0.0, 0.5, 0.0]])
-    bent = np.insert(edge, 1, inserted, axis=0)
-    stages = ((4, 3), [np.concatenate([edge, strand])]), ((5, 3), [np.concatenate([bent, strand])])
-    alone = [verify(write(tmp_path / "one.npz", stage)) for stage in stages]
-    assert all(verdict.accepted for verdict in alone)
-    verdict = verify(write(tmp_path / "T.npz", *stages))
-    assert verdict.accepted != between
-    assert between == ("meet" in verdict.reason)
+def test_refinement_of_one_component(tmp_path: Path) -> None:
+    one, other = hopf_link(20).vertices.reshape(2, 20, 3)
+    finer = np.concatenate([one, refined(other, 0.1, 0.4, 0.9)])
+    assert checked(tmp_path, trajectory(([20, 20], [hopf_link(20).vertices]), ([20, 80], [finer]))).accepted
 
 
 def test_stages_may_end_anywhere(tmp_path: Path) -> None:
     """The same frames in one stage or in several are the same trajectory."""
     frames = walk(torus_trefoil(30), 4)
-    sizes = Mesh((30,)).component_sizes
-    verdict = verify(write(tmp_path / "T.npz", (sizes, frames[:3]), (sizes, frames[2:])))
+    told: list[tuple[int, int]] = []
+    verdict = checked(tmp_path, trajectory(frames[:3], frames[2:]))
     assert (verdict.accepted, verdict.legs) == (True, 4)
-    missing = verify(write(tmp_path / "T.npz", (sizes, frames[:2]), (sizes, frames[2:])))
+    assert verify(tmp_path / "T.npz", lambda done, legs: told.append((done, legs))) == verdict
+    assert told == [(k, 4) for k in range(1, 5)]
+    missing = checked(tmp_path, trajectory(frames[:2], frames[2:]))
     assert (missing.accepted, missing.stage) == (False, 1)
 
 
-def bundle(path: Path, strands: int, height: float = 0.0) -> Path:
+@pytest.mark.parametrize("between", [True, False])
+@pytest.mark.parametrize("still", [True, False])
+def test_rounding_of_inserted_vertices_is_checked(tmp_path: Path, between: bool, still: bool) -> None:
+    """A strand, or an obstacle, is so near that the rounding of an inserted vertex moves the edge through it."""
+    unit = np.array([0.0, 2.0**-50, 0.0])
+    edge = np.array([[0.0, 0.0, 1.0], [1.0, 0.25, 1.0], [1.0, 0.25, 2.0], [0.0, 0.0, 2.0]])
+    middle = 0.5 * (edge[0] + edge[1])
+    bent = np.insert(edge, 1, middle + 2 * unit, axis=0)
+    strand = middle + (1 if between else 3) * unit + np.array([[0.0, 0.0, -0.25], [0.0, 0.0, 0.25], [0.0, 0.5, 0.0]])
+    parts: list[Stage] = [[edge], [bent]]
+    if not still:
+        parts = [([len(part), 3], [np.concatenate([part, strand])]) for part in (edge, bent)]
+    obstacles = [Obstacle(strand[:2], [[0, 1]])] if still else []
+    for part in parts:
+        assert checked(tmp_path, trajectory(part, obstacles=obstacles)).accepted
+    verdict = checked(tmp_path, trajectory(*parts, obstacles=obstacles))
+    assert verdict.accepted != between
+    assert between == (("meets obstacle 1" if still else "meet") in verdict.reason)
+
+
+def bundle(strands: int, height: float = 0.0) -> Arrays:
     """Arcs side by side, all parallel and so near that nothing but whole numbers shows them to be apart."""
     row, column = np.divmod(np.arange(strands), 9)
     tails = np.stack([1.0 + 2.0**-52 * row, 1.0 + 2.0**-52 * column, height * row], axis=1)
     frame = np.stack([tails, tails + np.array([[0.5, 0.25, 0.375]])], axis=1).reshape(-1, 3)
-    sizes, closed = np.full(strands, 2), np.zeros(strands, dtype=bool)
-    np.savez(path, stage_000=frame[None], component_sizes_000=sizes, component_closed_000=closed)
-    return path
+    return trajectory(([2] * strands, [frame]), opened=True)
 
 
 def test_more_exact_decisions_than_there_is_time_for_are_refused(tmp_path: Path) -> None:
-    assert verify(bundle(tmp_path / "few.npz", 12)).accepted
-    verdict = verify(bundle(tmp_path / "many.npz", 80))
+    assert checked(tmp_path, bundle(12)).accepted
+    verdict = checked(tmp_path, bundle(80))
     assert (verdict.accepted, verdict.stage, verdict.frame, verdict.edges) == (False, 0, 0, None)
     assert "too many edges are so near to each other" in verdict.reason
 
 
 def test_decisions_about_numbers_of_very_different_size_count_for_more(tmp_path: Path) -> None:
-    verdict = verify(bundle(tmp_path / "wide.npz", 12, height=2.0**-1000))
-    assert "too many edges are so near to each other" in verdict.reason
+    assert "too many edges are so near to each other" in checked(tmp_path, bundle(12, height=2.0**-1000)).reason
+
+
+@pytest.mark.parametrize("offset", [0.0, 1e4])
+def test_what_stays_clear_of_obstacles(tmp_path: Path, offset: float) -> None:
+    solids = (plate(2.0), sphere(5.0), rod(0, 0), box(4, 5))
+    obstacles = [Obstacle(each.vertices + offset, each.faces) for each in solids]
+    verdict = checked(tmp_path, trajectory([frame + offset for frame in rising(5, 0.5)], obstacles=obstacles))
+    assert verdict == Verdict(True, 1, 5, obstacles=4)
+    assert str(verdict) == "accepted: no contact on 5 legs in 1 stage, nor with 4 obstacles"
+
+
+@pytest.mark.parametrize("obstacle", [plate(2.0), Obstacle([[-9, 1.0, 2.0], [9, 1.0, 2.0]], [[0, 1]])])
+def test_a_leg_through_an_obstacle(tmp_path: Path, obstacle: Obstacle) -> None:
+    """Every frame is clear of it."""
+    first, last = rising(1, 4.0)
+    assert all(checked(tmp_path, trajectory([frame], obstacles=[obstacle])).accepted for frame in (first, last))
+    verdict = checked(tmp_path, trajectory([first, first, last], obstacles=[box(7, 8), obstacle]))
+    assert (verdict.accepted, verdict.stage, verdict.frame, verdict.obstacle) == (False, 0, 1, 1)
+    (edge,) = verdict.edges or ()
+    assert str(verdict).endswith(f"edge {edge + 1} meets obstacle 2 (counted from 1)")
+
+
+def test_a_start_that_pierces_or_touches(tmp_path: Path) -> None:
+    for obstacle in (plate(0.0), rod(1.0, 0.0), box(-0.5, 2.0)):
+        verdict = checked(tmp_path, trajectory([regular_polygon(20).vertices], obstacles=[obstacle]))
+        assert (verdict.accepted, verdict.frame, verdict.obstacle) == (False, 0, 0)
+
+
+def moved(*vertices: int) -> list[Array]:
+    """A trefoil of which some vertices move in the second of two legs, by a unit in the last place."""
+    frames = np.stack([PINNED.vertices] * 3)
+    frames[2, vertices, 0] = np.nextafter(frames[2, vertices, 0], np.inf)
+    return list(frames)
+
+
+@pytest.mark.parametrize("mesh", ["fixed", "adaptive"])
+def test_a_run_writes_its_pins_and_they_hold_on_every_mesh(tmp_path: Path, mesh: str) -> None:
+    record = Trajectory()
+    for iterate in relax(*wanted(PINNED, pins=(3, 17), pin_tangents=True, mesh=mesh, max_iterations=12)):
+        record.add(iterate)
+    assert len(record.arrays()["pins"]) == 6
+    verdict = checked(tmp_path, record.arrays())
+    assert verdict.accepted
+    assert str(verdict).endswith("; 6 pins in place")
+
+
+def test_a_run_without_pins_says_nothing_of_them(tmp_path: Path) -> None:
+    record = Trajectory()
+    for iterate in relax(PINNED, RelaxOptions(max_iterations=2)):
+        record.add(iterate)
+    assert "pins" not in record.arrays()
+
+
+def test_a_pinned_vertex_that_moves_is_named(tmp_path: Path) -> None:
+    pins = PINNED.vertices[[3, 17]]
+    assert checked(tmp_path, trajectory(moved(4, 16), pins=pins)).accepted
+    verdict = checked(tmp_path, trajectory(moved(4, 17), pins=pins))
+    assert (verdict.accepted, verdict.stage, verdict.frame, verdict.pins) == (False, 0, 1, 2)
+    assert verdict.reason == "vertex 18 leaves pin 2 (counted from 1)"
+
+
+def test_each_stage_has_a_vertex_at_each_pin(tmp_path: Path) -> None:
+    """Vertex 17 is left out where it lies on an edge: the same curve, but nothing holds it any more."""
+    finer = np.insert(PINNED.vertices, 17, PINNED.vertices[[16, 17]].mean(axis=0), axis=0)
+    stages = [finer], [PINNED.vertices]
+    assert checked(tmp_path, trajectory(*stages, pins=finer[[3, 18]])).accepted
+    verdict = checked(tmp_path, trajectory(*stages, pins=finer[[3, 17]]))
+    assert (verdict.accepted, verdict.stage) == (False, 1)
+    assert verdict.reason == "no vertex is at pin 2 (counted from 1)"
