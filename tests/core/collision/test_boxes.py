@@ -5,7 +5,8 @@ import pytest
 from mobius_flow.core import Mesh
 from mobius_flow.core.base.types import BoolArray, IntArray
 from mobius_flow.core.collision import boxes
-from mobius_flow.core.collision.boxes import BoxTree, Level, contact_window
+from mobius_flow.core.collision.boxes import BoxTree, Level, contact_window, still_triangles
+from solids import sphere
 
 MESHES = [Mesh((3,)), Mesh((4,)), Mesh((100,)), Mesh((3, 3)), Mesh((7, 3, 31)), Mesh((3,) * 40), Mesh((257, 4, 64))]
 
@@ -36,6 +37,19 @@ def test_every_pair_exactly_once(mesh: Mesh, chunk: int, monkeypatch: pytest.Mon
     pairs = found(tree, lambda level, a, other, b: np.ones(len(a), dtype=bool))
     assert len(pairs) == len(set(pairs))
     assert set(pairs) == strangers(mesh)
+
+
+@pytest.mark.parametrize("n", [3, 40, 200])
+def test_every_pair_of_edge_and_triangle_exactly_once(n: int) -> None:
+    """For trees of very different depth."""
+    still, mesh = still_triangles((sphere(1.0),), 1), Mesh((n,))
+    tree = BoxTree.build(mesh, *random_leg(mesh, 3))
+    pairs = [
+        (int(i), int(j))
+        for a, b in tree.pairs_with(still.tree, lambda level, a, other, b: np.ones(len(a), dtype=bool))
+        for i, j in zip(tree.order[a], still.tree.order[b], strict=True)
+    ]
+    assert len(pairs) == len(set(pairs)) == n * len(still.tree.order)
 
 
 @pytest.mark.parametrize("m", [2, 3])

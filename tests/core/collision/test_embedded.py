@@ -28,51 +28,28 @@ def refusal(curve: Curve) -> str:
     return str(caught.value)
 
 
-def test_repeated_point() -> None:
-    points = SQUARE[:2] + SQUARE[1:]
-    expected = "vertex 2 of component 1 and vertex 3 of component 1 are the same point (1, 0, 0); remove one of them"
-    assert refusal(Curve(points)) == expected
-    closing = Curve.from_components([FAR_SQUARE, [*SQUARE, SQUARE[0]]])
-    assert (
-        refusal(closing)
-        == "vertex 5 of component 2 and vertex 1 of component 2 are the same point (0, 0, 0); remove one of them"
-    )
+SPIKE = [[0, 0], [1, 1], [3, 3], [2, 2], [0, 1]]
+NEEDLE = [[5.5, 5.0, 4.0], [5.5, 5.0, 6.0], [9.0, 9.0, 9.0]]
+SAME = "vertex {} of component {} and vertex {} of component {} are the same point {}; remove one of them"
+TOUCH = "edge {} of component 1 and edge {} of component {} touch or cross near {}; move the strands apart"
+BACK = "the curve doubles back at vertex {} of component 1, {}; move or remove it"
 
 
-@pytest.mark.parametrize("m", [2, 3, 4])
-def test_doubled_back(m: int) -> None:
-    spike = np.zeros((5, m))
-    spike[:, :2] = [[0, 0], [1, 0], [3, 3], [2, 2], [0, 1]]
-    spike[1, :2] = [1, 1]
-    expected = f"the curve doubles back at vertex 3 of component 1, (3, 3{', 0' * (m - 2)}); move or remove it"
-    assert refusal(Curve(spike)) == expected
-
-
-def test_flat_triangle_is_doubled_back() -> None:
-    for flat in ([[0.0, 0.0], [1.0, 0.0], [3.0, 0.0]], [[0.1, 0.1, 0.1], [0.3, 0.3, 0.3], [0.2, 0.2, 0.2]]):
-        assert "doubles back" in refusal(Curve(flat))
-
-
-def test_crossing_in_the_plane() -> None:
-    eight = Curve([[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]])
-    assert (
-        refusal(eight)
-        == "edge 1 of component 1 and edge 3 of component 1 touch or cross near (1, 1); move the strands apart"
-    )
-
-
-def test_touching_in_space() -> None:
-    pentagon = Curve([*SQUARE, [0.5, 0.0, 0.0], [-1.0, 0.5, 0.5]])
-    message = refusal(pentagon)
-    assert message.startswith("edge 1 of component 1 and ")
-    assert message.endswith("touch or cross near (0.5, 0, 0); move the strands apart")
-
-
-def test_two_components() -> None:
-    needle = [[5.5, 5.0, 4.0], [5.5, 5.0, 6.0], [9.0, 9.0, 9.0]]
-    curve = Curve.from_components([FAR_SQUARE, needle])
-    expected = "edge 1 of component 1 and edge 1 of component 2 touch or cross near (5.5, 5, 5); move the strands apart"
-    assert refusal(curve) == expected
+@pytest.mark.parametrize(
+    ("parts", "said"),
+    [
+        ([SQUARE[:2] + SQUARE[1:]], SAME.format(2, 1, 3, 1, "(1, 0, 0)")),
+        ([FAR_SQUARE, [*SQUARE, SQUARE[0]]], SAME.format(5, 2, 1, 2, "(0, 0, 0)")),
+        *(([np.pad(SPIKE, ((0, 0), (0, m - 2)))], BACK.format(3, f"(3, 3{', 0' * (m - 2)})")) for m in (2, 3, 4)),
+        ([[[0.0, 0.0], [1.0, 0.0], [3.0, 0.0]]], BACK.format(3, "(3, 0)")),
+        ([[[0.1, 0.1, 0.1], [0.3, 0.3, 0.3], [0.2, 0.2, 0.2]]], BACK.format(2, "(0.3, 0.3, 0.3)")),
+        ([[[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]]], TOUCH.format(1, 3, 1, "(1, 1)")),
+        ([[*SQUARE, [0.5, 0.0, 0.0], [-1.0, 0.5, 0.5]]], TOUCH.format(1, 4, 1, "(0.5, 0, 0)")),
+        ([FAR_SQUARE, NEEDLE], TOUCH.format(1, 1, 2, "(5.5, 5, 5)")),
+    ],
+)
+def test_what_is_wrong_is_named_with_the_place(parts: list[list[list[float]]], said: str) -> None:
+    assert refusal(Curve.from_components([np.array(part, dtype=float) for part in parts])) == said
 
 
 @pytest.mark.parametrize("m", [3, 4])
@@ -88,18 +65,8 @@ def test_near_strands_pass(gap: float) -> None:
 
 
 def test_lattice_polygon_with_parallel_and_collinear_edges() -> None:
-    path = [
-        [0, 0, 0],
-        [1, 0, 0],
-        [2, 0, 0],
-        [3, 0, 0],
-        [3, 1, 0],
-        [2, 1, 0],
-        [1, 1, 0],
-        [0, 1, 0],
-        [0, 1, 1],
-        [0, 0, 1],
-    ]
+    row = [[k, 0, 0] for k in range(4)]
+    path = [*row, *([x, 1, 0] for x, _, _ in row[::-1]), [0, 1, 1], [0, 0, 1]]
     check_embedded(Curve(path))
     path[6] = [1, 0, 0]
     assert "touch or cross near (1, 0, 0)" in refusal(Curve(path))

@@ -9,16 +9,15 @@ from exact_decisions import meet
 from mobius_flow.core import Curve, Mesh
 from mobius_flow.core.collision import Limit, free_motion, is_free, minimal_gap, survives_rounding
 from mobius_flow.core.collision.gap import folds
-from mobius_flow.core.proof import Verdict, verify
+from mobius_flow.core.proof import Verdict
 from shapes import opened, straight_arc, torus_trefoil
+from trajectory_files import checked, trajectory
 
 Motion = tuple[np.ndarray, np.ndarray]
 
 
-def verdict(tmp_path: Path, mesh: Mesh, *frames: np.ndarray) -> Verdict:
-    flags = {} if mesh.all_closed else {"component_closed_000": np.array(mesh.closed)}
-    np.savez(tmp_path / "t.npz", stage_000=np.stack(frames), component_sizes_000=mesh.component_sizes, **flags)
-    return verify(tmp_path / "t.npz")
+def verdict(folder: Path, mesh: Mesh, *frames: np.ndarray) -> Verdict:
+    return checked(folder, trajectory((mesh.component_sizes, frames), component_closed_000=np.array(mesh.closed)))
 
 
 def collapses(mesh: Mesh, start: np.ndarray, end: np.ndarray) -> bool:

@@ -20,11 +20,6 @@ def smooth_displacement(curve: Curve, seed: int, waves: int = 8) -> np.ndarray:
     return np.cos(np.outer(t, k)) @ a + np.sin(np.outer(t, k)) @ b
 
 
-def test_standing_still_is_free() -> None:
-    curve = torus_trefoil(200)
-    assert free_motion(curve.mesh, curve.vertices, curve.vertices) == FreeMotion(1.0, None, Limit.NONE)
-
-
 @pytest.mark.parametrize("factor", [100.0, 1e-3])
 def test_similarities_are_free(factor: float) -> None:
     curve = torus_trefoil(200)
@@ -108,13 +103,6 @@ def test_earliest_contact_of_all_pairs(seed: int, m: int, sizes: tuple[int, ...]
         assert any(until(meet, start[four], end[four], later) for four in quadruples)
 
 
-def test_touching_at_the_start() -> None:
-    square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0.5, 0, 0], [0, 1, 0]])
-    motion = free_motion(Mesh((5,)), square, square + np.array([0.0, 0.0, 1.0]))
-    assert motion == FreeMotion(0.0, motion.contact, Limit.TOUCHING_START)
-    assert not is_free(Mesh((5,)), square, square)
-
-
 @pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-9, 1e-12])
 def test_strands_that_slide_turn_and_stop_short(gap: float) -> None:
     x = np.linspace(0, 1, 30)
@@ -132,51 +120,50 @@ def test_strands_that_slide_turn_and_stop_short(gap: float) -> None:
     assert motion.time == pytest.approx(contact * (1 + gap), rel=0.02)
 
 
-def test_folding_neighbours_are_noticed() -> None:
-    """Neighbour edges are not tested; that they fold shows in the edges after them."""
-    start = np.array([[0.0, 0, 0], [1, 0, 0], [1.5, 1, 0], [0.5, 2, 0.1], [-0.5, 1, 0]])
-    end = start.copy()
-    end[2] = [0.5, -1.0, 0.0]
-    motion = free_motion(Mesh((5,)), start, end)
-    assert motion.time == pytest.approx(0.5, rel=0.02)
+FOLDING = np.array([[0.0, 0, 0], [1, 0, 0], [1.5, 1, 0], [0.5, 2, 0.1], [-0.5, 1, 0]])
+TRIANGLE = np.array([[0.0, 0.0], [1.0, 0.0], [0.3, 1.0]])
+FLAT = np.column_stack([TRIANGLE, np.zeros(3)])
+CIRCLE = regular_polygon(60, dimension=2).vertices
+KNOT = torus_trefoil(100).vertices
+TOUCHING = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0.5, 0, 0], [0, 1, 0]])
 
 
-def test_a_triangle_may_turn_over_but_not_collapse() -> None:
-    triangle = np.array([[0.0, 0.0], [1.0, 0.0], [0.3, 1.0]])
-    flipped = triangle * [1, -1]
-    motion = free_motion(Mesh((3,)), triangle, flipped)
-    assert 0.49 < motion.time < 0.5
-    lifted = [np.concatenate([p, np.zeros((3, 1))], axis=1) for p in (triangle, flipped)]
-    assert not is_free(Mesh((3,)), *lifted)
-    upright = lifted[0][:, [0, 2, 1]]
-    assert is_free(Mesh((3,)), lifted[0], upright)
-    assert is_free(Mesh((3,)), upright, lifted[1])
-
-
-def test_plane_curve_through_itself() -> None:
-    curve = regular_polygon(60, dimension=2)
-    start, end = curve.vertices, curve.vertices * [1.0, -1.0]
-    motion = free_motion(curve.mesh, start, end)
-    assert motion.limit is Limit.CONTACT
-    assert 0.49 < motion.time < 0.5
-    assert is_free(curve.mesh, start, 0.1 * start)
+@pytest.mark.parametrize(
+    ("start", "end", "contact"),
+    [
+        (FOLDING, np.concatenate([FOLDING[:2], [[0.5, -1, 0]], FOLDING[3:]]), 0.5),  # noticed by the edges after them
+        (TRIANGLE, TRIANGLE * [1, -1], 0.5),
+        (FLAT, FLAT * [1, -1, 1], 0.5),
+        (FLAT, FLAT[:, [0, 2, 1]], None),  # in space it may turn over
+        (FLAT[:, [0, 2, 1]], FLAT * [1, -1, 1], None),
+        (CIRCLE, CIRCLE * [1, -1], 0.5),
+        (CIRCLE, 0.1 * CIRCLE, None),
+        (KNOT, KNOT, None),
+        (KNOT, 0 * KNOT, 1.0),
+        (0 * KNOT, 0 * KNOT, 0.0),
+        (TOUCHING, TOUCHING + np.eye(3)[2], 0.0),
+        (TOUCHING, TOUCHING, 0.0),
+    ],
+)
+def test_contacts_known_by_hand(start: np.ndarray, end: np.ndarray, contact: float | None) -> None:
+    mesh = Mesh((len(start),))
+    motion = free_motion(mesh, start, end)
+    assert is_free(mesh, start, end) == (contact is None)
+    if contact is None:
+        assert motion == FreeMotion(1.0, None, Limit.NONE)
+    elif contact == 0:
+        assert motion == FreeMotion(0.0, motion.contact, Limit.TOUCHING_START)
+    else:
+        assert motion.limit is Limit.CONTACT
+        assert 0.98 * contact <= motion.time < contact
 
 
 def test_not_finite_is_never_free() -> None:
-    curve = regular_polygon(10)
     for bad in (np.nan, np.inf):
-        end = curve.vertices.copy()
+        end = CIRCLE.copy()
         end[3, 1] = bad
-        assert free_motion(curve.mesh, curve.vertices, end) == FreeMotion(0.0, None, Limit.NOT_FINITE)
-        assert not is_free(curve.mesh, end, curve.vertices)
-
-
-def test_collapse_to_a_point() -> None:
-    curve = torus_trefoil(100)
-    motion = free_motion(curve.mesh, curve.vertices, 0 * curve.vertices)
-    assert 0.98 < motion.time < 1
-    still = free_motion(curve.mesh, 0 * curve.vertices, 0 * curve.vertices)
-    assert (still.time, still.limit) == (0.0, Limit.TOUCHING_START)
+        assert free_motion(Mesh((60,)), CIRCLE, end) == FreeMotion(0.0, None, Limit.NOT_FINITE)
+        assert not is_free(Mesh((60,)), end, CIRCLE)
 
 
 def test_wrong_shapes_are_refused() -> None:
@@ -192,11 +179,4 @@ def test_thousands_of_components() -> None:
     rng = np.random.default_rng(11)
     places = np.stack(np.meshgrid(*3 * [np.arange(12.0)], indexing="ij"), axis=-1).reshape(-1, 1, 3)
     start = (places + rng.uniform(-0.4, 0.4, size=(len(places), 3, 3))).reshape(-1, 3)
-    mesh = Mesh((3,) * len(places))
-    assert is_free(mesh, start, 2 * start + 1)
-    end = start.copy()
-    end[:3] += [1.0, 0, 0]
-    end[3 * 144 : 3 * 144 + 3] -= [1.0, 0, 0]
-    motion = free_motion(mesh, start, end)
-    if motion.contact is not None:
-        assert {0, 144} & set(mesh.component[list(motion.contact.edges)].tolist())
+    assert is_free(Mesh((3,) * len(places)), start, 2 * start + 1)

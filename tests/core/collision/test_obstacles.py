@@ -4,15 +4,10 @@ import numpy as np
 import pytest
 from exact_decisions import meet_triangle, until
 from mobius_flow.core import Curve, Mesh, Obstacle
-from mobius_flow.core.collision import Contact, FreeMotion, Limit, free_motion, is_free
-from mobius_flow.core.collision.boxes import BoxTree, still_triangles
-from shapes import hopf_link, regular_polygon, torus_trefoil
+from mobius_flow.core.collision import Contact, Limit, free_motion, is_free
+from mobius_flow.core.collision.boxes import still_triangles
+from shapes import hopf_link, regular_polygon
 from solids import box, plate, rod, sphere
-
-
-def test_standing_still_inside_a_closed_surface_is_free() -> None:
-    curve = torus_trefoil(100)
-    assert free_motion(curve.mesh, curve.vertices, curve.vertices, (sphere(4.0),)) == FreeMotion(1.0)
 
 
 @pytest.mark.parametrize("scale", [1.0, 2.0**-100, 2.0**100])
@@ -95,20 +90,6 @@ def test_the_tree_of_obstacles_is_built_once() -> None:
     assert sorted(still.tree.order) == list(range(sum(len(each.faces) for each in obstacles)))
     for k in (0, 575, 576, 577):
         assert still.obstacle_of(k) is obstacles[k >= len(obstacles[0].faces)]
-
-
-@pytest.mark.parametrize("n", [3, 40, 200])
-def test_every_pair_of_edge_and_triangle_exactly_once(n: int) -> None:
-    """As with the kernel 1, for trees of very different depth."""
-    curve, still = regular_polygon(n), still_triangles((sphere(1.0),), 1)
-    points = 0.5 * curve.vertices.T
-    tree = BoxTree.build(curve.mesh, points, points)
-    found = [
-        (int(i), int(j))
-        for a, b in tree.pairs_with(still.tree, lambda level, a, other, b: np.ones(len(a), dtype=bool))
-        for i, j in zip(tree.order[a], still.tree.order[b], strict=True)
-    ]
-    assert len(found) == len(set(found)) == n * len(still.tree.order)
 
 
 def test_obstacles_are_in_space() -> None:
