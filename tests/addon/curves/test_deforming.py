@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_trefoil, contents, evaluated, sentence, stored
+from blender_scenes import add_trefoil, contents, evaluated, sentence, show, stored
 from mobius_flow.addon.curves import member
 from mobius_flow.addon.curves.moving import deforms, what_deforms
 from mobius_flow.addon.curves.session import Session
@@ -12,49 +12,16 @@ from mobius_flow.core import Curve, CurveError, RelaxOptions
 from mobius_flow.core.collision import check_embedded
 from mobius_flow.core.keys.key_options import KeyOptions
 
-ADDING = {
-    "ARRAY",
-    "BEVEL",
-    "BUILD",
-    "DECIMATE",
-    "EDGE_SPLIT",
-    "MIRROR",
-    "MULTIRES",
-    "NODES",
-    "REMESH",
-    "SCREW",
-    "SOLIDIFY",
-    "SUBSURF",
-    "SURFACE",
-    "TRIANGULATE",
-    "WELD",
-}  # what is left of the kinds that curves can have adds to what is drawn
-
-
-def kinds():
-    """The kinds of modifiers that a curve takes."""
-    obj = add_trefoil()
-    for item in bpy.types.Modifier.bl_rna.properties["type"].enum_items:
-        try:
-            modifier = obj.modifiers.new(item.identifier, item.identifier)
-        except (RuntimeError, TypeError):  # not for curves
-            continue
-        if modifier is not None:
-            yield modifier
-            obj.modifiers.remove(modifier)
-
-
-def empty(location=(0, 0, 0)):
-    obj = bpy.data.objects.new("Empty", None)
-    bpy.context.scene.collection.objects.link(obj)
-    obj.location = location
-    return obj
+# what is left of the kinds of modifiers that curves can have adds to what is drawn
+ADDING = {"ARRAY", "BEVEL", "BUILD", "DECIMATE", "EDGE_SPLIT", "MIRROR", "MULTIRES", "NODES", "REMESH", "SCREW"}
+ADDING |= {"SOLIDIFY", "SUBSURF", "SURFACE", "TRIANGULATE", "WELD"}
 
 
 def hook(obj, index, by):
     """Let an empty carry a point of a curve along."""
     modifier = obj.modifiers.new("Grab", "HOOK")
-    modifier.object = empty()
+    modifier.object = bpy.data.objects.new("Empty", None)
+    bpy.context.scene.collection.objects.link(modifier.object)
     modifier.vertex_indices_set([index])
     bpy.context.view_layer.update()
     modifier.matrix_inverse = modifier.object.matrix_world.inverted()
@@ -62,7 +29,7 @@ def hook(obj, index, by):
     bpy.context.view_layer.update()
 
 
-def pressed(obj):
+def press(obj):
     """Press a curve flat, onto a plane."""
     plane = bpy.data.meshes.new("Plane")
     plane.from_pydata([(-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)], [], [(0, 1, 2, 3)])
@@ -84,17 +51,11 @@ def nodes(obj, *kinds):
     return modifier
 
 
-@pytest.fixture
-def unchecked(monkeypatch):
-    """Let deformed curves be relaxed."""
+def test_why_they_are_refused(monkeypatch):
+    """Past the checks, what is certified is shown crossing itself at every key; a hook holds another, refined point."""
     monkeypatch.setattr(member, "what_deforms", lambda obj: None)
-
-
-@pytest.mark.usefixtures("unchecked")
-def test_a_proof_about_points_says_nothing_about_what_is_shown():
-    """Why they are refused: past the checks, what is certified is shown crossing itself at every key."""
     obj = add_trefoil()
-    pressed(obj)
+    press(obj)
     report = Session([obj], RelaxOptions(max_iterations=3), KeyOptions(fit_bevel=False)).run()
     assert report.certified
     for frame in (1, report.last_frame):
@@ -102,41 +63,13 @@ def test_a_proof_about_points_says_nothing_about_what_is_shown():
         assert np.abs(shown[:, 2]).max() < 1e-6
         with pytest.raises(CurveError, match="cross"):
             check_embedded(Curve.from_components([shown[:, :2]]))
-
-
-@pytest.mark.usefixtures("unchecked")
-def test_a_hook_holds_another_point_of_a_refined_curve():
-    """Why a hook cannot simply stay: it knows points by their numbers, and refinement counts anew."""
     obj = add_trefoil(30)
     hook(obj, 20, (0, 0, 5))
     held = stored(obj.data)[20]
     Session([obj], RelaxOptions(max_iterations=1, vertices=90), KeyOptions(fit_bevel=False)).run()
-    moved = evaluated(obj, 1) - stored_at_start(obj)
-    (lifted,) = np.flatnonzero(moved[:, 2] > 1)
-    assert np.linalg.norm(stored_at_start(obj)[lifted] - held) > 1
-
-
-def stored_at_start(obj):
-    return np.array([point.co[:] for point in obj.data.shape_keys.key_blocks[0].data])
-
-
-def test_every_kind_of_modifier_is_known():
-    """A kind that a new Blender adds has to be looked at."""
-    deforming = {modifier.type for modifier in kinds() if deforms(modifier)}
-    adding = {modifier.type for modifier in kinds() if not deforms(modifier)}
-    assert len(deforming) > 10
-    assert adding <= ADDING
-
-
-def test_whatever_is_deformed_is_refused():
-    obj = add_trefoil()
-    names = [modifier.type for modifier in kinds() if deforms(modifier)]
-    bpy.context.view_layer.objects.active = obj
-    for kind in names:
-        modifier = obj.modifiers.new("Mine", kind)
-        said = refused()
-        assert "The modifier 'Mine' of 'Knot' moves its points" in said
-        obj.modifiers.remove(modifier)
+    start = np.array([point.co[:] for point in obj.data.shape_keys.key_blocks[0].data])
+    (lifted,) = np.flatnonzero((evaluated(obj, 1) - start)[:, 2] > 1)
+    assert np.linalg.norm(start[lifted] - held) > 1
 
 
 def refused():
@@ -149,6 +82,26 @@ def refused():
     assert contents() == before
     assert RELAXABLE(bpy.context).remedy is Remedy.COPY
     return sentence(error.value)
+
+
+def test_whatever_deforms_is_refused_and_every_kind_of_modifier_is_known():
+    """A kind that a new Blender adds has to be looked at."""
+    obj, deforming, adding = add_trefoil(), 0, set()
+    for kind in [item.identifier for item in bpy.types.Modifier.bl_rna.properties["type"].enum_items]:
+        try:
+            modifier = obj.modifiers.new("Mine", kind)
+        except (RuntimeError, TypeError):  # not for curves
+            continue
+        if modifier is None:
+            continue
+        if deforms(modifier):
+            deforming += 1
+            assert "The modifier 'Mine' of 'Knot' moves its points" in refused()
+        else:
+            adding.add(kind)
+        obj.modifiers.remove(modifier)
+    assert deforming > 10
+    assert adding <= ADDING
 
 
 def test_what_adds_to_the_drawing_is_not_refused():
@@ -167,40 +120,34 @@ def test_a_run_ends_when_its_curve_is_deformed(operator):
     operator.reach(1)
     obj.modifiers.new("Wave", "WAVE")
     assert operator.event() == {"CANCELLED"}
-    assert operator.reports[-1][1].startswith(
-        "The modifier 'Wave' of 'Knot' moves its points; the relaxation has ended"
-    )
+    said = "The modifier 'Wave' of 'Knot' moves its points; the relaxation has ended"
+    assert operator.reports[-1][1].startswith(said)
     np.testing.assert_array_equal(stored(obj.data), before)
     assert len(obj.modifiers) == 1
 
 
-def test_geometry_nodes_that_set_positions_are_refused():
+def test_only_what_moves_points_and_is_shown_counts():
     obj = add_trefoil()
     modifier = nodes(obj, "GeometryNodeCurveToMesh", "GeometryNodeSetPosition")
     assert "'Nodes'" in refused()
     modifier.node_group.nodes["Group"].mute = True
     assert what_deforms(obj) is None
-
-
-def test_a_parent_that_deforms_is_refused():
-    obj = add_trefoil()
-    lattice = bpy.data.objects.new("Lattice", bpy.data.lattices.new("Lattice"))
-    bpy.context.scene.collection.objects.link(lattice)
-    obj.parent = lattice
-    assert what_deforms(obj) is None
-    obj.parent_type = "LATTICE"
-    assert "The parent of 'Knot' moves its points" in refused()
-    assert bpy.ops.curve.mobius_flow_mend(remedy="COPY") == {"FINISHED"}
-    assert bpy.ops.curve.mobius_flow_relax(max_iterations=1) == {"FINISHED"}
-
-
-def test_what_is_shown_nowhere_is_not_refused():
-    obj = add_trefoil()
     modifier = obj.modifiers.new("Wave", "WAVE")
     modifier.show_viewport = modifier.show_render = False
     assert what_deforms(obj) is None
     modifier.show_render = True
     assert what_deforms(obj) == "The modifier 'Wave' of 'Knot'"
+
+
+def test_a_parent_that_deforms_is_refused():
+    obj = add_trefoil()
+    obj.parent = show(bpy.data.objects.new("Lattice", bpy.data.lattices.new("Lattice")))
+    bpy.context.view_layer.objects.active = obj
+    assert what_deforms(obj) is None
+    obj.parent_type = "LATTICE"
+    assert "The parent of 'Knot' moves its points" in refused()
+    assert bpy.ops.curve.mobius_flow_mend(remedy="COPY") == {"FINISHED"}
+    assert bpy.ops.curve.mobius_flow_relax(max_iterations=1) == {"FINISHED"}
 
 
 def test_a_copy_has_the_deformed_shape_and_may_be_relaxed():

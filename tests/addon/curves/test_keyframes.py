@@ -1,4 +1,4 @@
-"""Blender shows at every key frame exactly what was keyed, whichever way it is keyed."""
+"""Blender shows at every key frame exactly what was keyed, whichever way it is keyed; other animation is left alone."""
 
 from itertools import pairwise
 
@@ -6,25 +6,29 @@ import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_curve, add_hopf_link, add_trefoil, evaluated, fcurves, relax, stored
+from hard_curves import hard_unknot
+from mobius_flow.addon.curves import bake
 from mobius_flow.addon.curves.keyframes import writing
+from mobius_flow.addon.curves.moving import what_moves
+from mobius_flow.addon.curves.splines import key_points
 from mobius_flow.core import Curve, RelaxOptions
 from mobius_flow.core import relax as iterates_of
+from mobius_flow.core.collision import is_free
 from mobius_flow.core.keys.key_options import Output
 from mobius_flow.core.keys.motion import Key, Keys
 
 
 def library_frames(obj, **options):
     """The library's iterates for an object at the origin, as 32-bit floats."""
-    components = np.split(
-        stored(obj.data).astype(np.float64), np.cumsum([len(s.points) for s in obj.data.splines])[:-1]
-    )
+    splits = np.cumsum([len(spline.points) for spline in obj.data.splines])[:-1]
+    components = np.split(stored(obj.data).astype(np.float64), splits)
     iterates = iterates_of(Curve.from_components(components), RelaxOptions(**options))
     return [iterate.curve.vertices.astype(np.float32) for iterate in iterates]
 
 
 @pytest.mark.parametrize("keyframes", ["SHAPE_KEYS", "FCURVES"])
 @pytest.mark.parametrize("add", [add_trefoil, add_hopf_link])
-def test_iterates_are_exact_at_their_frames(keyframes, add):
+def test_iterates_are_exact_at_their_frames_and_straight_in_between(keyframes, add):
     obj = add()
     expected = library_frames(obj, max_iterations=8)
     relax(keyframes=keyframes, max_iterations=8, start_frame=11, frames_per_iterate=2.5)
@@ -32,17 +36,27 @@ def test_iterates_are_exact_at_their_frames(keyframes, add):
         np.testing.assert_array_equal(evaluated(obj, 11 + 2.5 * k), points)
     for frame, points in ((-5, expected[0]), (100, expected[-1])):
         np.testing.assert_array_equal(evaluated(obj, frame), points)
+    frames = [point.co[0] for point in fcurves(obj.data.shape_keys or obj.data)[0].keyframe_points]
+    for start, end in pairwise(frames[2:5]):
+        ends = evaluated(obj, start).astype(np.float64), evaluated(obj, end).astype(np.float64)
+        for share in (0.25, 0.75):
+            straight = (1 - share) * ends[0] + share * ends[1]
+            np.testing.assert_allclose(evaluated(obj, start + (end - start) * share), straight, atol=2e-6)
 
 
 @pytest.mark.parametrize("output", [Output.SHAPE_KEYS, Output.FCURVES])
 def test_many_keys_stay_exact(output):
     obj = add_trefoil(12)
-    rng = np.random.default_rng(1)
-    points = rng.standard_normal((600, 12, 3)).astype(np.float32)
+    points = np.random.default_rng(1).standard_normal((600, 12, 3)).astype(np.float32)
     keys = Keys(tuple(Key(0.37 * k, p) for k, p in enumerate(points)), 0)
     list(writing(obj, keys, np.arange(-20.0, 580.0), output))
     for k in (0, 1, 2, 299, 500, 598, 599):
         np.testing.assert_allclose(evaluated(obj, k - 20), points[k], atol=2e-4 if 0 < k < 599 else 0)
+
+
+def relax_trefoil(**options):
+    add_trefoil()
+    return relax(max_iterations=5, **options)
 
 
 def test_shape_keys_are_absolute_with_one_fcurve():
@@ -56,47 +70,24 @@ def test_shape_keys_are_absolute_with_one_fcurve():
     assert [block.frame for block in keys.key_blocks] == [point.co[1] for point in curve.keyframe_points]
     assert {block.interpolation for block in keys.key_blocks} == {"KEY_LINEAR"}
     assert len(bpy.data.actions) == 1
-
-
-def test_fcurves_are_one_for_each_coordinate():
-    obj = relax_trefoil(keyframes="FCURVES")
-    assert obj.data.shape_keys is None
-    curves = fcurves(obj.data)
-    assert len(curves) == 3 * len(stored(obj.data))
-    assert {(curve.data_path, curve.array_index) for curve in curves} == {
-        (f"splines[0].points[{p}].co", axis) for p in range(len(stored(obj.data))) for axis in range(3)
-    }
-    assert all(curve.keyframe_points[0].interpolation == "LINEAR" for curve in curves)
-
-
-def relax_trefoil(**options):
-    add_trefoil()
-    return relax(max_iterations=5, **options)
-
-
-def test_the_result_alone_is_not_animated():
-    obj = relax_trefoil(keyframes="RESULT")
-    assert obj.data.shape_keys is None
-    assert obj.data.animation_data is None
-    assert len(bpy.data.actions) == 0
-
-
-def test_points_move_straight_between_keys():
-    obj = relax_trefoil(frames_per_iterate=4.0)
-    frames = [point.co[0] for point in fcurves(obj.data.shape_keys)[0].keyframe_points]
-    for start, end in pairwise(frames[:4]):
-        ends = evaluated(obj, start).astype(np.float64), evaluated(obj, end).astype(np.float64)
-        for share in (0.25, 0.5, 0.75):
-            straight = (1 - share) * ends[0] + share * ends[1]
-            np.testing.assert_allclose(evaluated(obj, start + (end - start) * share), straight, atol=2e-6)
-
-
-def test_removing_the_keys_leaves_the_relaxed_curve():
-    obj = relax_trefoil()
     last = evaluated(obj, 6)
     obj.shape_key_clear()
     np.testing.assert_array_equal(evaluated(obj, 1), last)
     np.testing.assert_array_equal(stored(obj.data), last)
+
+
+def test_fcurves_are_one_for_each_coordinate_and_the_result_has_none():
+    obj = relax_trefoil(keyframes="FCURVES")
+    assert obj.data.shape_keys is None
+    curves = fcurves(obj.data)
+    wanted = {(f"splines[0].points[{p}].co", axis) for p in range(len(stored(obj.data))) for axis in range(3)}
+    assert len(curves) == len(wanted)
+    assert {(curve.data_path, curve.array_index) for curve in curves} == wanted
+    assert all(curve.keyframe_points[0].interpolation == "LINEAR" for curve in curves)
+    bpy.data.batch_remove([obj, *bpy.data.actions])
+    obj = relax_trefoil(keyframes="RESULT")
+    assert obj.data.shape_keys is obj.data.animation_data is None
+    assert not bpy.data.actions
 
 
 def test_thinning_keeps_first_and_last():
@@ -112,21 +103,11 @@ def test_thinning_keeps_first_and_last():
 
 
 def test_thinned_keys_are_proved(capfd):
-    from hard_curves import hard_unknot
-    from mobius_flow.core.collision import is_free
-
-    curve = hard_unknot(8, seed=3, vertices=80)
-    obj = add_curve([curve.vertices])
+    obj = add_curve([hard_unknot(8, seed=3, vertices=80).vertices])
     relax(max_keys=3)
     assert "proved free of contact" in capfd.readouterr().out
-    blocks = obj.data.shape_keys.key_blocks
-    keys = np.empty((len(blocks), 3 * len(blocks[0].data)), dtype=np.float32)
-    for k, block in enumerate(blocks):
-        block.data.foreach_get("co", keys[k])
-    mesh = Curve(keys[0].reshape(-1, 3).astype(np.float64)).mesh
-    frames = keys.reshape(len(blocks), -1, 3).astype(np.float64)
-    for a, b in pairwise(frames):
-        assert is_free(mesh, a, b)
+    frames = [key_points(block).astype(np.float64) for block in obj.data.shape_keys.key_blocks]
+    assert all(is_free(Curve(frames[0]).mesh, a, b) for a, b in pairwise(frames))
 
 
 def test_keys_near_the_last_frame_are_all_there():
@@ -137,3 +118,52 @@ def test_keys_near_the_last_frame_are_all_there():
     assert [point.co[0] for point in curve.keyframe_points] == [1_048_500 + k for k in range(9)]
     for k, points in enumerate(expected):
         np.testing.assert_array_equal(evaluated(obj, 1_048_500 + k), points)
+
+
+# -- since 4.4 Blender puts keys of an object into the action of its curve ---------------------------------------------
+
+
+@pytest.fixture(params=["SHAPE_KEYS", "FCURVES"])
+def turning(request):
+    """A baked curve on an object that turns."""
+    add_trefoil()
+    obj = relax(max_iterations=3, keyframes=request.param)
+    for frame, turn in ((1, 0.0), (100, 2.0)):
+        obj.rotation_euler.z = turn
+        obj.keyframe_insert("rotation_euler", frame=frame)
+    assert bake.is_baked(obj.data)
+    assert what_moves(obj) == "animation"
+    return obj
+
+
+def angle(frame):
+    bpy.context.scene.frame_set(frame)
+    return bpy.context.object.evaluated_get(bpy.context.evaluated_depsgraph_get()).rotation_euler.z
+
+
+@pytest.mark.parametrize("operator", ["bake_again", "continue", None])
+def test_a_turning_object_goes_on_turning_whatever_happens_to_its_curve(turning, operator):
+    for _ in range(2 if operator else 0):
+        done = getattr(bpy.ops.curve, f"mobius_flow_{operator}")(max_iterations=2, fit_bevel=False)
+        assert done == {"FINISHED"}
+        assert bake.is_baked(turning.data)
+        assert angle(100) == pytest.approx(2.0)
+    assert bpy.ops.curve.mobius_flow_clear() == {"FINISHED"}
+    assert angle(100) == pytest.approx(2.0)
+    assert len(turning.data.splines[0].points) == 30
+    (action,) = bpy.data.actions
+    assert all(slot.target_id_type == "OBJECT" for slot in getattr(action, "slots", ()))
+    before = stored(turning.data)
+    bpy.context.scene.frame_set(1)
+    np.testing.assert_array_equal(stored(turning.data), before)
+
+
+def test_an_object_next_to_a_turning_one_does_not_move(turning):
+    """Their actions are one where somebody has chosen so."""
+    still = bpy.data.objects.new("Still", None)
+    bpy.context.scene.collection.objects.link(still)
+    still.animation_data_create().action = turning.animation_data.action
+    if hasattr(turning.animation_data.action, "slots"):
+        slots = still.animation_data.action.slots
+        still.animation_data.action_slot = slots.new(id_type="OBJECT", name="Still")
+        assert what_moves(still) is None

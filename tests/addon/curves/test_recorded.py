@@ -1,14 +1,14 @@
-"""Shapes of curves in time are those that Blender shows."""
+"""Shapes of curves, at rest and in time, are those that Blender shows; smooth splines become the polygons drawn."""
 
+import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_curve, add_hopf_link, add_trefoil, evaluated, fcurves, relax
+from blender_scenes import add_curve, add_hopf_link, add_trefoil, contents, evaluated, fcurves, relax, stored, values
+from mobius_flow.addon.curves import splines
 from mobius_flow.addon.curves.recorded import Recorded
-from shapes import torus_trefoil
+from shapes import hopf_link, torus_trefoil
 
-
-def animated(obj):
-    return fcurves(obj.data.shape_keys or obj.data)
+SAMPLED = {"sample_splines": True, "max_iterations": 0, "keyframes": "RESULT"}
 
 
 def bend(curves):
@@ -30,7 +30,7 @@ def move_keys(curves):
 def test_they_are_what_is_shown(keyframes, changed):
     obj = add_hopf_link(16)
     relax(max_iterations=5, keyframes=keyframes, vertices=40)
-    changed(animated(obj))
+    changed(fcurves(obj.data.shape_keys or obj.data))
     recorded = Recorded.of(obj)
     assert recorded.mesh.component_sizes == tuple(len(spline.points) for spline in obj.data.splines)
     for frame, points in zip(recorded.frames, recorded.points, strict=True):
@@ -40,21 +40,89 @@ def test_they_are_what_is_shown(keyframes, changed):
 def test_radii_are_those_of_the_keys():
     obj = add_trefoil(60)
     relax(max_iterations=8, fit_bevel=True)
-    recorded = Recorded.of(obj)
     expected = [block.data[5].radius for block in obj.data.shape_keys.key_blocks]
-    np.testing.assert_allclose(recorded.radii[:, 5], expected, rtol=1e-6)
+    np.testing.assert_allclose(Recorded.of(obj).radii[:, 5], expected, rtol=1e-6)
 
 
 def test_a_curve_without_keys_has_one_shape():
     obj = add_trefoil(30)
     obj.data.splines[0].points[3].radius = 2.0
-    recorded = Recorded.of(obj)
-    assert recorded.frames.shape == (1,)
-    np.testing.assert_allclose(recorded.points[0], evaluated(obj), atol=1e-6)
-    assert recorded.radii[0, 3] == 2.0
+    for each in (obj, add_curve([torus_trefoil(12).vertices], kind="NURBS")):
+        recorded = Recorded.of(each)
+        assert recorded.frames.shape == (1,)
+        np.testing.assert_allclose(recorded.points[0], evaluated(each), atol=1e-6)
+    assert Recorded.of(obj).radii[0, 3] == 2.0
 
 
-def test_smooth_splines_are_seen_as_drawn():
-    obj = add_curve([torus_trefoil(12).vertices], kind="NURBS")
-    recorded = Recorded.of(obj)
-    np.testing.assert_allclose(recorded.points[0], evaluated(obj), atol=1e-6)
+# -- smooth splines --------------------------------------------------------------------------------------------------
+
+
+def smooth_link(kind, resolution):
+    """Two linked rings, of six control points each."""
+    vertices = 2 * hopf_link(6).vertices
+    obj = add_curve([vertices[:6], vertices[6:]], kind=kind)
+    for spline in obj.data.splines:
+        spline.resolution_u = resolution
+        if kind == "BEZIER":
+            for point in spline.bezier_points:
+                point.handle_left_type = point.handle_right_type = "AUTO"
+    bpy.context.view_layer.update()
+    return obj
+
+
+@pytest.mark.parametrize("resolution", [1, 2, 3, 12])
+@pytest.mark.parametrize("kind", ["BEZIER", "NURBS"])
+def test_the_polygon_is_the_one_drawn_with_values_between_those_of_control_points(kind, resolution):
+    obj = smooth_link(kind, resolution)
+    for name in ("Red", "Blue"):
+        obj.data.materials.append(bpy.data.materials.new(name))
+    radii = np.linspace(0.5, 1.5, 6)
+    for spline in obj.data.splines:
+        splines.control_points(spline).foreach_set("radius", radii.astype(np.float32))
+        spline.material_index = 1
+    drawn = splines.sampled(obj)
+    assert [len(loop) for loop in drawn] == 2 * [6 * resolution]
+    relax(**SAMPLED, vertices=12 * resolution if resolution > 2 else 0)
+    points = stored(obj.data)
+    nearest = np.linalg.norm(points[:, None] - np.concatenate(drawn)[None], axis=2).min(axis=0)
+    assert nearest.max() < 1e-6, "every point drawn is a point now"
+    for spline in obj.data.splines:
+        assert (spline.type, spline.use_cyclic_u, spline.material_index) == ("POLY", True, 1)
+        found = values(spline, "radius")
+        assert (found.min(), found.max()) == (0.5, pytest.approx(1.5))
+        if resolution == 12:
+            np.testing.assert_allclose(found[::12], radii, atol=1e-6)
+
+
+def test_smooth_and_straight_splines_keep_their_order():
+    obj = smooth_link("BEZIER", 2)
+    polygon = obj.data.splines.new("POLY")
+    polygon.points.add(3)
+    square = np.array([[9, 0, 0, 1], [10, 0, 0, 1], [10, 1, 0, 1], [9, 1, 0, 1]], dtype=np.float32)
+    polygon.points.foreach_set("co", square.ravel())
+    polygon.use_cyclic_u = True
+    relax(**SAMPLED)
+    last = stored(obj.data)[-len(obj.data.splines[2].points) :]
+    assert np.abs(last[:, :3] - square[0, :3]).max() <= 1
+
+
+def test_a_segment_is_no_polygon():
+    obj = smooth_link("BEZIER", 12)
+    spline = obj.data.splines.new("BEZIER")
+    spline.bezier_points.add(1)
+    spline.bezier_points.foreach_set("co", (2 * hopf_link(6).vertices[:2] + 9).ravel())
+    spline.use_cyclic_u, spline.resolution_u = True, 1
+    before = contents()
+    with pytest.raises(RuntimeError, match="Spline 3 of 'Knot' is drawn with only 2 points; raise its Resolution U"):
+        relax(**SAMPLED)
+    assert contents() == before
+
+
+def test_the_questions_count_points_and_of_many_objects_some_are_asked_about():
+    question = "'Knot' has 2 Bézier splines; they become polygons of 60 points in all"
+    assert splines.questions([smooth_link("BEZIER", 5)]) == [question]
+    objects = [smooth_link("NURBS", 3) for _ in range(8)] + [add_curve([hopf_link(6).vertices[:6]])]
+    assert len(splines.questions(objects[5:])) == 3
+    lines = splines.questions(objects)
+    assert [line.split("'")[1] for line in lines[:-1]] == [obj.name for obj in objects[:5]]
+    assert lines[-1] == "3 more objects have smooth splines too"
