@@ -1,13 +1,19 @@
-"""Baked curves are baked again and cleared, at once and in a file that was saved and opened again."""
+"""Baked curves are baked again, go on and are cleared, at once and in a file that was opened again."""
+
+from itertools import pairwise
 
 import bpy
 import numpy as np
 import pytest
-from baked_curves import KEYED, again, blocks, clear, curve_of, go_on, last_frame, reopen, two_rings
+from baked_curves import KEYED, SHORT, again, blocks, clear, curve_of, go_on, last_frame, reopen, two_rings
 from blender_scenes import add_curve, add_trefoil, contents, evaluated, relax, stored
 from families import crossed
 from mathutils import Vector
 from mobius_flow.addon.curves import bake, keyframes
+from mobius_flow.addon.curves.recorded import BakedKeys
+from mobius_flow.core.collision import is_free
+from mobius_flow.core.curve import Mesh
+from mobius_flow.core.keys import key_options
 from mobius_flow.core.knots import knot
 from shapes import torus_trefoil
 
@@ -139,3 +145,270 @@ def test_constant_thickness_is_the_least():
     further = [block.data[0].radius for block in obj.data.shape_keys.key_blocks[len(constant) :]]
     assert len(further) == 8
     assert np.ptp(further) < 1e-6
+
+
+@pytest.mark.parametrize("reopened", [False, True])
+@pytest.mark.parametrize("keyframes", KEYED)
+def test_continuing_adds_proved_keys_after_the_old_ones(tmp_path, capfd, keyframes, reopened):
+    obj = add_trefoil()
+    relax(max_iterations=4, keyframes=keyframes)
+    old = [evaluated(obj, 1 + k) for k in range(5)]
+    names = blocks()
+    if reopened:
+        obj = reopen(tmp_path / "a.blend")
+    bpy.context.scene.frame_set(2)  # F-curves leave the points of this frame in the curve
+    capfd.readouterr()
+    go_on(max_iterations=2, timing="ITERATE", keyframes="RESULT")
+    assert "2 new keys up to frame 7, proved free of contact" in capfd.readouterr().out
+    shown = [evaluated(obj, 1 + k) for k in range(7)]
+    np.testing.assert_array_equal(shown[:5], old)
+    mesh = Mesh((len(old[0]),))
+    for a, b in pairwise(shown):
+        assert not np.array_equal(a, b)
+        assert is_free(mesh, a.astype(np.float64), b.astype(np.float64))
+    assert last_frame(obj) == 7
+    assert blocks() == names
+
+
+def test_continuing_by_length_goes_on_after_the_rest(monkeypatch):
+    monkeypatch.setattr(key_options, "_SLOWEST", 1e9)
+    obj = add_trefoil()
+    relax(max_iterations=3, timing="DISTANCE", length=50, hold_end=10)
+    go_on(timing="DISTANCE", length=100, hold_start=5, hold_end=2)
+    curve = curve_of(obj)
+    frames = [point.co[0] for point in curve.keyframe_points]
+    rest = frames.index(40)
+    assert frames[rest + 1] - 55 < np.diff(frames[rest + 1 :]).max() + 1e-3
+    assert frames[-1] == 148
+    np.testing.assert_array_equal(evaluated(obj, 55), evaluated(obj, 40))
+    clear()
+    assert len(obj.data.splines[0].points) == 30
+
+
+def test_no_motion_takes_no_length_but_the_rest_at_the_beginning_is_played(monkeypatch):
+    obj = add_trefoil()
+    with monkeypatch.context() as patch:
+        patch.setattr(key_options, "_SLOWEST", 1e9)
+        relax(max_iterations=3, timing="DISTANCE", length=50, hold_start=10, hold_end=5)
+        go_on(timing="DISTANCE", length=100, hold_start=3, hold_end=2)
+        assert bake.scene_range([obj]) == (1, 150)
+    relax(max_iterations=400, timing="EVEN", length=50)
+    go_on(timing="EVEN", length=100, tolerance=1e-3)
+    first, last = bake.scene_range([obj])
+    assert first == 1
+    assert 50 <= last <= 60
+
+
+def test_continuing_gets_where_a_longer_run_gets(capfd):
+    obj = add_trefoil()
+    relax(max_iterations=3)
+    go_on(max_iterations=1, timing="ITERATE")
+    assert "; 1 new key up to frame 5, proved" in capfd.readouterr().out
+    go_on(max_iterations=400)
+    split = keyframes.end_of(obj.data).astype(np.float64)
+    relax(max_iterations=400)
+    whole = keyframes.end_of(obj.data).astype(np.float64)
+    lengths = [np.sort(np.linalg.norm(p - p.mean(axis=0), axis=1)) for p in (split, whole)]
+    np.testing.assert_allclose(*lengths, atol=2e-2)
+
+
+@pytest.mark.parametrize("keyframes", [*KEYED, "RESULT"])
+def test_a_fitted_tube_keeps_its_radius_when_it_goes_on(keyframes):
+    """Its keys go on as what they are, whatever is asked for."""
+    obj = add_trefoil()
+    relax(max_iterations=4, fit_bevel=True)
+
+    def radius(block):
+        return obj.data.bevel_depth * block.data[0].radius
+
+    before = [radius(block) for block in obj.data.shape_keys.key_blocks]
+    go_on(max_iterations=30, fit_bevel=True, keyframes=keyframes)
+    after = [radius(block) for block in obj.data.shape_keys.key_blocks]
+    np.testing.assert_allclose(after[:5], before, rtol=1e-5)
+    assert after[-1] == pytest.approx(obj.data.bevel_depth)
+
+
+def test_baked_apart_they_go_on_together():
+    """The one that rests earlier waits for the other."""
+    pair = two_rings()
+    for obj, count in zip(pair, (2, 5), strict=True):
+        bpy.ops.object.select_all(action="DESELECT")
+        obj.select_set(True)
+        bpy.context.view_layer.objects.active = obj
+        relax(max_iterations=count)
+    ends = [keyframes.end_of(obj.data) for obj in pair]
+    for obj in pair:
+        obj.select_set(True)
+    go_on(max_iterations=2, timing="ITERATE")
+    for obj, end in zip(pair, ends, strict=True):
+        np.testing.assert_array_equal(evaluated(obj, 6), end)
+        assert last_frame(obj) == 8
+
+
+def test_retimed_keys_go_on_where_they_end_now():
+    obj = add_trefoil()
+    relax(max_iterations=2)
+    curve = curve_of(obj)
+    for point in curve.keyframe_points:
+        point.co[0] = 10 * point.co[0]
+    go_on(max_iterations=2, timing="ITERATE")
+    assert [point.co[0] for point in curve_of(obj).keyframe_points] == [10, 20, 30, 31, 32]
+
+
+@pytest.mark.parametrize("keyframes_as", KEYED)
+def test_an_animation_without_motion_goes_on(keyframes_as):
+    obj = add_trefoil()
+    relax(max_iterations=0, keyframes=keyframes_as)
+    assert last_frame(obj) == 1
+    go_on(max_iterations=3, timing="ITERATE")
+    assert last_frame(obj) == 4
+    again(max_iterations=400, keyframes=keyframes_as, timing="ITERATE")
+    end, shown = last_frame(obj), keyframes.end_of(obj.data)
+    go_on(max_iterations=400, tolerance=0.01)  # there is nothing left to do
+    assert last_frame(obj) == end
+    np.testing.assert_array_equal(keyframes.end_of(obj.data), shown)
+
+
+def test_what_was_thinned_goes_on_thinned():
+    obj = add_trefoil()
+    relax(max_iterations=6, max_keys=3)
+    go_on(max_iterations=2, max_keys=2)
+    assert 4 <= len(obj.data.shape_keys.key_blocks) < 9
+    mesh = Mesh((len(stored(obj.data)),))
+    points = [np.array([p.co[:] for p in block.data]) for block in obj.data.shape_keys.key_blocks]
+    assert all(is_free(mesh, a, b) for a, b in pairwise(points))
+
+
+@pytest.mark.parametrize("call", [bpy.ops.curve.mobius_flow_bake_again, bpy.ops.curve.mobius_flow_continue])
+@pytest.mark.parametrize("keyframes_as", KEYED)
+def test_a_failure_gives_the_baked_curve_back(monkeypatch, call, keyframes_as):
+    obj = add_trefoil()
+    relax(max_iterations=3, keyframes=keyframes_as)
+    data, points = obj.data, [evaluated(obj, k) for k in (1, 2, 4)]
+    before, names = contents(), blocks()
+    written = keyframes.writing
+
+    def failing(*arguments):
+        yield from written(*arguments)
+        raise MemoryError
+
+    monkeypatch.setattr(keyframes, "writing", failing)
+    with pytest.raises(RuntimeError, match="Memory ran out; all is as it was"):
+        call(**SHORT)
+    assert contents() == before
+    assert blocks() == names
+    assert obj.data == data
+    assert not data.use_fake_user
+    for k, shown in zip((1, 2, 4), points, strict=True):
+        np.testing.assert_array_equal(evaluated(obj, k), shown)
+
+
+def test_to_continue_takes_the_points_that_there_are_and_clear_what_is_left():
+    obj = add_trefoil()
+    relax(max_iterations=3, vertices=40)
+    assert bpy.ops.curve.mobius_flow_continue(**SHORT, vertices=90) == {"FINISHED"}
+    assert len(obj.data.splines[0].points) == 40
+    obj.shape_key_add(name="Mine")
+    assert not bpy.ops.curve.mobius_flow_clear.poll()
+    obj.shape_key_remove(obj.data.shape_keys.key_blocks["Mine"])
+    clear()
+    assert len(obj.data.splines[0].points) == 30
+
+
+@pytest.mark.parametrize("key", [0, -1])
+def test_keys_that_were_edited_are_not_lost(key):
+    obj = add_trefoil()
+    relax(max_iterations=4)
+    obj.data.shape_keys.key_blocks[key].data[7].co.x += 0.125
+    for call in (bpy.ops.curve.mobius_flow_relax, bpy.ops.curve.mobius_flow_continue, bpy.ops.curve.mobius_flow_clear):
+        with pytest.raises(RuntimeError, match="Keys of 'Knot' were edited; undo that, or remove the keys"):
+            call()
+
+
+def test_a_look_into_edit_mode_edits_nothing():
+    obj = add_trefoil()
+    relax(max_iterations=4)
+    for key in (0, 3):
+        obj.active_shape_key_index = key
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.object.mode_set(mode="OBJECT")
+    again()
+    clear()
+
+
+def test_a_copy_has_an_animation_of_its_own():
+    obj = add_trefoil()
+    relax(max_iterations=3)
+    shown = evaluated(obj, 3)
+    bpy.ops.object.duplicate()
+    copy = bpy.context.object
+    assert copy != obj
+    clear()
+    assert copy.data.shape_keys is None
+    np.testing.assert_array_equal(evaluated(obj, 3), shown)
+
+
+def test_drivers_and_settings_of_the_curve_stay():
+    obj = add_trefoil()
+    data = obj.data
+    data.use_fake_user, data["mine"] = True, 3
+    other = bpy.data.objects.new("Other", None)
+    bpy.context.scene.collection.objects.link(other)
+    driver = other.driver_add("location", 0).driver
+    driver.variables.new().targets[0].id_type = "CURVE"
+    driver.variables[0].targets[0].id = data
+    relax(max_iterations=2)
+    again()
+    go_on()
+    assert driver.variables[0].targets[0].id == obj.data
+    assert (obj.data.use_fake_user, obj.data["mine"], obj.data.name) == (True, 3, "Knot")
+    assert obj.data.users == 2  # the object and the fake one
+
+
+MOVES = {"untangle": "always", "max_iterations": 3}
+
+
+@pytest.mark.parametrize(("keyframes", "size"), [("SHAPE_KEYS", "AUTO"), ("SHAPE_KEYS", "LENGTH"), ("FCURVES", "BOX")])
+def test_strand_moves_are_keyed(keyframes, size, capfd):
+    obj = add_curve([knot("goeritz").vertices])
+    start = stored(obj.data)
+    relax(**MOVES, keyframes=keyframes, keep_size=size, max_keys=60)
+    assert "proved free of contact with itself" in capfd.readouterr().out
+    keys = BakedKeys([obj])
+    assert len(keys.frames) >= 60
+    assert keys.unproved == 0
+    assert {tuple(point) for point in start} <= {tuple(point) for point in keys.frames[0]}
+
+
+def test_strand_moves_are_shown_and_tubes_fitted_at_all_keys(operator):
+    obj = add_curve([knot("goeritz").vertices])
+    obj.data.bevel_depth = 0.1
+    operator.given |= MOVES | {"fit_bevel": True, "any_bevel": True}
+    operator.start()
+    counts = set()
+    operator.until(lambda: counts.add(len(obj.data.splines[0].points)))
+    assert operator.run.report.certified
+    assert len(counts) < 8  # points change only where there come more
+    assert min(block.data[0].radius for block in obj.data.shape_keys.key_blocks) > 0.0
+    assert bpy.ops.curve.mobius_flow_continue(max_iterations=3, untangle="always") == {"FINISHED"}
+    assert BakedKeys([obj]).unproved == 0
+
+
+def test_the_scene_plays_what_is_asked_for_unless_it_is_negative(capfd):
+    add_trefoil()
+    scene = bpy.context.scene
+    scene.frame_start, scene.frame_end = 1, 40
+    relax(max_iterations=3, timing="EVEN", length=40)
+    assert "Set Scene Range" not in capfd.readouterr().out
+    relax(max_iterations=3, timing="EVEN", length=40, hold_end=5, start_frame=6)
+    said = capfd.readouterr().out
+    assert "The scene plays frames 1 to 40 only, the animation has 6 to 45: press Set Scene Range" in said
+    assert bpy.ops.curve.mobius_flow_scene_range() == {"FINISHED"}
+    assert (scene.frame_start, scene.frame_end) == (6, 45)
+    assert not capfd.readouterr().out
+    sentence = "only, the animation has -9 to 30: no scene plays negative frames, so bake again with a later Start"
+    relax(max_iterations=3, timing="EVEN", length=40, start_frame=-9)
+    assert f"The scene plays frames 6 to 45 {sentence}" in capfd.readouterr().out
+    bpy.ops.curve.mobius_flow_scene_range()
+    assert f"The scene plays frames 0 to 30 {sentence}" in capfd.readouterr().out
+    assert (scene.frame_start, scene.frame_end) == (0, 30)

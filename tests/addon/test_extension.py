@@ -38,46 +38,38 @@ def empty_wheels(builder, tmp_path_factory, monkeypatch):
     return room
 
 
-def names_in(path):
-    with zipfile.ZipFile(path) as archive:
-        return archive.namelist()
+@pytest.fixture
+def archive(builder, empty_wheels, tmp_path):
+    """The zip for one platform, opened."""
+    with zipfile.ZipFile(builder.build(PLATFORM, tmp_path, empty_wheels)) as opened:
+        yield opened
 
 
-def test_only_what_blender_runs_is_in_the_zip(builder, empty_wheels, tmp_path):
-    names = names_in(builder.build(PLATFORM, tmp_path, empty_wheels))
-    top = {name.split("/")[0] for name in names if not name.endswith("/")}
+def test_only_what_blender_runs_is_in_the_zip(archive):
+    files = [name for name in archive.namelist() if not name.endswith("/")]
+    top = {name.split("/")[0] for name in files}
     assert top == {"__init__.py", "blender_manifest.toml", "LICENSE", "README.md", "addon", "core", "wheels"}
-    files = [name for name in names if not name.endswith("/")]
     data = [name for name in files if name.startswith(("addon/", "core/")) and not name.endswith(".py")]
     tables = [f"core/knots/{name}" for name in ("least_energies.csv", "shapes.npz", "table.ini")]
-    assets = ["addon/assets/assets.blend", "addon/assets/knots.png"]
+    assets = ["addon/assets/knots.png", "addon/assets/looks.blend"]
     assert sorted(data) == [*assets, "addon/translations/de.po", *tables]
     assert not [name for name in files if "__pycache__" in name or Path(name).name.startswith(".")]
-    wheels = [name for name in files if name.startswith("wheels/")]
-    packages = [name.removeprefix("wheels/").split("-")[0] for name in wheels]
-    assert sorted(packages) == ["scipy"] * 2 + ["threadpoolctl"]  # Python 3.11 and 3.13
-
-
-def test_debians_blender_has_a_wheel_more(builder, empty_wheels, tmp_path):
-    names = names_in(builder.build(PLATFORM, tmp_path, empty_wheels, debian=True))
-    assert len([name for name in names if "cp314" in name]) == 1
-
-
-def test_the_readme_links_what_is_there(builder, empty_wheels, tmp_path):
-    with zipfile.ZipFile(builder.build(PLATFORM, tmp_path, empty_wheels)) as archive:
-        text = archive.read("README.md").decode()
-        links = re.findall(r"\]\(([^)]*)\)", text)
-        assert links
-        assert all(link in archive.namelist() for link in links if "://" not in link)
-        assert all(f"**{button}**" in text for button in ("Add Knot", "Relax", "Render Film"))
-
-
-def test_every_module_is_in_the_zip(builder, empty_wheels, tmp_path):
-    names = names_in(builder.build(PLATFORM, tmp_path, empty_wheels))
     tracked = subprocess.run(
         ["git", "ls-files", "addon", "core"], cwd=ROOT, capture_output=True, text=True, check=True
     ).stdout.split()
-    assert set(names) >= {name for name in tracked if (ROOT / name).is_file()}
+    assert set(files) >= {name for name in tracked if (ROOT / name).is_file()}
+    wheels = [name.removeprefix("wheels/").split("-")[0] for name in files if name.startswith("wheels/")]
+    assert sorted(wheels) == ["scipy"] * 2 + ["threadpoolctl"]  # Python 3.11 and 3.13
+    text = archive.read("README.md").decode()
+    links = re.findall(r"\]\(([^)]*)\)", text)
+    assert links
+    assert all(link in files for link in links if "://" not in link)
+    assert all(f"**{button}**" in text for button in ("Add Knot", "Relax", "Render Film"))
+
+
+def test_debians_blender_has_a_wheel_more(builder, empty_wheels, tmp_path):
+    with zipfile.ZipFile(builder.build(PLATFORM, tmp_path, empty_wheels, debian=True)) as archive:
+        assert len([name for name in archive.namelist() if "cp314" in name]) == 1
 
 
 def test_each_platform_has_its_own_wheels(builder, empty_wheels, tmp_path):
@@ -132,17 +124,13 @@ def test_it_is_validated_by_every_blender_that_is_there(builder, empty_wheels, t
         builder.build(PLATFORM, tmp_path, empty_wheels)
 
 
-@pytest.mark.parametrize("typed", ["mobius", "relax", "knot", "untangle"])
-def test_it_is_found_among_extensions(typed):
+def test_it_is_found_among_extensions_and_the_manifest_itself_names_no_wheels():
     """As Blender's list is filtered: by what is part of the name or of the tagline."""
     from bl_pkg.bl_extension_ops import pkg_info_check_exclude_filter_ex
 
     manifest = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))
-    assert pkg_info_check_exclude_filter_ex(manifest["name"], manifest["tagline"], typed)
-
-
-def test_the_manifest_itself_names_no_wheels():
-    manifest = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))
+    for typed in ("mobius", "relax", "knot", "untangle"):
+        assert pkg_info_check_exclude_filter_ex(manifest["name"], manifest["tagline"], typed)
     assert "wheels" not in manifest
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     assert project["project"]["version"] == manifest["version"]

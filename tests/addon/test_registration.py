@@ -4,7 +4,7 @@ import ast
 from pathlib import Path
 
 import bpy
-import pytest
+from mobius_flow.addon.live import overlay
 
 ADDON = Path(__file__).parents[2] / "addon"
 # of the types that annotations name, which are evaluated when a module is imported, all that the oldest Blender has
@@ -38,12 +38,13 @@ def test_unregistering_leaves_nothing(addon):
     registered = traces()
     addon.unregister()
     try:
-        assert traces() == []
+        assert traces() == overlay._handles == []
         assert not hasattr(bpy.types.Scene, "mobius_flow")
         assert not hasattr(bpy.types, "CURVE_OT_mobius_flow_relax")
     finally:
         addon.register()
     assert traces() == registered
+    assert len(overlay._handles) == 1
     assert "mobius_flow" in dir(bpy.types.Scene)
 
 
@@ -54,42 +55,3 @@ def test_no_annotation_is_beyond_the_oldest_blender():
     types = [ast.unparse(part) for note in notes for part in ast.walk(note) if isinstance(part, ast.Attribute)]
     assert {name.split(".")[2] for name in types if name.startswith("bpy.types.")} <= {*OLD.split()}
     assert all(hasattr(bpy.types, name) for name in OLD.split())  # tried with Blender 4.2, too
-
-
-def test_settings_are_the_librarys_defaults():
-    from mobius_flow.addon.properties import SETTINGS, relax_options
-    from mobius_flow.core import RelaxOptions
-
-    settings = bpy.context.scene.mobius_flow
-    values = {name: getattr(settings, name) for name in SETTINGS}
-    options = relax_options(values)
-    assert options.tolerance == pytest.approx(RelaxOptions().tolerance)
-    assert options.method == RelaxOptions().method
-    assert options.vertices is None
-
-
-def test_settings_are_saved_with_the_file(tmp_path):
-    bpy.context.scene.mobius_flow.max_keys = 17
-    bpy.context.scene.mobius_flow.method = methods()[-1]
-    method = bpy.context.scene.mobius_flow.method
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "a.blend"))
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    assert bpy.context.scene.mobius_flow.max_keys == 0
-    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "a.blend"))
-    assert (bpy.context.scene.mobius_flow.max_keys, bpy.context.scene.mobius_flow.method) == (17, method)
-
-
-def methods():
-    from mobius_flow.core import METHODS
-
-    return list(METHODS)
-
-
-def test_every_setting_says_what_it_does():
-    knot = bpy.ops.curve.mobius_flow_add_knot.get_rna_type().properties
-    own = [
-        each for each in bpy.context.scene.mobius_flow.bl_rna.properties if each.identifier not in ("rna_type", "name")
-    ]
-    for each in [*own, *(knot[name] for name in ("knot", "p", "q", "size", "thickness"))]:
-        assert each.description, each.identifier
-        assert not each.description.endswith("."), each.identifier

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_curve, add_trefoil, evaluated, relax
+from blender_scenes import add_curve, add_trefoil, evaluated, relax, stored
 from mobius_flow.addon.buttons import relaxing
 from mobius_flow.addon.curves import bake
 from mobius_flow.addon.curves.keyframes import all_fcurves, frames_of
@@ -48,12 +48,18 @@ def test_length_and_rests_and_pace_act_at_once(film, settings):
     assert frames_of(film.data)[-1] - frames_of(film.data)[0] == pytest.approx(2.5 * 8)
     for one, other in zip(before, ends(film), strict=True):
         np.testing.assert_array_equal(one, other)
+    kept = frames_of(film.data)
+    settings.hold_end, settings.timing = 500, "EVEN"  # which do not go together
+    settings.length = 89
+    np.testing.assert_array_equal(frames_of(film.data), kept)
     assert bake.is_baked(film.data)
     assert not bake.is_edited(film.data)
 
 
-def test_there_and_back_at_once():
+def test_there_and_back_at_once(capfd):
     obj, settings = add_trefoil(), bpy.context.scene.mobius_flow
+    relax(**EVEN, loop=True)
+    assert "up to frame 40, " in capfd.readouterr().out
     relax(**EVEN)
     shown, count = evaluated(obj, 15.0), len(frames_of(obj.data))
     settings.length, settings.loop = 79, True
@@ -67,12 +73,6 @@ def test_there_and_back_at_once():
     np.testing.assert_allclose(evaluated(obj, 15.0), shown, atol=1e-6)
 
 
-def test_a_loop_is_reported_up_to_its_last_frame(capfd):
-    add_trefoil()
-    relax(**EVEN, loop=True)
-    assert "up to frame 40, " in capfd.readouterr().out
-
-
 def test_a_film_that_went_on_is_timed_as_one(settings):
     obj = add_trefoil()
     relax(timing="EVEN", length=30, max_iterations=3)
@@ -84,30 +84,17 @@ def test_a_film_that_went_on_is_timed_as_one(settings):
     assert (np.diff(Recorded.of(obj).frames) > 0).all()
 
 
-def test_what_does_not_go_together_leaves_the_film_as_it_is(film, settings):
-    before = frames_of(film.data)
-    settings.hold_end = 500
-    np.testing.assert_array_equal(frames_of(film.data), before)
-    settings.hold_end = 0
-    settings.length = 2 if len(before) > 65 else 40
-    assert len(frames_of(film.data)) == len(before)
-
-
-def test_keys_that_somebody_has_moved_stay(settings):
-    obj = add_trefoil()
-    relax(**EVEN)
-    (curve,) = (curve for curve in all_fcurves() if curve.data_path == "eval_time")
-    curve.keyframe_points[3].co.x += 0.4
-    curve.update()
-    settings.length = 90
-    assert bake.scene_range([obj]) == (1, 40)
-
-
-def test_others_are_not_retimed(settings):
+def test_others_are_not_retimed_nor_keys_that_somebody_has_moved(settings):
     obj = add_trefoil()
     relax(**EVEN)
     obj.select_set(False)
     settings.length = 90
+    assert bake.scene_range([obj]) == (1, 40)
+    obj.select_set(True)
+    (curve,) = (curve for curve in all_fcurves() if curve.data_path == "eval_time")
+    curve.keyframe_points[3].co.x += 0.4
+    curve.update()
+    settings.length = 80
     assert bake.scene_range([obj]) == (1, 40)
 
 
@@ -145,10 +132,8 @@ def test_materials_follow(settings):
 
 def test_flow_time_begins_with_the_given_curve_and_every_key_has_its_frame():
     """Strand moves take their share of the film's time."""
-    from blender_scenes import add_curve
-
     obj = add_curve([knot("goeritz").vertices])
-    start = np.concatenate([[p.co[:3] for p in s.points] for s in obj.data.splines]).astype(np.float32)
+    start = stored(obj.data)
     relax(timing="FLOW_TIME", method="flow-moebius", untangle="always", max_iterations=5)
     frames, blocks = frames_of(obj.data), obj.data.shape_keys.key_blocks
     assert len(frames) == len(blocks)

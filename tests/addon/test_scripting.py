@@ -12,18 +12,17 @@ from mobius_flow.addon.properties import SETTINGS
 from mobius_flow.addon.scripting import complete
 from mobius_flow.core import MobiusFlowError, OptionError
 from mobius_flow.core.keys.motion import Kind
+from shapes import hopf_link, regular_polygon
 
 SHORT = {"max_iterations": 5, "vertices": 100, "length": 10, "timing": "DISTANCE"}
 
 
-def nothing_selected():
+def test_a_script_and_the_button_do_the_same():
+    bpy.context.scene.mobius_flow.max_iterations = 1  # which scripts do not look at
+    bpy.context.scene.mobius_flow.length = 77
+    by_script = add_trefoil()
     bpy.ops.object.select_all(action="DESELECT")
     bpy.context.view_layer.objects.active = None
-
-
-def test_a_script_and_the_button_do_the_same():
-    by_script = add_trefoil()
-    nothing_selected()
     report = Relaxation(by_script).relax(**SHORT)
     assert report.certified
     assert report.kinds[Kind.STEP] == 6
@@ -32,15 +31,6 @@ def test_a_script_and_the_button_do_the_same():
     relax(**{"keep_size": "AUTO"} | SHORT)
     np.testing.assert_array_equal(stored(by_script.data), stored(by_button.data))
     assert bake.scene_range([by_script]) == bake.scene_range([by_button]) == (1, 10)
-
-
-def test_the_scenes_settings_are_not_looked_at():
-    bpy.context.scene.mobius_flow.max_iterations = 1
-    bpy.context.scene.mobius_flow.length = 77
-    obj = add_trefoil()
-    Relaxation(obj).relax(max_iterations=3, timing="DISTANCE")
-    assert sum(block.name.startswith("Step") for block in obj.data.shape_keys.key_blocks) == 4
-    assert bake.scene_range([obj]) == (1, 250)
 
 
 def test_defaults_are_those_of_a_new_scene():
@@ -63,27 +53,17 @@ def test_again_further_and_clear():
     assert report.kinds.total() == report.keys - 1  # the last key that was there is not new
     relaxation.clear()
     np.testing.assert_array_equal(stored(obj.data), before)
-    with pytest.raises(MobiusFlowError, match="has no keys"):
-        _ = relaxation.curves
 
 
 def test_several_objects_are_one_link():
-    one, other = add_curve([_ring(0)]), add_curve([_ring(1)])
+    one, other = (add_curve([part]) for part in hopf_link(24).components)
     report = Relaxation(one, other).relax(**SHORT)
     assert report.names == (one.name, other.name)
     assert len(Relaxation(one, other).curves[-1].mesh.component_sizes) == 2
 
 
-def _ring(k):
-    """One of two linked circles; (24, 3)."""
-    t = np.linspace(0, 2 * np.pi, 24, endpoint=False)
-    circle = np.stack([np.cos(t), np.sin(t), 0 * t], axis=1)
-    return circle if k == 0 else circle[:, [0, 2, 1]] + [1, 0, 0]
-
-
 def test_smooth_splines_only_if_agreed():
-    t = np.linspace(0, 2 * np.pi, 8, endpoint=False)
-    obj = add_curve([np.stack([np.cos(t), np.sin(t), 0 * t], axis=1)], kind="NURBS")
+    obj = add_curve([regular_polygon(8).vertices], kind="NURBS")
     with pytest.raises(MobiusFlowError, match="NURBS"):
         Relaxation(obj).relax(**SHORT)
     Relaxation(obj, sample_splines=True).relax(**SHORT)
@@ -112,29 +92,20 @@ def test_settings_that_are_none(settings, said):
     assert not bake.is_baked(obj.data)
 
 
-@pytest.mark.parametrize("wrong", [None, "Knot"])
-def test_what_is_no_object_is_named(wrong):
-    add_trefoil()
-    with pytest.raises(MobiusFlowError, match=f"'{wrong}' is not a curve object"):
-        Relaxation(wrong)
-
-
-def test_a_curve_given_twice_is_no_link():
-    obj = add_trefoil()
-    with pytest.raises(MobiusFlowError, match="'Knot' is given twice"):
-        Relaxation(obj, obj)
-
-
 def test_what_cannot_be_relaxed():
-    with pytest.raises(MobiusFlowError, match="at least one"):
-        Relaxation()
-    with pytest.raises(MobiusFlowError, match="'Eye' is not a curve"):
-        Relaxation(bpy.data.objects.new("Eye", bpy.data.cameras.new("Eye")))
-    obj = add_trefoil()
-    with pytest.raises(MobiusFlowError, match="has no keys"):
-        Relaxation(obj).relax_further()
-    with pytest.raises(MobiusFlowError, match="has no keys"):
-        Relaxation(obj).clear()
+    obj, eye = add_trefoil(), bpy.data.objects.new("Eye", bpy.data.cameras.new("Eye"))
+    for given, said in (
+        ((), "at least one"),
+        ((None,), "'None' is not a curve object"),
+        (("Knot",), "'Knot' is not a curve object"),
+        ((eye,), "'Eye' is not a curve"),
+        ((obj, obj), "'Knot' is given twice"),
+    ):
+        with pytest.raises(MobiusFlowError, match=said):
+            Relaxation(*given)
+    for act in (Relaxation(obj).relax_further, Relaxation(obj).clear, lambda: Relaxation(obj).curves):
+        with pytest.raises(MobiusFlowError, match="has no keys"):
+            act()
     obj.data.dimensions = "2D"
     with pytest.raises(MobiusFlowError, match="is a 2D curve"):
         Relaxation(obj).relax()

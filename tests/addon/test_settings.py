@@ -13,6 +13,8 @@ from mobius_flow.addon.sidebar.relax import VIEW3D_PT_mobius_flow
 from mobius_flow.core import METHODS, Curve, OptionError, RelaxOptions, minimize
 from mobius_flow.core.base.arguments import declared, option
 from option_values import unlike_default
+from panel_layout import Layout, shown
+from shapes import torus_trefoil
 
 SHOWN = {each.name: each for each in declared(RelaxOptions) if each.is_setting}
 GIVEN = {name: unlike_default(each) for name, each in SHOWN.items()}
@@ -122,30 +124,13 @@ def test_methods_have_names_for_people():
     assert {name for name, each in METHODS.items() if each.label == name} == set()
 
 
-def drawn(cls):
-    """The settings that a panel shows."""
-    names = []
-
-    class Layout:
-        def column(self, align=False):
-            return self
-
-        def prop(self, _owner, name):
-            names.append(name)
-
-        def operator(self, _name, **_):
-            return SimpleNamespace()
-
-    cls.draw(SimpleNamespace(layout=Layout(), rows=cls.rows), bpy.context)
-    return names
-
-
 def test_the_expert_panel_shows_what_artists_might_set():
     expert = VIEW3D_PT_mobius_flow_expert
     assert expert.is_registered
     assert expert.bl_parent_id == VIEW3D_PT_mobius_flow.__name__
     assert "DEFAULT_CLOSED" in expert.bl_options
-    assert drawn(expert) == ["untangle", "timing", "start_frame", "hold_start", "keyframes", "keep_size", "options"]
+    wanted = ["untangle", "timing", "start_frame", "hold_start", "keyframes", "keep_size", "options"]
+    assert shown(expert).settings == wanted
     assert "Sobolev Gradients for the Möbius Energy" in expert.bl_description
 
 
@@ -156,7 +141,8 @@ def test_options_that_nothing_else_knows_of_appear_by_themselves(monkeypatch):
     assert patience["description"] == "How long to wait; 0: without limit"
     assert (patience["min"], patience["max"], patience["default"]) == (0.0, 9.0, 0.0)
     assert ([item[0] for item in colour["items"]], colour["default"]) == (["red", "blue"], "red")
-    assert "colour" in drawn(VIEW3D_PT_mobius_flow_expert)
+    monkeypatch.setattr(Layout, "prop", lambda self, _owner, name, **_: self.settings.append(name))
+    assert "colour" in shown(VIEW3D_PT_mobius_flow_expert).settings
     values = scene_values() | {"patience": 0.0, "colour": "blue"}
     assert asdict(properties.relax_options(values))["patience"] is None
     assert properties.relax_options(values | {"patience": 2.0}).patience == 2.0
@@ -197,3 +183,51 @@ def test_the_result_is_the_librarys(options):
     np.testing.assert_array_equal(stored(obj.data), result.astype(np.float32))
     plain = minimize(start, RelaxOptions(max_iterations=6)).curve.vertices
     assert not np.array_equal(stored(obj.data), plain.astype(np.float32))
+
+
+QUALITIES = properties.QUALITIES
+
+
+def panel():
+    return bpy.context.scene.mobius_flow_panel
+
+
+@pytest.mark.parametrize("name", QUALITIES)
+def test_choosing_a_quality_sets_its_options(name, capfd):
+    settings = bpy.context.scene.mobius_flow
+    assert panel().quality == "GOOD"
+    panel().quality = "CUSTOM"
+    assert panel().quality == "GOOD", "that leaves all as it is"
+    settings.method, settings.vertices, settings.energy = "flow-l2", 77, "edge"
+    assert panel().quality == "CUSTOM"
+    settings.options += " nonsense"
+    panel().quality = name
+    assert (panel().quality, capfd.readouterr().err) == ("CUSTOM", "")
+    settings.options = settings.options.removesuffix(" nonsense")
+    panel().quality = name
+    assert panel().quality == name
+    for each, value in QUALITIES[name].values.items():
+        assert getattr(settings, each) == (pytest.approx(value) if isinstance(value, float) else value)
+    assert settings.energy == "edge"
+    assert bpy.data.scenes.new("Other").mobius_flow_panel.quality == "GOOD", "every scene has its own"
+    item = panel().bl_rna.properties["quality"].enum_items[name]
+    assert (item.name, item.description) == (QUALITIES[name].label, QUALITIES[name].description)
+    assert item.description.isprintable()
+
+
+@pytest.mark.parametrize(
+    "change", [{"tolerance": 2e-4}, {"vertices": 100}, {"method": "cg"}, {"max_iterations": 7}], ids=str
+)
+def test_other_settings_have_no_quality(change):
+    assert properties.quality_of(SimpleNamespace(**QUALITIES["GOOD"].values | change)) is None
+
+
+def test_good_is_what_the_library_does_by_itself_and_better_ones_have_less_energy():
+    default = RelaxOptions()
+    assert QUALITIES["GOOD"].values == {name: getattr(default, name) or 0 for name in QUALITIES["GOOD"].values}
+    options = [RelaxOptions(**each.values | {"vertices": None}) for each in QUALITIES.values()]
+    preview, good, exact = (minimize(torus_trefoil(60), each).final_energy for each in options)
+    assert exact == pytest.approx(good, rel=1e-8)
+    assert good < preview
+    assert good - exact < 1e-4 * exact
+    assert preview - exact < 0.05 * exact

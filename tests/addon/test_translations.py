@@ -12,6 +12,7 @@ import pytest
 import shown_texts
 from mobius_flow.addon import registration, translations
 from mobius_flow.addon.curves.recorded import lay_flat
+from mobius_flow.addon.live.requirements import RELAXABLE
 from mobius_flow.addon.pictures.movie import target
 from mobius_flow.addon.translations import ANY, read_po
 from mobius_flow.core import MobiusFlowError
@@ -166,41 +167,27 @@ def german(text):
     return GERMAN[translations.CONTEXT, text]
 
 
-def test_a_refusal_in_german():
+def test_what_is_refused_in_german(tmp_path):
     bpy.ops.curve.mobius_flow_add_knot(knot="3_1")
     curve = bpy.context.active_object
     curve.name, curve.data.dimensions = "{Knot}", "2D"
     with pytest.raises(RuntimeError, match=r"'\{Knot\}' is a 2D curve"):
         bpy.ops.curve.mobius_flow_relax()
-    from mobius_flow.addon.live.requirements import RELAXABLE
-
-    said = RELAXABLE(bpy.context).sentence.said(german)
-    assert said.startswith("'{Knot}' ist eine 2D-Kurve")
-
-
-def test_what_cannot_be_turned_in_german():
-    bpy.ops.curve.mobius_flow_add_knot(knot="3_1")
-    curve = bpy.context.active_object
-    curve.name = "Knot"
+    assert RELAXABLE(bpy.context).sentence.said(german).startswith("'{Knot}' ist eine 2D-Kurve")
+    curve.name, curve.data.dimensions = "Knot", "3D"
     curve.constraints.new("LIMIT_LOCATION")
     with pytest.raises(MobiusFlowError) as caught:
         lay_flat([curve])
     said = str(caught.value).said(german)
     assert said == "'Knot' wird bewegt (Beschränkung); das entfernen oder die Kurve backen und einzeln drehen"
-
-
-def test_what_is_no_film_in_german(tmp_path):
     with pytest.raises(MobiusFlowError) as caught:
         target(str(tmp_path))
     assert str(caught.value).said(german) == f"{tmp_path} ist ein Verzeichnis; eine Datei darin angeben"
 
 
-def test_names_are_joined_in_german():
+def test_errors_hand_phrases_on_and_names_are_joined_in_german():
     assert named(["A", "B", "C"]).said(german) == "'A', 'B' und 'C'"
     assert named("ABCDEF").said(german) == "'A', 'B', 'C' und 3 weitere"
-
-
-def test_errors_hand_phrases_on():
     phrase = Message("{names} is being relaxed; stop that first", names=named(["A", "B"]))
     said = str(MobiusFlowError(phrase)).said(german)
     assert said == "'A' und 'B': Entspannung läuft; diese zuerst beenden"
