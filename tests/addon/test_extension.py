@@ -51,7 +51,7 @@ def test_only_what_blender_runs_is_in_the_zip(archive):
     assert top == {"__init__.py", "blender_manifest.toml", "LICENSE", "README.md", "addon", "core", "wheels"}
     data = [name for name in files if name.startswith(("addon/", "core/")) and not name.endswith(".py")]
     tables = [f"core/knots/{name}" for name in ("least_energies.csv", "shapes.npz", "table.ini")]
-    assets = ["addon/assets/knots.png", "addon/assets/looks.blend"]
+    assets = ["addon/assets/assets.blend", "addon/assets/knots.png"]
     assert sorted(data) == [*assets, "addon/translations/de.po", *tables]
     assert not [name for name in files if "__pycache__" in name or Path(name).name.startswith(".")]
     tracked = subprocess.run(
