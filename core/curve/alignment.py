@@ -12,7 +12,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 from scipy.spatial.transform import Rotation
 
-from ..base.types import BoolArray, FloatArray, IntArray
+from ..base.types import FloatArray
 from .curve import Curve
 from .refine import evenly
 
@@ -96,16 +96,34 @@ def alignments(curve: Curve, other: Curve, freedom: Freedom) -> list[Alignment]:
     radii = [np.sqrt(np.square(each).sum(axis=2).mean()) for each in (x - source, y - target)]
     scale = 1.0 if freedom.fixed is not None else float(radii[1] / radii[0])
     x, y = scale * (x - source) / radii[1], (y - target) / radii[1]
-    pairs = _Pairs(x, y, np.array(curve.mesh.closed), np.array(other.mesh.closed))
-    rotations = freedom.starts()
+    # cross-correlations Σ_k y_{k+s} x_kᵀ of all pairs of components, in both directions, at all s.  Open components are
+    # held at their ends: each is compared only with the one of its number, in the same direction
+    closed, other_closed, count = np.array(curve.mesh.closed), np.array(other.mesh.closed), len(x)
+    back = y[:, ::-1].copy()
+    back[other_closed] = np.roll(back[other_closed], 1, axis=1)  # from the first vertex, too
+    spectra = np.fft.rfft(np.stack([y, back]), axis=2), np.fft.rfft(x, axis=1).conj()
+    products = np.fft.irfft(np.einsum("deka,ckb->cedkab", *spectra), SAMPLES, axis=3)
+    correlations = products.reshape(count, count, 2 * SAMPLES, 9)
+    allowed = np.repeat((closed[:, None] & other_closed)[:, :, None], 2 * SAMPLES, axis=2)
+    allowed[~closed, ~closed, 0] = True
+    rotations, rows = freedom.starts(), np.arange(count)
     for _ in range(12):
-        covariances, orders, backwards, begins = pairs.best(rotations)
+        # each rotation's best directions and shifts of all pairs, then the best order of components
+        flat = rotations.reshape(-1, 9)
+        scores, where = np.empty((count, count, len(flat))), np.empty((count, count, len(flat)), dtype=np.intp)
+        for c, e in np.ndindex(count, count):
+            values = np.where(allowed[c, e, :, None], correlations[c, e] @ flat.T, -1e300)
+            scores[c, e], where[c, e] = values.max(axis=0), values.argmax(axis=0)
+        orders = np.array([linear_sum_assignment(-scores[:, :, k])[1] for k in range(len(flat))])
+        chosen = where[rows, orders, np.arange(len(flat))[:, None]]
+        covariances = correlations[rows, orders, chosen].sum(axis=1).reshape(-1, 3, 3)
         before, rotations = rotations, freedom.best(covariances)
         if np.allclose(rotations, before):
             break
     squares = np.square(x).sum() + np.square(y).sum() - 2.0 * np.einsum("kij,kij->k", rotations, covariances)
     distances = np.sqrt(np.maximum(squares, 0.0) / (len(y) * SAMPLES))
-    columns = rotations, orders.tolist(), backwards.tolist(), begins / SAMPLES, distances.tolist()
+    turned = chosen >= SAMPLES
+    columns = rotations, orders.tolist(), turned.tolist(), chosen % SAMPLES / SAMPLES, distances.tolist()
     found = [
         Alignment(rotation, scale, source, target, tuple(order), tuple(back), tuple(begin), distance)
         for rotation, order, back, begin, distance in zip(*columns, strict=True)
@@ -115,35 +133,6 @@ def alignments(curve: Curve, other: Curve, freedom: Freedom) -> list[Alignment]:
         if all(np.linalg.norm(each.rotation - one.rotation) > 0.3 for one in distinct):
             distinct.append(each)
     return distinct
-
-
-class _Pairs:
-    """Cross-correlations Σ_k y_{k+s} x_kᵀ of the samples of all pairs of components, in both directions, at all s.
-
-    Open components are held at their ends: each is compared only with the one of its number, in the same direction.
-    """
-
-    def __init__(self, x: FloatArray, y: FloatArray, closed: BoolArray, other_closed: BoolArray) -> None:
-        back = y[:, ::-1].copy()
-        back[other_closed] = np.roll(back[other_closed], 1, axis=1)  # from the first vertex, too
-        spectra = np.fft.rfft(np.stack([y, back]), axis=2), np.fft.rfft(x, axis=1).conj()
-        products = np.einsum("deka,ckb->cedkab", *spectra)
-        self._all = np.fft.irfft(products, SAMPLES, axis=3).reshape(len(x), len(x), 2 * SAMPLES, 9)
-        self._allowed = np.repeat((closed[:, None] & other_closed)[:, :, None], 2 * SAMPLES, axis=2)
-        self._allowed[~closed, ~closed, 0] = True
-
-    def best(self, rotations: FloatArray) -> tuple[FloatArray, IntArray, BoolArray, IntArray]:
-        """Covariances, (k, 3, 3), for each rotation's best orders, directions and shifts, (k, components) each."""
-        count, flat = len(self._all), rotations.reshape(-1, 9)
-        scores, where = np.empty((count, count, len(flat))), np.empty((count, count, len(flat)), dtype=np.intp)
-        for c, e in np.ndindex(count, count):
-            values = np.where(self._allowed[c, e, :, None], self._all[c, e] @ flat.T, -1e300)
-            scores[c, e], where[c, e] = values.max(axis=0), values.argmax(axis=0)
-        orders = np.array([linear_sum_assignment(-scores[:, :, k])[1] for k in range(len(flat))])
-        rows = np.arange(count)
-        chosen = where[rows, orders, np.arange(len(flat))[:, None]]
-        covariances = self._all[rows, orders, chosen].sum(axis=1).reshape(-1, 3, 3)
-        return covariances, orders, chosen >= SAMPLES, chosen % SAMPLES
 
 
 def _samples(curve: Curve) -> FloatArray:

@@ -60,8 +60,7 @@ def arc_distances(curve: Curve, t_i: float, t_j: float, rows: IntArray, columns:
 
 def arc_distance_of_pairs(curve: Curve, i: IntArray, j: IntArray, t: float = 0.0) -> FloatArray:
     """ϱ between the points at t of edges ``i`` and ``j``, by default their tails; inf across components."""
-    position, component = arc_positions(curve, t), curve.mesh.edge_component
-    return _shorter_way(curve, component[i], component[j], np.abs(position[i] - position[j]))
+    return arc_distance_of_points(curve, i, t * curve.edge_lengths[i], j, t * curve.edge_lengths[j])
 
 
 def arc_distance_of_points(curve: Curve, i: IntArray, s: FloatArray, j: IntArray, t: FloatArray) -> FloatArray:

@@ -18,8 +18,6 @@ from .mesh import Mesh
 from .refine import interpolated
 
 _TINY = float(np.finfo(np.float64).tiny)
-_TURNS = np.array([-1.0, 0.0, 1.0])  # more or less than at the next key
-_LONGEST_MITRE = 2.0  # at corners sharper than 120° rings do not reach as far out as the edges' cylinders meet
 
 
 class Tube(NamedTuple):
@@ -45,10 +43,9 @@ def tubes(curves: Sequence[Curve], radius: float, sides: int = 12) -> list[list[
             np.stack([np.broadcast_to(faces[:, :1], faces[:, 2:].shape), faces[:, 1:-1], faces[:, 2:]], axis=-1)
             for faces in (quads(piece, sides), caps(piece, sides))
         ]
-        own, faces = points[:, part], np.concatenate([fan.reshape(-1, 3) for fan in fans])
-        circle = _circles(own, sides, closed)
-        ring = own[:, :, None] + radius * _mitred(circle, *edges_around(own, closed))
-        made.append([Tube(p.reshape(-1, 3), n.reshape(-1, 3), faces) for p, n in zip(ring, circle, strict=True)])
+        faces = np.concatenate([fan.reshape(-1, 3) for fan in fans])
+        normal, ring = _rings(points[:, part], np.full((1, size), radius), closed, sides)
+        made.append([Tube(p.reshape(-1, 3), n.reshape(-1, 3), faces) for p, n in zip(ring, normal, strict=True)])
     return made
 
 
@@ -58,12 +55,25 @@ def rings(points: FloatArray, radii: FloatArray, mesh: Mesh, sides: int) -> Floa
     Rings lie in the planes that halve the angle between two edges, and are stretched where these meet at a corner so
     that the tube is as thick along the edges as it should be. Points: (keys, n, 3); radii: (keys, n).
     """
-    pieces = []
-    for part, closed in zip(mesh.slices, mesh.closed, strict=True):
-        own = points[:, part]
-        circle = _mitred(_circles(own, sides, closed), *edges_around(own, closed))
-        pieces.append(own[:, :, None] + radii[:, part, None, None] * circle)
+    pieces = [
+        _rings(points[:, part], radii[:, part], closed, sides)[1]
+        for part, closed in zip(mesh.slices, mesh.closed, strict=True)
+    ]
     return np.concatenate(pieces, axis=1).reshape(len(points), -1, 3)
+
+
+def _rings(points: FloatArray, radii: FloatArray, closed: bool, sides: int) -> tuple[FloatArray, FloatArray]:
+    """Unit normals round one component, and its rings; (keys, n, sides, 3) each, from (keys, n, 3) and (keys, n)."""
+    tau, u = tangents(points, closed), normals(points, closed)
+    theta = 2 * np.pi * np.arange(sides) / sides
+    circle = turned(u[..., None, :], tau[..., None, :], theta)
+    # stretched by 1/cos(φ/2) in the plane of a corner where the curve turns by φ; at corners sharper than 120° rings do
+    # not reach as far out as the edges' cylinders meet
+    before, after = edges_around(points, closed)
+    cosine, outward = 0.5 * np.linalg.norm(before + after, axis=-1), unit(after - before)
+    stretch = np.minimum(1.0 / np.maximum(cosine, 0.5), 2.0) - 1.0
+    mitred = circle + (circle @ outward[..., None]) * (stretch[..., None] * outward)[:, :, None, :]
+    return circle, points[:, :, None] + radii[:, :, None, None] * mitred
 
 
 def quads(mesh: Mesh, sides: int) -> IntArray:
@@ -78,21 +88,6 @@ def caps(mesh: Mesh, sides: int) -> IntArray:
     j = np.arange(sides)
     both = np.stack([mesh.ends[:, :1] * sides + j[::-1], mesh.ends[:, 1:] * sides + j], axis=1)
     return np.asarray(both.reshape(-1, sides))
-
-
-def _circles(points: FloatArray, sides: int, closed: bool) -> FloatArray:
-    """Unit normals round one component, where its rings are before corners stretch them; (keys, n, sides, 3)."""
-    tau, u = tangents(points, closed), normals(points, closed)
-    theta = 2 * np.pi * np.arange(sides) / sides
-    return turned(u[..., None, :], tau[..., None, :], theta)
-
-
-def _mitred(circle: FloatArray, before: FloatArray, after: FloatArray) -> FloatArray:
-    """Stretch rings by 1/cos(φ/2) in the plane of a corner where the curve turns by φ; (keys, n, sides, 3)."""
-    cosine = 0.5 * np.linalg.norm(before + after, axis=-1)
-    stretch = np.minimum(1.0 / np.maximum(cosine, 1.0 / _LONGEST_MITRE), _LONGEST_MITRE) - 1.0
-    outward = unit(after - before)
-    return np.asarray(circle + (circle @ outward[..., None]) * (stretch[..., None] * outward)[:, :, None, :])
 
 
 def tangents(points: FloatArray, closed: bool = True) -> FloatArray:
@@ -128,8 +123,9 @@ def normals(points: FloatArray, closed: bool = True) -> FloatArray:
     for k in range(len(points) - 2, -1, -1):
         wanted = carried(normal[k + 1], tau[k + 1], tau[k])
         missing = signed_angle(turned(bare[k], tau[k], angles[k]), wanted, tau[k])
-        # whole turns over the length, and an angle for all normals, that leave least of the missing angles
-        candidates = turns + _TURNS
+        # whole turns over the length, one more or less than at the next key, and an angle for all normals, that leave
+        # least of the missing angles
+        candidates = turns + np.array([-1.0, 0.0, 1.0])
         means = np.exp(1j * (missing - 2 * np.pi * candidates[:, None] * share[k])).mean(axis=1)
         best = int(np.abs(means).argmax())
         turns, offset = float(candidates[best]), float(np.angle(means[best]))

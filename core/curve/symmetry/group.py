@@ -4,7 +4,7 @@ Names are Schoenflies symbols of finite groups: C3, D2, S4, Td, …
 """
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -56,17 +56,14 @@ class SymmetryGroup:
 
     def subgroup(self, name: str) -> "SymmetryGroup | None":
         """The subgroup of that name whose elements are nearest to symmetries of the curve; None if there is none."""
-        named = [SymmetryGroup.of([self.elements[k] for k in each], self.centre) for each in self._subgroups()]
-        return min((each for each in named if each.name == name), key=lambda each: each.distance, default=None)
-
-    def _subgroups(self) -> Iterator[list[int]]:
-        """Yield for each subgroup the numbers of its elements, ascending."""
         table = multiplication(np.stack([each.matrix for each in self.elements]))
-        found = new = {frozenset([0])}
+        named, found, new = [], set[frozenset[int]](), {frozenset([0])}
         while new:
-            yield from map(sorted, new)
-            found = found | new
-            new = {_generated({*each, g}, table) for each in new for g in range(len(table)) if g not in each} - found
+            groups = [SymmetryGroup.of([self.elements[k] for k in sorted(each)], self.centre) for each in new]
+            named += [each for each in groups if each.name == name]
+            found, before = found | new, new
+            new = {_generated({*each, g}, table) for each in before for g in range(len(table)) if g not in each} - found
+        return min(named, key=lambda each: each.distance, default=None)
 
     def symmetrised(self, curve: Curve, sizes: Sequence[int]) -> tuple[Curve, Symmetry, tuple[float, ...]]:
         """The mean of a curve's images, on a mesh of at least ``sizes`` vertices, spread evenly over each component.
