@@ -1,12 +1,13 @@
 """Slow, independent references for energies: pair by pair, from the definitions."""
 
 from collections.abc import Callable, Iterator, Sequence
-from functools import lru_cache
+from functools import cache
 from itertools import pairwise
 
 import mpmath as mp
 import numpy as np
 from mobius_flow.core import Curve
+from sympy.integrals.quadrature import gauss_legendre
 
 mp.mp.dps = 30
 
@@ -106,23 +107,14 @@ def inverse_square_integral(*points: Sequence[float | mp.mpf]) -> mp.mpf:
 
 
 def _panel(f: Callable[[mp.mpf], mp.mpf], a: mp.mpf, b: mp.mpf) -> mp.mpf:
-    return (b - a) / 2 * mp.fsum(w * f((a + b) / 2 + (b - a) / 2 * x) for x, w in _legendre(28))
+    return (b - a) / 2 * mp.fsum(w * f((a + b) / 2 + (b - a) / 2 * x) for x, w in _legendre())
 
 
-@lru_cache
-def _legendre(n: int) -> list[tuple[mp.mpf, mp.mpf]]:
-    """Gauss points and weights on [−1, 1], by Newton's method from double precision."""
-    rule = []
-    for start in np.polynomial.legendre.leggauss(n)[0]:
-        x = mp.mpf(float(start))
-        for _ in range(3):
-            x -= mp.legendre(n, x) / _slope(n, x)
-        rule.append((x, 2 / ((1 - x * x) * _slope(n, x) ** 2)))
-    return rule
-
-
-def _slope(n: int, x: mp.mpf) -> mp.mpf:
-    return n * (x * mp.legendre(n, x) - mp.legendre(n - 1, x)) / (x * x - 1)
+@cache
+def _legendre() -> list[tuple[mp.mpf, mp.mpf]]:
+    """28 Gauss points and weights on [−1, 1]."""
+    points, weights = gauss_legendre(28, mp.mp.dps)
+    return [(mp.mpf(str(x)), mp.mpf(str(w))) for x, w in zip(points, weights, strict=True)]
 
 
 def _dot(a: list[mp.mpf], b: list[mp.mpf]) -> mp.mpf:

@@ -50,3 +50,9 @@ def scattered_rings(count: int, size: int, spread: float = 10.0, dimension: int 
     """Small polygons anywhere in a cube, in no spatial order."""
     centres = np.random.default_rng(17).uniform(0, spread, (count, 1, dimension))
     return Curve.from_components(list(centres + regular_polygon(size, dimension).vertices))
+
+
+def crossing(gap: float, n: int = 20) -> Curve:
+    """Two crossing strands of one curve, nearer to each other than their edges are long."""
+    t = 2 * np.pi * (np.arange(n) + 0.3) / n
+    return Curve(np.stack([np.sin(t), np.sin(2 * t), 0.5 * gap * np.cos(t)], axis=1))

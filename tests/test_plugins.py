@@ -357,7 +357,7 @@ def test_the_documents_are_out_of_date_until_they_are_rendered(copy, python):
 def test_the_tests_pick_it_up(copy):
     """And that of the metrics asks for the newcomer's value on the circle."""
     files = [
-        *("core/energies/test_derivatives.py", "core/energies/test_invariances.py", "core/driver/test_methods.py"),
+        *("core/energies/test_contract.py", "core/driver/test_methods.py"),
         *("core/io/test_refusals.py", "cli/test_options.py", "core/solve/test_metrics.py"),
     ]
     chosen = "inverse-cube or heavy-ball-knot or halving-knot or num or patience or lumped and (circle or definite)"
@@ -365,8 +365,8 @@ def test_the_tests_pick_it_up(copy):
     done = finished([sys.executable, "-m", "pytest", "--slow", *words], cwd=copy, env=environment(copy))
     found = dict(re.findall(r"^tests/\S*/(test_\w+\.py::\S+) (PASSED|FAILED)", done.stdout, re.MULTILINE))
     for test in (
-        "test_derivatives.py::test_taylor_slope_of_the_derivative[plane-inverse-cube]",
-        "test_invariances.py::test_similarities[inverse-cube]",
+        "test_contract.py::test_values_and_derivatives_fit_together[inverse-cube-plane]",
+        "test_contract.py::test_similarities[inverse-cube]",
         "test_methods.py::test_every_method_on_every_kind_of_task[heavy-ball-knot]",
         "test_methods.py::test_every_method_on_every_kind_of_task[halving-knot]",
         "test_refusals.py::test_any_bytes_give_a_curve_or_one_sentence[.num]",

@@ -9,7 +9,7 @@ from mobius_flow.core.energies import Barrier
 from mobius_flow.core.energies.barrier import closeness, cutoff, exact, midpoint, near_pairs
 from mobius_flow.core.energies.edge_pairs import EdgePairs, change, stepped
 from mobius_flow.core.knots import knot
-from shapes import lattice_knot, regular_polygon
+from shapes import crossing, lattice_knot, regular_polygon
 from smooth_curves import SMOOTH_CURVES, random_polygon
 from taylor import taylor_slope
 
@@ -31,26 +31,6 @@ def test_one_pair(gap: float, by_midpoints: float, by_integral: float) -> None:
     pair = one_pair([0, 0, 0], [1, 0, 0], [0.3, -0.6, gap], [0.5, 0.4, gap])
     assert midpoint(pair).value[0] == pytest.approx(by_midpoints, abs=1e-9)
     assert exact(pair).value[0] == pytest.approx(by_integral, abs=1e-9)
-
-
-@pytest.mark.parametrize("curve", [lattice_knot("4_1"), knot("thistlethwaite")], ids=["lattice", "diagram"])
-def test_coarse_knots(curve: Curve) -> None:
-    """Pair by pair, the pairs found by their definition."""
-    found = brute_force_pairs(curve)
-    assert len(found) > 100
-    total, ends = 0.0, curve.vertices[np.stack([curve.mesh.tails, curve.mesh.heads], axis=1)]
-    for i, j in found:
-        pair = one_pair(*ends[i].tolist(), *ends[j].tolist())
-        total += float(cutoff(closeness(pair).value)[0][0] * (exact(pair).value[0] - midpoint(pair).value[0]))
-    assert BARRIER.value(curve) == pytest.approx(2 * total, rel=1e-10)
-
-
-@pytest.mark.parametrize(
-    "curve", [regular_polygon(200), SMOOTH_CURVES["trefoil"].polygon(200)], ids=["200-gon", "knot"]
-)
-def test_it_vanishes_on_resolved_curves(curve: Curve) -> None:
-    assert BARRIER.value(curve) == 0.0
-    assert Objective().value(curve) == MoebiusEnergy().value(curve)
 
 
 def brute_force_pairs(curve: Curve) -> set[tuple[int, int]]:
@@ -82,39 +62,61 @@ def test_near_pairs_are_complete(seed: int, spread: float) -> None:
     assert np.all(curve.edge_lengths[i] <= curve.edge_lengths[j])
 
 
-def crossing(gap: float) -> Curve:
-    """A figure eight whose strands cross at the height ``gap``, off the midpoints of their edges."""
-    t = 2 * np.pi * (np.arange(40) + 0.3) / 40
-    return Curve(np.stack([np.sin(t), np.sin(2 * t), 0.5 * gap * np.cos(t)], axis=1))
+@pytest.mark.parametrize("curve", [lattice_knot("4_1"), knot("thistlethwaite")], ids=["lattice", "diagram"])
+def test_coarse_knots(curve: Curve) -> None:
+    """Pair by pair; and leaving pairs out of the energy changes nothing, nor do the derivatives."""
+    found = brute_force_pairs(curve)
+    assert len(found) > 100
+    total, ends = 0.0, curve.vertices[np.stack([curve.mesh.tails, curve.mesh.heads], axis=1)]
+    for i, j in found:
+        pair = one_pair(*ends[i].tolist(), *ends[j].tolist())
+        total += float(cutoff(closeness(pair).value)[0][0] * (exact(pair).value[0] - midpoint(pair).value[0]))
+    assert BARRIER.value(curve) == pytest.approx(2 * total, rel=1e-10)
+    plain, objective = MoebiusEnergy(), Objective()
+    v = np.random.default_rng(8).normal(size=curve.vertices.shape)
+    assert objective.value(curve) == pytest.approx(plain.value(curve) + BARRIER.value(curve), rel=1e-12)
+    for whole, parts in (
+        (objective.value_and_derivative(curve)[1], [e.value_and_derivative(curve)[1] for e in (plain, BARRIER)]),
+        (objective.hessian(curve), [plain.hessian(curve), BARRIER.sparse_hessian(curve)]),
+        (objective.hessian_product(curve, v), [e.hessian_product(curve, v) for e in (plain, BARRIER)]),
+    ):
+        np.testing.assert_allclose(whole, sum(parts), atol=1e-10 * np.abs(parts[0]).max())
+
+
+@pytest.mark.parametrize("curve", [regular_polygon(40), SMOOTH_CURVES["trefoil"].polygon(200)], ids=["40-gon", "knot"])
+def test_it_vanishes_on_resolved_curves(curve: Curve) -> None:
+    assert BARRIER.value_and_derivative(curve)[0] == 0.0
+    assert not BARRIER.sparse_hessian(curve).nnz
+    assert not BARRIER.hessian_product(curve, np.ones_like(curve.vertices)).any()
+    assert Objective().value(curve) == MoebiusEnergy().value(curve)
 
 
 def test_it_grows_without_bound_where_strands_meet() -> None:
-    """Across straight strands the energy grows by 2 · 2π/sin θ · log of the gap's inverse."""
-    values = [Objective().value(crossing(10.0**-k)) for k in range(3, 9)]
-    growth = np.diff(values)
+    """Across straight strands the energy grows by 2 · 2π/sin θ · log of the gap's inverse, unlike the midpoint sum."""
+    growth = np.diff([Objective().value(crossing(10.0**-k, 40)) for k in range(3, 9)])
     assert np.all(growth > 0)
-    e = crossing(1e-8)
+    e = crossing(1e-8, 40)
     i, j = np.argsort(np.linalg.norm(e.midpoints, axis=1))[:2]
     sine = np.linalg.norm(np.cross(e.edge_vectors[i], e.edge_vectors[j])) / np.prod(e.edge_lengths[[i, j]])
     assert growth[-1] == pytest.approx(4 * np.pi / sine * np.log(10), rel=0.01)
-
-
-def test_one_point_rule_alone_is_no_barrier() -> None:
-    far, near = (MoebiusEnergy().value(crossing(gap)) for gap in (1e-3, 1e-8))
+    far, near = (MoebiusEnergy().value(crossing(gap, 40)) for gap in (1e-3, 1e-8))
     assert near == pytest.approx(far, rel=1e-3)
+    value, derivative = Objective().value_and_derivative(crossing(0.0, 40))  # which is the most there is
+    assert np.isfinite(value)
+    assert value > Objective().value(crossing(1e-9, 40))
+    assert np.isfinite(derivative).all()
 
 
 def test_the_cutoff_joins_with_two_derivatives() -> None:
+    def with_derivatives(q: float) -> list[np.ndarray]:
+        return [*cutoff(np.array([q])), change(cutoff(stepped(np.array([q]), np.ones(1)))[1])]
+
     for q, value in ((0.2, 1.0), (1.0, 1.0), (2.25, 0.0), (3.0, 0.0)):
-        assert [float(part[0]) for part in cutoff_and_derivatives(q)] == pytest.approx([value, 0.0, 0.0], abs=1e-150)
+        assert [float(part[0]) for part in with_derivatives(q)] == pytest.approx([value, 0.0, 0.0], abs=1e-150)
     x = (2.25 - 1.7) / 1.25
     assert cutoff(np.array([1.7]))[0] == pytest.approx(x**3 * (10 - 15 * x + 6 * x**2))
-    terms = cutoff_and_derivatives(1.7)
-    assert taylor_slope(lambda t: cutoff(np.array([1.7 + t]))[0], terms) == pytest.approx(3, abs=0.02)
-
-
-def cutoff_and_derivatives(q: float) -> list[np.ndarray]:
-    return [*cutoff(np.array([q])), change(cutoff(stepped(np.array([q]), np.ones(1)))[1])]
+    slope = taylor_slope(lambda t: cutoff(np.array([1.7 + t]))[0], with_derivatives(1.7))
+    assert slope == pytest.approx(3, abs=0.02)
 
 
 @pytest.mark.parametrize("factor", [1e-3, 1e3])
@@ -122,24 +124,14 @@ def test_it_is_finite_on_random_polygons(factor: float) -> None:
     curve = random_polygon(17, (30, 20), 3)
     stretched = curve.with_vertices(curve.vertices * np.array([1.0, factor, 1.0]))
     value, derivative = BARRIER.value_and_derivative(stretched)
-    assert np.isfinite(value)
-    assert np.isfinite(derivative).all()
-    assert np.isfinite(BARRIER.sparse_hessian(stretched).toarray()).all()
-
-
-def test_touching_strands_give_no_nan() -> None:
-    value, derivative = Objective().value_and_derivative(crossing(0.0))
-    assert np.isfinite(value)
-    assert value > Objective().value(crossing(1e-9))
-    assert np.isfinite(derivative).all()
+    for each in (value, derivative, BARRIER.sparse_hessian(stretched).toarray()):
+        assert np.isfinite(each).all()
 
 
 @pytest.mark.parametrize("gap", [1e-4, 1e-6, 1e-8, 1e-9])
 def test_the_objective_keeps_its_digits_where_midpoint_energies_are_astronomical(gap: float) -> None:
     """Two coaxial polygons: midpoint energies of some 1/g² would cancel to some 1/g, and leave rounding errors."""
-    t = 2 * np.pi * np.arange(40) / 40
-    ring = np.stack([np.cos(t), np.sin(t), 0 * t], axis=1)
-    rng = np.random.default_rng(3)
+    ring, rng = regular_polygon(40).vertices, np.random.default_rng(3)
     curve = Curve.from_components([ring, ring + [0.0, 0.0, gap] + 0.05 * gap * rng.normal(size=ring.shape)])
     value, derivative = Objective().value_and_derivative(curve)
     # coordinates wrong by 10⁻¹⁶ are a gap wrong by 10⁻¹⁶/g
@@ -148,18 +140,3 @@ def test_the_objective_keeps_its_digits_where_midpoint_energies_are_astronomical
     v = gap * rng.normal(size=curve.vertices.shape)
     ahead, behind = (Objective().value(curve.with_vertices(curve.vertices + h * v)) for h in (1e-3, -1e-3))
     assert (ahead - behind) / 2e-3 == pytest.approx(float(np.sum(derivative * v)), rel=1e-3)
-
-
-def test_leaving_pairs_out_changes_nothing() -> None:
-    """Energy, derivative and second derivative are those of midpoint energy plus barrier."""
-    curve = lattice_knot("4_1")
-    plain, barrier, objective = MoebiusEnergy(), Barrier(), Objective()
-    v = np.random.default_rng(8).normal(size=curve.vertices.shape)
-    assert barrier.value(curve) != 0.0
-    assert objective.value(curve) == pytest.approx(plain.value(curve) + barrier.value(curve), rel=1e-12)
-    for found, parts in (
-        (objective.value_and_derivative(curve)[1], [e.value_and_derivative(curve)[1] for e in (plain, barrier)]),
-        (objective.hessian(curve), [plain.hessian(curve), barrier.sparse_hessian(curve)]),
-        (objective.hessian_product(curve, v), [e.hessian_product(curve, v) for e in (plain, barrier)]),
-    ):
-        np.testing.assert_allclose(found, sum(parts), atol=1e-10 * np.abs(parts[0]).max())

@@ -1,4 +1,4 @@
-"""Energies by quadrature of a density: sums done the slow way, circles, rates, the arc distance and its derivative."""
+"""Energies by quadrature of a density: orders of rules, the arc distance's derivative, energies of one's own."""
 
 from dataclasses import replace
 
@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 from dense_stability import tangent_basis
 from descent_contracts import point_on
-from energy_references import arc_density, circle_density, pair_sum, tangent_point_density
-from mobius_flow.core import Curve, MoebiusEnergy
+from mobius_flow.core import Curve
 from mobius_flow.core.base.errors import OptionError
 from mobius_flow.core.descent.hessian import lagrangian_hessian
-from mobius_flow.core.energies import ENERGIES, Energy, KPointEnergy, Rule, moebius_kpoint
+from mobius_flow.core.energies import KPointEnergy, Rule, moebius_kpoint
 from mobius_flow.core.energies.barrier import exact
 from mobius_flow.core.energies.densities import (
     EDGE_ENERGY,
@@ -23,57 +22,10 @@ from mobius_flow.core.energies.edge_pairs import EdgePairs
 from mobius_flow.core.solve.constraints import Constraints
 from mobius_flow.core.solve.metrics import MoebiusMetric
 from shapes import hopf_link, regular_polygon
-from smooth_curves import SMOOTH_CURVES, dual_circles, random_polygon
+from smooth_curves import random_polygon
 from taylor import derivative_slope
 
-GAUSS_2 = ([0.5 - np.sqrt(3) / 6, 0.5 + np.sqrt(3) / 6], [0.5, 0.5])
-REFERENCES = {
-    "vertex": (0, arc_density, [0.0], [1.0]),
-    "edge": (0, arc_density, [0.5], [1.0]),
-    "moebius-k2": (4, circle_density, *GAUSS_2),
-    "tangent-point": (0, tangent_point_density(3, 6), [0.0, 1.0], [0.5, 0.5]),
-}
-
-
-@pytest.mark.parametrize("name", REFERENCES)
-@pytest.mark.parametrize(("sizes", "dimension"), [((8,), 2), ((9,), 3), ((3, 4, 5), 3), ((5, 6), 4)])
-def test_sum_over_pairs(name: str, sizes: tuple[int, ...], dimension: int) -> None:
-    curve = random_polygon(3, sizes, dimension)
-    constant, density, points, weights = REFERENCES[name]
-    slow = constant * len(sizes) + pair_sum(curve, density, points, weights)
-    assert ENERGIES[name].value(curve) == pytest.approx(slow, rel=1e-12)
-
-
-@pytest.mark.parametrize("name", ["vertex", "edge", "moebius-k2", "moebius-k3"])
-def test_circle_has_energy_4(name: str) -> None:
-    """Leaving out neighbours costs O(N⁻¹), whatever the rule."""
-    counts = np.array([100, 200, 400, 800])
-    errors = np.array([abs(ENERGIES[name].value(regular_polygon(int(n))) - 4) for n in counts])
-    assert np.polyfit(np.log(counts), np.log(errors), 1)[0] == pytest.approx(-1, abs=0.1)
-    assert errors[-1] < 0.02
-
-
-@pytest.mark.parametrize("name", ["vertex", "edge", "moebius-k2", "moebius-k3"])
-@pytest.mark.parametrize("curve", SMOOTH_CURVES)
-def test_smooth_curves(name: str, curve: str) -> None:
-    exact = SMOOTH_CURVES[curve].energy
-    errors = [abs(ENERGIES[name].value(SMOOTH_CURVES[curve].polygon(n)) - exact) for n in (100, 400)]
-    assert errors[1] < 0.5 * errors[0]
-    assert errors[1] < 0.02 * exact
-
-
-@pytest.mark.parametrize("name", ["vertex", "edge", "moebius-k3"])
-def test_hopf_link(name: str) -> None:
-    assert ENERGIES[name].value(dual_circles(400)) == pytest.approx(8 + 4 * np.pi**2, rel=0.005)
-
-
-def test_one_gauss_point_is_the_default_energy() -> None:
-    curve = random_polygon(5, (9, 7), 3)
-    value, derivative = moebius_kpoint(1).value_and_derivative(curve)
-    expected_value, expected_derivative = MoebiusEnergy().value_and_derivative(curve)
-    assert value == pytest.approx(expected_value, rel=1e-13)
-    scale = np.abs(expected_derivative).max()
-    np.testing.assert_allclose(derivative, expected_derivative, rtol=0, atol=1e-12 * scale)
+ARC = pytest.mark.parametrize("energy", [VERTEX_ENERGY, EDGE_ENERGY], ids=lambda each: each.name)
 
 
 def quadrature_error(points: int, size: float, seed: int) -> float:
@@ -93,12 +45,12 @@ def test_order_of_the_rule_on_far_pairs(points: int) -> None:
     assert np.polyfit(np.log(sizes), np.log(errors), 1)[0] == pytest.approx(2 * points, abs=0.15)
 
 
-@pytest.mark.parametrize("energy", [VERTEX_ENERGY, EDGE_ENERGY], ids=lambda e: e.name)
+@ARC
 @pytest.mark.parametrize("sizes", [(12,), (5, 8)])
 def test_arc_derivative(energy: KPointEnergy, sizes: tuple[int, ...]) -> None:
     """Complete it is a derivative; without it (footnote 5 of [RS21]) only the projected gradient is right."""
     curve = random_polygon(7, sizes, 3)
-    without = KPointEnergy(energy.name, energy.description, energy.density, energy.rule, arc_derivative=False)
+    without = replace(energy, arc_derivative=False)
     v = np.random.default_rng(3).normal(size=curve.vertices.shape)
     assert derivative_slope(energy, curve, v, largest=1e-3) == pytest.approx(2, abs=0.01)
     assert derivative_slope(without, curve, v, largest=1e-3) == pytest.approx(1, abs=0.01)
@@ -110,10 +62,10 @@ def test_arc_derivative(energy: KPointEnergy, sizes: tuple[int, ...]) -> None:
     np.testing.assert_allclose(projected, expected, rtol=0, atol=1e-10 * np.abs(expected).max())
 
 
-@pytest.mark.parametrize("energy", [VERTEX_ENERGY, EDGE_ENERGY], ids=lambda e: e.name)
+@ARC
 def test_second_derivatives_along_the_constraints_need_no_arc_derivative(energy: KPointEnergy) -> None:
     """Nor does the Lagrangian change where arcs are equally long, though the energy has a kink there."""
-    without = KPointEnergy(energy.name, energy.description, energy.density, energy.rule, arc_derivative=False)
+    without = replace(energy, arc_derivative=False)
     for curve in (random_polygon(7, (12,), 3), regular_polygon(12), hopf_link(10)):
         point = point_on(curve, energy=energy)
         points = [point, point.changing(objective=replace(point.problem.objective, energy=without))]
@@ -126,7 +78,7 @@ def test_second_derivatives_along_the_constraints_need_no_arc_derivative(energy:
         np.testing.assert_allclose(full, full.T, rtol=0, atol=1e-11 * np.abs(full).max())
 
 
-@pytest.mark.parametrize("energy", [VERTEX_ENERGY, EDGE_ENERGY], ids=lambda e: e.name)
+@ARC
 @pytest.mark.parametrize("n", [12, 13])
 def test_a_regular_polygon_keeps_its_symmetry_at_the_kink(energy: KPointEnergy, n: int) -> None:
     """With n even there are opposite edges, equally far both ways round."""
@@ -138,30 +90,15 @@ def test_a_regular_polygon_keeps_its_symmetry_at_the_kink(energy: KPointEnergy, 
     assert abs(radial.sum()) < 1e-11
 
 
-@pytest.mark.parametrize("energy", ENERGIES.values(), ids=ENERGIES)
-def test_the_derivative_along_the_vertices_is_the_exponent_times_the_energy(energy: Energy) -> None:
-    """Euler's theorem on homogeneous functions: ⟨DE, P⟩ = s E, which is 0 for dimensionless energies."""
-    curve = random_polygon(9, (10, 6), 3)
-    value, derivative = energy.value_and_derivative(curve)
-    along = np.sum(derivative * curve.vertices)
-    assert abs(along - energy.scale_exponent * value) < 1e-11 * np.abs(derivative).max()
-
-
 def test_an_energy_of_ones_own() -> None:
-    """A density and a rule make an energy with its derivative."""
-    energy = KPointEnergy("mine", "three points", TangentPointDensity(2.0, 4.5), Rule.gauss(3))
-    curve = random_polygon(11, (10,), 3)
+    """A density and a rule make an energy with its derivative, and pair the same points if all change places."""
+    curve = random_polygon(11, (9, 5), 3)
     v = np.random.default_rng(3).normal(size=curve.vertices.shape)
-    assert derivative_slope(energy, curve, v, largest=1e-3) == pytest.approx(2, abs=0.01)
-
-
-def test_densities_are_unchanged_if_points_change_places() -> None:
-    """Rules on reversed curves pair the same points with tangents the other way."""
-    curve = random_polygon(13, (9, 5), 3)
     turned = Curve.from_components([part[::-1] for part in curve.components])
-    for density in (ArcDensity(), IshizekiNagasawaDensity(), TangentPointDensity()):
-        energy = KPointEnergy("", "", density, Rule.gauss(2))
-        assert energy.value(turned) == pytest.approx(energy.value(curve), rel=1e-13)
+    for density in (ArcDensity(), IshizekiNagasawaDensity(), TangentPointDensity(2.0, 4.5)):
+        energy = KPointEnergy("mine", "three points", density, Rule.gauss(3))
+        assert derivative_slope(energy, curve, v, largest=1e-3) == pytest.approx(2, abs=0.01)
+        assert energy.value(turned) == pytest.approx(energy.value(curve), rel=1e-12)
 
 
 @pytest.mark.parametrize(

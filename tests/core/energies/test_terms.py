@@ -13,12 +13,10 @@ TERM = pytest.mark.parametrize("term", TERMS.values(), ids=lambda term: term.nam
 
 
 @TERM
-@pytest.mark.parametrize("sizes", [(13,), (5, 7)])
-def test_taylor_slope(term: Term, sizes: tuple[int, ...]) -> None:
-    curve = random_polygon(3, sizes, 3)
+def test_taylor_slope(term: Term) -> None:
+    """Of a weighted sum, beside the barrier; those of terms alone are in `test_contract`."""
+    curve, objective = random_polygon(3, (5, 7), 3), Objective(further=(Weighted(term, 0.3),))
     v = np.random.default_rng(5).normal(size=curve.vertices.shape)
-    assert derivative_slope(term, curve, v, largest=1e-4) == pytest.approx(2, abs=0.01)
-    objective = Objective(further=(Weighted(term, 0.3),))
     expected = Objective().value(curve) + 0.3 * term.value(curve)
     assert objective.value(curve) == pytest.approx(expected, rel=1e-12)
     assert derivative_slope(objective, curve, v, largest=1e-4) == pytest.approx(2, abs=0.01)
@@ -63,8 +61,10 @@ class Height:
         return self.value(curve), np.full_like(curve.vertices, 1.0) * [0.0, 0.0, 1.0]
 
 
-def test_an_object_of_ones_own_is_a_term() -> None:
-    options = RelaxOptions(terms=((Height(), 0.5),), vertices=40, max_iterations=3)
+@pytest.mark.parametrize("weight", [0.5, -0.5])
+def test_an_object_of_ones_own_is_a_term(weight: float) -> None:
+    """Without stiffness its weight may have any sign."""
+    options = RelaxOptions(terms=((Height(), weight),), vertices=40, max_iterations=3)
     result = minimize(torus_trefoil(40), options)
     assert result.certified
     assert all(np.diff(result.energies) < 0.0)
@@ -108,8 +108,3 @@ def test_what_does_not_go_together_is_refused(options: dict[str, object], said: 
 def test_weights_that_no_run_survives_are_refused(weight: float, said: str) -> None:
     with pytest.raises(MobiusFlowError, match=said):
         minimize(torus_trefoil(40), RelaxOptions(vertices=40, max_iterations=1, terms=[("bending", weight)]))
-
-
-def test_terms_without_stiffness_may_have_any_sign() -> None:
-    options = RelaxOptions(terms=((Height(), -0.5),), vertices=40, max_iterations=1)
-    assert minimize(torus_trefoil(40), options).certified

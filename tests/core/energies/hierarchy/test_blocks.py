@@ -6,7 +6,6 @@ from mobius_flow.core import Curve, OptionError
 from mobius_flow.core.energies.barrier import near_pairs
 from mobius_flow.core.energies.hierarchy import BlockList
 from mobius_flow.core.energies.hierarchy.blocks import edge_clusters
-from mobius_flow.core.knots import knot
 from shapes import hopf_link, opened, regular_polygon, scattered_rings, torus_trefoil
 from smooth_curves import random_polygon
 
@@ -40,17 +39,15 @@ def multiplicity(blocks: BlockList) -> np.ndarray:
 
 @CURVE
 @LIST
-def test_every_pair_of_edges_exactly_once(curve: Curve, theta: float, leaf: int) -> None:
-    edge = np.arange(curve.mesh.edges)
-    expected = curve.mesh.disjoint(edge[:, None], edge[None, :])
-    np.testing.assert_array_equal(multiplicity(BlockList.of(curve, theta, leaf)), expected)
-
-
-@CURVE
-def test_near_pairs_are_sorted(curve: Curve) -> None:
-    blocks = BlockList.of(curve, 0.25, 4)
+def test_every_pair_of_edges_exactly_once_and_far_ones_alone_in_blocks(curve: Curve, theta: float, leaf: int) -> None:
+    blocks, edge = BlockList.of(curve, theta, leaf), np.arange(curve.mesh.edges)
+    np.testing.assert_array_equal(multiplicity(blocks), curve.mesh.disjoint(edge[:, None], edge[None, :]))
     assert np.all(blocks.near[0] < blocks.near[1])
     assert np.all(np.diff(blocks.near[0] * len(curve) + blocks.near[1]) > 0)
+    for a, b, c, d in blocks.ranges.T:
+        i, j = blocks.tree.order[a:b, None], blocks.tree.order[None, c:d]
+        apart = np.linalg.norm(curve.midpoints[i] - curve.midpoints[j], axis=-1)
+        assert np.all(apart > 0.5 * (1 / theta - 1) * (curve.edge_lengths[i] + curve.edge_lengths[j]))
 
 
 @CURVE
@@ -82,16 +79,6 @@ def test_row_sums_of_the_kernel_one(curve: Curve) -> None:
     np.testing.assert_array_equal(sums + near[blocks.tree.order], n - 3)
 
 
-@CURVE
-@LIST
-def test_blocks_are_far_apart(curve: Curve, theta: float, leaf: int) -> None:
-    blocks, order = BlockList.of(curve, theta, leaf), edge_clusters(curve, leaf).order
-    for a, b, c, d in blocks.ranges.T:
-        i, j = order[a:b, None], order[None, c:d]
-        apart = np.linalg.norm(curve.midpoints[i] - curve.midpoints[j], axis=-1)
-        assert np.all(apart > 0.5 * (1 / theta - 1) * (curve.edge_lengths[i] + curve.edge_lengths[j]))
-
-
 @pytest.mark.parametrize("name", ["tangle", "small", "fourfold"])
 def test_pairs_of_the_barrier_are_near(name: str) -> None:
     curve = CURVES[name]
@@ -103,18 +90,13 @@ def test_pairs_of_the_barrier_are_near(name: str) -> None:
 
 
 @CURVE
-def test_clusters_are_parts_of_a_component_or_whole_ones(curve: Curve) -> None:
+def test_clusters_halve_their_parents_and_are_parts_of_a_component_or_whole_ones(curve: Curve) -> None:
     tree = edge_clusters(curve, 4)
     assert sorted(tree.order) == list(range(curve.mesh.edges))
     component = curve.mesh.edge_component[tree.order]
     for start, stop in zip(tree.start, tree.stop, strict=True):
         held, count = np.unique(component[start:stop], return_counts=True)
         assert len(held) == 1 or np.array_equal(count, curve.mesh.edge_counts[held])
-
-
-@CURVE
-def test_children_halve_their_parent_and_leaves_are_small(curve: Curve) -> None:
-    tree = edge_clusters(curve, 4)
     for inner, child in tree.downward():
         np.testing.assert_array_equal(tree.start[inner], tree.start[child])
         np.testing.assert_array_equal(tree.stop[child], tree.start[child + 1])
@@ -125,18 +107,8 @@ def test_children_halve_their_parent_and_leaves_are_small(curve: Curve) -> None:
 
 
 def test_size_of_the_list_is_linear() -> None:
-    blocks, twice = (BlockList.of(torus_trefoil(n), 0.25, 4) for n in (5_000, 10_000))
-    assert len(twice.first) < 2.3 * len(blocks.first)
-    assert len(twice.near[0]) < 2.3 * len(blocks.near[0])
-
-
-def test_many_components_make_no_more_pairs_than_one_curve() -> None:
-    curve, single = scattered_rings(2_000, 5, spread=60.0), torus_trefoil(10_000)
-    many, one = BlockList.of(curve, 0.5, 4), BlockList.of(single, 0.5, 4)
-    assert len(many.first) < 50 * len(one.first)
-
-
-def test_a_knot_of_the_table() -> None:
-    blocks = BlockList.of(knot("8_19"), 0.25, 4)
-    assert blocks.first.size
-    assert blocks.near[0].size
+    one, twice = (BlockList.of(torus_trefoil(n), 0.25, 4) for n in (5_000, 10_000))
+    assert len(twice.first) < 2.3 * len(one.first)
+    assert len(twice.near[0]) < 2.3 * len(one.near[0])
+    many, single = (BlockList.of(c, 0.5, 4) for c in (scattered_rings(2_000, 5, spread=60.0), torus_trefoil(10_000)))
+    assert len(many.first) < 50 * len(single.first)

@@ -28,14 +28,6 @@ METRIC = pytest.mark.parametrize("name", COMPRESSED)
 CURVE = pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)
 
 
-@METRIC
-@CURVE
-def test_exact_where_all_pairs_are_near(name: str, curve: Curve) -> None:
-    expected = METRICS[name].at(curve).dense()
-    found = CompressedMetric(METRICS[name], leaf=len(curve)).at(curve).dense()
-    np.testing.assert_allclose(found, expected, atol=1e-12 * np.abs(expected).max(), rtol=0)
-
-
 def assert_equivalent(name: str, curve: Curve) -> None:
     """Eigenvalues relative to the exact inner product."""
     eigenvalues = eigvalsh(COMPRESSED[name](curve).dense(), METRICS[name].at(curve).dense())
@@ -45,8 +37,17 @@ def assert_equivalent(name: str, curve: Curve) -> None:
 
 @METRIC
 @CURVE
-def test_near_the_exact_one(name: str, curve: Curve) -> None:
+def test_a_compressed_product_is_near_the_exact_one_symmetric_and_solved_with(name: str, curve: Curve) -> None:
+    """It is exact where all pairs are near."""
+    expected = METRICS[name].at(curve).dense()
+    found = CompressedMetric(METRICS[name], leaf=len(curve)).at(curve).dense()
+    np.testing.assert_allclose(found, expected, atol=1e-12 * np.abs(expected).max(), rtol=0)
     assert_equivalent(name, curve)
+    inner = COMPRESSED[name](curve)
+    matrix = inner.apply(np.eye(len(curve)))
+    np.testing.assert_allclose(matrix, matrix.T, atol=1e-12 * np.abs(matrix).max(), rtol=0)
+    u = np.random.default_rng(31).normal(size=(len(curve), 2))
+    np.testing.assert_allclose(inner.solve(inner.apply(u)), u, atol=1e-7)
 
 
 @pytest.mark.parametrize("unknot", HARD_UNKNOTS)
@@ -58,21 +59,6 @@ def test_near_the_exact_one_on_tangles(unknot: str) -> None:
 def test_many_components_at_once(name: str) -> None:
     """Clusters of several components, of which some are larger than leaves and some are not."""
     assert_equivalent(name, chain_of_rings(80, (3, 11, 5)))
-
-
-@METRIC
-@CURVE
-def test_product_is_symmetric(name: str, curve: Curve) -> None:
-    matrix = COMPRESSED[name](curve).apply(np.eye(len(curve)))
-    np.testing.assert_allclose(matrix, matrix.T, atol=1e-12 * np.abs(matrix).max(), rtol=0)
-
-
-@METRIC
-@CURVE
-def test_solves(name: str, curve: Curve) -> None:
-    inner = COMPRESSED[name](curve)
-    u = np.random.default_rng(31).normal(size=(len(curve), 2))
-    np.testing.assert_allclose(inner.solve(inner.apply(u)), u, atol=1e-7)
 
 
 @METRIC

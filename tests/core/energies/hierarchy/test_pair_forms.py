@@ -41,21 +41,15 @@ def by_pairs(curve: Curve, pairs: Iterator[tuple[int, int, float]], x: np.ndarra
 
 
 @CURVE
-def test_slopes(curve: Curve) -> None:
+def test_slopes_and_values(curve: Curve) -> None:
     blocks, near, far = forms_with_weights(curve)
-    u = np.random.default_rng(23).normal(size=len(curve))
+    u, forms = np.random.default_rng(23).normal(size=len(curve)), PairForms(curve, blocks)
     expected = by_pairs(curve, weighted_pairs(blocks, near, far), (curve.mesh.difference @ u) / curve.edge_lengths)
-    forms, y = PairForms(curve, blocks), RunningSum.of_slopes(curve, blocks.tree.order).apply(u[:, None])[:, 0]
+    y = RunningSum.of_slopes(curve, blocks.tree.order).apply(u[:, None])[:, 0]
     found = u @ forms.of_slopes(near, far) @ u + y @ forms.of_long_slopes(far) @ y
     assert found == pytest.approx(expected, rel=1e-11)
-
-
-@CURVE
-def test_values(curve: Curve) -> None:
-    blocks, near, far = forms_with_weights(curve)
-    u = np.random.default_rng(23).normal(size=len(curve))
     expected = by_pairs(curve, weighted_pairs(blocks, near, far), curve.mesh.average @ u)
-    local, sums = PairForms(curve, blocks).of_values(near, far)
+    local, sums = forms.of_values(near, far)
     z = RunningSum.of_values(curve, blocks.tree.order).apply(u[:, None])[:, 0]
     assert u @ local @ u + z @ sums @ z == pytest.approx(expected, rel=1e-11)
 

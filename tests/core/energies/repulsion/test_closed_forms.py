@@ -42,22 +42,15 @@ def potential(corners: np.ndarray, x: np.ndarray) -> tuple[float, np.ndarray]:
 
 @CORNERS
 @POINT
-def test_value(corners: np.ndarray, x: np.ndarray) -> None:
-    assert potential(corners, x)[0] == pytest.approx(potential_by_quadrature(corners, x), rel=1e-9)
-
-
-@CORNERS
-@POINT
-def test_derivatives(corners: np.ndarray, x: np.ndarray) -> None:
+def test_value_and_derivatives(corners: np.ndarray, x: np.ndarray) -> None:
     v = np.random.default_rng(5).normal(size=3)
     value, gradient = potential(corners, x)
+    assert value == pytest.approx(potential_by_quadrature(corners, x), rel=1e-9)
     changed = potential(corners, stepped(x, v))
     assert change(changed[0]) == pytest.approx(gradient @ v, rel=1e-9)
-    largest = 0.03 * np.linalg.norm(x - A)
-    slope = taylor_slope(lambda t: potential(corners, x + t * v)[0], [value, gradient @ v], largest)
-    assert slope == pytest.approx(2, abs=0.05)
-    terms = [gradient, change(changed[1])]
-    assert taylor_slope(lambda t: potential(corners, x + t * v)[1], terms, largest) == pytest.approx(2, abs=0.05)
+    for k, terms in enumerate(([value, gradient @ v], [gradient, change(changed[1])])):
+        slope = taylor_slope(lambda t, k=k: potential(corners, x + t * v)[k], terms, 0.03 * np.linalg.norm(x - A))
+        assert slope == pytest.approx(2, abs=0.05)
 
 
 def test_parallel_strands_repel_like_walls() -> None:

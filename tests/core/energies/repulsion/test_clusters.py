@@ -26,44 +26,29 @@ OBSTACLE = pytest.mark.parametrize("obstacle", OBSTACLES.values(), ids=OBSTACLES
 
 
 @OBSTACLE
-def test_clusters_are_ranges_of_all_their_leaves(obstacle: Obstacle) -> None:
-    clusters = repulsion(obstacle).clusters
-    leaves = clusters.tree.leaves()
-    assert np.array_equal(np.sort(clusters.tree.start[leaves]), np.arange(len(obstacle.faces)))
-    assert clusters.size[0] == pytest.approx(clusters.simplices.sizes.sum())
-    corners = {tuple(each) for each in np.sort(obstacle.corners.reshape(len(obstacle.faces), -1), axis=1)}
-    sorted_corners = clusters.simplices.corners.transpose(2, 0, 1).reshape(len(obstacle.faces), -1)
-    assert corners == {tuple(each) for each in np.sort(sorted_corners, axis=1)}
-
-
-@OBSTACLE
-def test_moments_against_many_points(obstacle: Obstacle) -> None:
+def test_clusters_are_ranges_within_balls_with_moments(obstacle: Obstacle) -> None:
     """Moments of degree two are exact by the midpoints of sides (Simpson's rule for segments)."""
     clusters = repulsion(obstacle).clusters
-    corners, sizes = clusters.simplices.corners, clusters.simplices.sizes
+    corners, sizes, tree = clusters.simplices.corners, clusters.simplices.sizes, clusters.tree
+    assert np.array_equal(np.sort(tree.start[tree.leaves()]), np.arange(len(obstacle.faces)))
+    given = {tuple(each) for each in np.sort(obstacle.corners.reshape(len(obstacle.faces), -1), axis=1)}
+    held = corners.transpose(2, 0, 1).reshape(len(obstacle.faces), -1)
+    assert given == {tuple(each) for each in np.sort(held, axis=1)}
     if len(corners) == 3:
         points, weights = 0.5 * (corners + np.roll(corners, 1, axis=0)), np.full(3, 1 / 3)
     else:
         points, weights = np.array([corners[0], corners.mean(axis=0), corners[1]]), np.array([1, 4, 1]) / 6
     mass = weights[:, None] * sizes
-    centre = np.einsum("qf,qif->i", mass, points) / sizes.sum()
-    np.testing.assert_allclose(clusters.center[:, 0], centre, atol=1e-13)
-    away = points - centre[:, None]
-    moments = np.einsum("qf,qif,qjf->ij", mass, away, away)
-    np.testing.assert_allclose(clusters.spread[:, :, 0], moments, atol=1e-11)
-
-
-@OBSTACLE
-def test_balls_hold_their_clusters(obstacle: Obstacle) -> None:
-    clusters = repulsion(obstacle).clusters
     for index in (0, 1, 2, 10, 100, 1000):
-        members, queue = [], [index]
-        while queue:
-            child = clusters.tree.child[queue[0]]
-            members += [] if child else [clusters.tree.start[queue[0]]]
-            queue = queue[1:] + ([child, child + 1] if child else [])
-        away = clusters.simplices.corners[:, :, members] - clusters.center[:, index, None]
-        assert np.linalg.norm(away, axis=1).max() == pytest.approx(clusters.radius[index], rel=1e-12)
+        members = slice(tree.start[index], tree.stop[index])
+        whole, own, at = sizes[members].sum(), mass[:, members], points[:, :, members]
+        assert clusters.size[index] == pytest.approx(whole)
+        np.testing.assert_allclose(clusters.center[:, index], np.einsum("qf,qif->i", own, at) / whole, atol=1e-13)
+        away = at - clusters.center[:, index, None]
+        moments = np.einsum("qf,qif,qjf->ij", own, away, away)
+        np.testing.assert_allclose(clusters.spread[:, :, index], moments, atol=1e-11)
+        radii = np.linalg.norm(corners[:, :, members] - clusters.center[:, index, None], axis=1)
+        assert radii.max() == pytest.approx(clusters.radius[index], rel=1e-12)
 
 
 @OBSTACLE
