@@ -41,7 +41,7 @@ def test_the_sidebar_has_few_settings_and_one_place_for_each(monkeypatch):
     add_trefoil()
     over = SimpleNamespace(value="Done", over=True)
     run = dict.fromkeys(("recoverable", "waits", "failed", "last", "report", "message", "trouble"))
-    run |= {"state": over, "group": SimpleNamespace(names=["Knot"]), "energies": [1.0]}
+    run |= {"state": over, "session": SimpleNamespace(names=["Knot"]), "energies": [1.0]}
     monkeypatch.setattr(relax.registry, "shown", lambda _obj: SimpleNamespace(**run))
     monkeypatch.setattr(relax, "refused", lambda *_: None)
     panels_drawn = [cls for module in (relax, panels) for cls in registration.declared(module)]
