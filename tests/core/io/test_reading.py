@@ -61,16 +61,6 @@ def _write(tmp_path: Path, name: str, text: str) -> Path:
     return path
 
 
-@pytest.mark.parametrize("name", UNDERSTOOD)
-def test_understood(tmp_path: Path, name: str, caplog: pytest.LogCaptureFixture) -> None:
-    text, expected = UNDERSTOOD[name]
-    with caplog.at_level(logging.WARNING):
-        curve = read_curve(_write(tmp_path, name, text))
-    assert not caplog.records
-    assert curve.mesh.component_sizes == tuple(map(len, expected))
-    assert np.array_equal(curve.vertices, np.concatenate(expected))
-
-
 OPEN = {
     "marked.txt": ("# open\n0 0 0\n1 0 0\n0 1 0\n", (False,)),
     "second.txt": ("0 0 0\n1 0 0\n0 1 0\n\n#  open \n0 0 5\n1 0 5\n1 1 5\n0 1 5\n", (True, False)),
@@ -85,17 +75,29 @@ OPEN = {
     "points.json": (f'{{"closed": [false], "components": {TRIANGLE}}}', (False,)),
     "both.json": (f'{{"components": [{TRIANGLE}, {SQUARE}], "closed": [true, false]}}', (True, False)),
 }
+NOTED = {
+    "closing.txt": ("0 0 0\n1 0 0\n0 1 0\n0 0 0\n", "repeats its first"),
+    "closing.json": (f"[{[*TRIANGLE, TRIANGLE[0]]}]", "repeats its first"),
+    "closing.vect": ("VECT 1 4 0 -4 0 0 0 0 1 0 0 0 1 0 0 0 0", "repeats its first"),
+    "closing.obj": (TRIANGLE_V + "v 0 0 0\nl 1 2 3 4\n", "repeats its first"),
+    "vertices_only.obj": (TRIANGLE_V, "no polyline"),
+    "faces.obj": (TRIANGLE_V + "l 1 2 3 1\nf 1 2 3\n", "1 faces"),
+}
+READ = {name: (text, expected, (True,) * len(expected), "") for name, (text, expected) in UNDERSTOOD.items()}
+READ |= {f"open_{name}": (text, [TRIANGLE, SQUARE][: len(closed)], closed, "") for name, (text, closed) in OPEN.items()}
+READ |= {f"noted_{name}": (text, [TRIANGLE], (True,), note) for name, (text, note) in NOTED.items()}
 
 
-@pytest.mark.parametrize("name", OPEN)
-def test_open_components(tmp_path: Path, name: str, caplog: pytest.LogCaptureFixture) -> None:
-    text, closed = OPEN[name]
+@pytest.mark.parametrize("name", READ)
+def test_what_is_understood_and_what_is_noted(tmp_path: Path, name: str, caplog: pytest.LogCaptureFixture) -> None:
+    text, expected, closed, note = READ[name]
     with caplog.at_level(logging.WARNING):
         curve = read_curve(_write(tmp_path, name, text))
-    assert not caplog.records
+    assert len(caplog.records) == bool(note)
+    assert note in caplog.text
+    assert curve.mesh.component_sizes == tuple(map(len, expected))
     assert curve.mesh.closed == closed
-    rows = sorted(map(tuple, curve.vertices.tolist()))
-    assert rows == sorted(map(tuple, (TRIANGLE + SQUARE)[: len(curve)]))
+    assert np.array_equal(curve.vertices, np.concatenate(expected))
 
 
 def _atom(serial: int, residue: int, point: list[int], chain: str = "A", name: str = " CA ", also: str = " ") -> str:
@@ -221,23 +223,3 @@ def test_codes_are_read_as_drawings(tmp_path: Path, name: str) -> None:
 def test_codes_that_are_written_are_of_the_same_knot(tmp_path: Path, suffix: str, name: str) -> None:
     write_curve(tmp_path / f"k{suffix}", knot(name))
     assert knot_type(read_curve(tmp_path / f"k{suffix}")).names == knot_type(knot(name)).names
-
-
-NOTED = {
-    "closing.txt": ("0 0 0\n1 0 0\n0 1 0\n0 0 0\n", "repeats its first"),
-    "closing.json": (f"[{[*TRIANGLE, TRIANGLE[0]]}]", "repeats its first"),
-    "closing.vect": ("VECT 1 4 0 -4 0 0 0 0 1 0 0 0 1 0 0 0 0", "repeats its first"),
-    "closing.obj": (TRIANGLE_V + "v 0 0 0\nl 1 2 3 4\n", "repeats its first"),
-    "vertices_only.obj": (TRIANGLE_V, "no polyline"),
-    "faces.obj": (TRIANGLE_V + "l 1 2 3 1\nf 1 2 3\n", "1 faces"),
-}
-
-
-@pytest.mark.parametrize("name", NOTED)
-def test_noted(tmp_path: Path, name: str, caplog: pytest.LogCaptureFixture) -> None:
-    text, note = NOTED[name]
-    with caplog.at_level(logging.WARNING):
-        curve = read_curve(_write(tmp_path, name, text))
-    assert np.array_equal(curve.vertices, TRIANGLE)
-    assert len(caplog.records) == 1
-    assert note in caplog.text
