@@ -130,8 +130,15 @@ def knot_list(path: str | os.PathLike[str]) -> dict[str, str]:
     CurveFileError if there is no code.
     """
     source = Source.load(Path(path), 256 << 20)  # KnotInfo's own, with all invariants, has dozens of megabytes
-    if source.text.lstrip()[:1] in "ksul0123456789" and (diagrams := _knoodle(source)):
-        return {f"knot-{number}": gauss_text(diagram) for number, diagram in enumerate(diagrams, start=1)}
+    if (begin := source.text.lstrip()[:1]) in "ksul0123456789":
+        try:
+            diagrams = knoodle_diagrams(source)
+        except CurveFileError:
+            if begin in "ksul":
+                raise
+            diagrams = []  # another table
+        if diagrams:
+            return {f"knot-{number}": gauss_text(diagram) for number, diagram in enumerate(diagrams, start=1)}
     found: dict[str, str] = {}
     try:
         for number, (name, code) in enumerate(_rows(source.lines), start=1):
@@ -176,16 +183,6 @@ def _known(name: str) -> str:
     """The text that `knot` reads for a row with a name alone."""
     match = _NAME.fullmatch(name)
     return match[1] if match else ""
-
-
-def _knoodle(source: Source) -> list[Diagram]:
-    """The diagrams of Knoodle's crossings; none if it is another table."""
-    try:
-        return knoodle_diagrams(source)
-    except CurveFileError:
-        if source.text.lstrip()[:1] in "ksul":
-            raise
-        return []
 
 
 def _code(text: str, before: str) -> str:

@@ -1,7 +1,7 @@
 """Obstacles from files: polylines, and meshes, cut into triangles, as Wavefront OBJ, and any curve file."""
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from itertools import accumulate, pairwise
 from pathlib import Path
 
@@ -73,21 +73,32 @@ def triangulated(points: Sequence[Point]) -> list[Triangle]:
     From k ≥ 3 points in space, in order, to the indices of the k − 2 triangles' vertices.  Where the points are not in
     a plane, or the polygon crosses itself or has no area, there is no right answer; triangles still span all vertices.
     """
-    flat = _flat(points) if len(points) > 3 else []
+    planes = [[(p[i], p[j]) for p in points] for i, j in ((1, 2), (2, 0), (0, 1))]
+    areas = [sum(_turn(plane[0], a, b) for a, b in pairwise(plane)) for plane in planes]
+    largest = max(range(3), key=lambda axis: abs(areas[axis]))
+    flat = [(x, y) if areas[largest] > 0 else (y, x) for x, y in planes[largest]]  # going round to the left
     before, after = [len(points) - 1, *range(len(points) - 1)], [*range(1, len(points)), 0]
 
     def is_convex(k: int) -> bool:
         return _turn(flat[before[k]], flat[k], flat[after[k]]) > 0.0
 
     left, triangles = dict.fromkeys(range(len(points))), list[Triangle]()
-    others = {k for k in left if flat and not is_convex(k)}  # if any vertex lies in a corner, one of these does
+    others = {k for k in left if not is_convex(k)}  # if any vertex lies in a corner, one of these does
+
+    def holds_others(u: Point, v: Point, w: Point) -> bool:
+        """Whether a corner holds one of the others, on its edges or in it, but for those at its vertices."""
+        return any(
+            _turn(u, v, p) >= 0.0 and _turn(v, w, p) >= 0.0 and _turn(w, u, p) >= 0.0 and p not in (u, v, w)
+            for p in map(flat.__getitem__, others)
+        )
+
     candidates = [*left]  # cutting off an ear makes new ones of its neighbours only
     while len(left) > 3:
         # Where there is no ear, the polygon crosses itself or has no area, and any corner will do.
         sure = not candidates
         k = next(iter(left)) if sure else candidates.pop()
         i, j = before[k], after[k]
-        if not sure and (k not in left or k in others or _holds((flat[i], flat[k], flat[j]), flat, others)):
+        if not sure and (k not in left or k in others or holds_others(flat[i], flat[k], flat[j])):
             continue
         triangles.append((i, k, j))
         after[i], before[j] = j, i
@@ -100,23 +111,6 @@ def triangulated(points: Sequence[Point]) -> list[Triangle]:
     return [*triangles, (i, j, k)]
 
 
-def _flat(points: Sequence[Point]) -> list[Point]:
-    """The polygon along the axis nearest to its area vector, going round to the left."""
-    planes = [[(p[i], p[j]) for p in points] for i, j in ((1, 2), (2, 0), (0, 1))]
-    areas = [sum(_turn(plane[0], a, b) for a, b in pairwise(plane)) for plane in planes]
-    largest = max(range(3), key=lambda axis: abs(areas[axis]))
-    return [(x, y) if areas[largest] > 0 else (y, x) for x, y in planes[largest]]
-
-
 def _turn(a: Point, b: Point, c: Point) -> float:
     """Twice the area of a triangle in the plane: positive if it goes round to the left."""
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-
-
-def _holds(corner: tuple[Point, Point, Point], flat: Sequence[Point], others: Iterable[int]) -> bool:
-    """Whether a triangle holds one of the other points, on its edges or in it, but for those at its vertices."""
-    u, v, w = corner
-    return any(
-        _turn(u, v, p) >= 0.0 and _turn(v, w, p) >= 0.0 and _turn(w, u, p) >= 0.0 and p not in corner
-        for p in map(flat.__getitem__, others)
-    )

@@ -6,84 +6,62 @@ comment.
 Source: the Geomview manual, section "VECT".
 """
 
-from dataclasses import dataclass
+from itertools import islice
 from typing import TextIO
 
-from ..base.errors import CurveError, CurveFileError
+from ..base.errors import CurveError
 from ..curve.curve import Curve
 from .source import Polygon, Source, shown
-
-
-@dataclass
-class _Words:
-    """The words of a VECT file with their lines, taken one after the other."""
-
-    source: Source
-    words: list[tuple[str, int]]
-    position: int = 0
-
-    @property
-    def left(self) -> int:
-        return len(self.words) - self.position
-
-    def error(self, reason: str) -> CurveFileError:
-        """Make the error that names the line of the word read last."""
-        return self.source.error(reason, self.words[max(self.position, 1) - 1][1])
-
-    def demand(self, count: int, what: str) -> None:
-        """Refuse a file that ends before ``count`` more words, before any memory is reserved for them."""
-        if self.left < count:
-            last = self.words[-1][1]
-            raise self.source.error(f"the file is truncated: {count} {what} announced, {self.left} found", last)
-
-    def integers(self, count: int, what: str) -> list[int]:
-        self.demand(count, what)
-        return [self.source.integer(*self.take()) for _ in range(count)]
-
-    def numbers(self, count: int) -> list[float]:
-        return [self.source.number(*self.take()) for _ in range(count)]
-
-    def take(self) -> tuple[str, int]:
-        self.position += 1
-        return self.words[self.position - 1]
 
 
 def read(source: Source) -> list[Polygon]:
     """Read the polygons; raises CurveFileError naming the line."""
     numbered = enumerate(source.lines, start=1)
-    words = _Words(source, [(word, number) for number, line in numbered for word in line.partition("#")[0].split()])
-    if not words.left:
+    words = [(word, number) for number, line in numbered for word in line.partition("#")[0].split()]
+    if not words:
         raise source.error("the file has comments only")
-    magic = words.take()[0]
+    magic, line = words[0]
     if magic == "4VECT":
-        raise words.error("VECT with four coordinates (4VECT) is not read; write three")
+        raise source.error("VECT with four coordinates (4VECT) is not read; write three", line)
     if magic != "VECT":
-        raise words.error(f"a VECT file starts with the word VECT, not {shown(magic)}")
-    if words.left and words.words[1][0] == "BINARY":
-        raise words.error("binary VECT is not read; write it as text")
-    polylines, vertices, colours = words.integers(3, "numbers of polylines, vertices and colours")
+        raise source.error(f"a VECT file starts with the word VECT, not {shown(magic)}", line)
+    if words[1:] and words[1][0] == "BINARY":
+        raise source.error("binary VECT is not read; write it as text", line)
+    at = 1
+
+    def take(count: int, what: str) -> list[tuple[str, int]]:
+        """The next words; refuses a file that ends before, and reserves no memory for them."""
+        nonlocal at, line
+        if len(words) < at + count:
+            found = f"{count} {what} announced, {len(words) - at} found"
+            raise source.error(f"the file is truncated: {found}", words[-1][1])
+        at += count
+        line = words[at - 1][1]
+        return words[at - count : at]
+
+    def integers(count: int, what: str) -> list[int]:
+        return [source.integer(*each) for each in take(count, what)]
+
+    polylines, vertices, colours = integers(3, "numbers of polylines, vertices and colours")
     if min(polylines, vertices, colours) < 0:
-        raise words.error("the header has a negative number")
-    sizes = words.integers(polylines, "vertex counts")
-    colour_sizes = words.integers(polylines, "colour counts")
-    if sum(map(abs, sizes)) != vertices:
-        raise words.error(f"the polylines have {sum(map(abs, sizes))} vertices together, the header says {vertices}")
+        raise source.error("the header has a negative number", line)
+    sizes, colour_sizes = integers(polylines, "vertex counts"), integers(polylines, "colour counts")
+    if (total := sum(map(abs, sizes))) != vertices:
+        raise source.error(f"the polylines have {total} vertices together, the header says {vertices}", line)
     if min(colour_sizes, default=0) < 0 or sum(colour_sizes) != colours:
-        raise words.error(f"the polylines have {sum(colour_sizes)} colours together, the header says {colours}")
-    for k, size in enumerate(sizes, start=1):
-        if size == 0:
-            raise words.error(f"polyline {k} has no vertices; leave it out")
-    words.demand(3 * vertices, "coordinates")
-    polygons = []
+        raise source.error(f"the polylines have {sum(colour_sizes)} colours together, the header says {colours}", line)
+    if 0 in sizes:
+        raise source.error(f"polyline {sizes.index(0) + 1} has no vertices; leave it out", line)
+    coordinates, polygons = iter(take(3 * vertices, "coordinates")), list[Polygon]()
     for size in sizes:
-        lines = [line for _, line in words.words[words.position : words.position + 3 * abs(size) : 3]]
-        values = words.numbers(3 * abs(size))
+        own = list(islice(coordinates, 3 * abs(size)))
+        values, lines = [source.number(*each) for each in own], [number for _, number in own[::3]]
         points = list(zip(values[::3], values[1::3], values[2::3], strict=True))
         polygons.append(Polygon(points, lines.__getitem__, closed=size < 0))
-    words.demand(4 * colours, "colour values")
-    words.numbers(4 * colours)
-    if words.left:
-        raise source.error(f"{words.left} more words than the header announces", words.words[words.position][1])
+    for each in take(4 * colours, "colour values"):
+        source.number(*each)
+    if words[at:]:
+        raise source.error(f"{len(words) - at} more words than the header announces", words[at][1])
     return polygons
 
 

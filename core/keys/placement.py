@@ -253,7 +253,9 @@ class Turn:
         """
         if not curve.length:
             raise CurveError("All points of the curves are the same; move them apart")
-        axes = principal_axes(curve)
+        away = curve.midpoints - barycenter(curve)
+        # those of the curve's inertia
+        axes = np.linalg.eigh((curve.edge_lengths[:, None] * away).T @ away)[1][:, ::-1].T
         signs = (np.array(each)[:, None] for each in product((1.0, -1.0), repeat=3))
         turned = [(sign * wanted).T @ axes for sign in signs]
         return cls(max([each for each in turned if np.linalg.det(each) > 0.0], key=np.trace), barycenter(curve))
@@ -267,13 +269,6 @@ class Turn:
         matrix = np.eye(4)
         matrix[:3, :3], matrix[:3, 3] = self.rotation, self.center - self.rotation @ self.center
         return matrix
-
-
-def principal_axes(curve: Curve) -> FloatArray:
-    """Axes of the curve's inertia, in which it extends most, less and least, as rows; shape (3, 3)."""
-    away = curve.midpoints - barycenter(curve)
-    _, axes = np.linalg.eigh((curve.edge_lengths[:, None] * away).T @ away)
-    return np.asarray(axes[:, ::-1].T)
 
 
 def orthonormal(axes: FloatArray) -> FloatArray:

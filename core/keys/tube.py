@@ -102,8 +102,9 @@ def rounded(mesh: Mesh, keys: Keys, free: Proof) -> tuple[Mesh, Keys]:
     mesh, exact = Mesh(tuple(sizes), mesh.closed), [np.concatenate(each) for each in found]
     # diffuse vertices along the curve, p′ − (σ² p′_s)_s = p, over lengths σ in proportion to the free radii: none moves
     # further than about σ, which is less than half the way to the nearest other strand
-    thickest, round_ = _thickest(mesh, exact), list[Frame]()
-    for curve in (Curve(points, mesh) for points in exact):
+    curves, round_ = [Curve(points, mesh) for points in exact], list[Frame]()
+    thickest = min(map(thickest_radius, curves))
+    for curve in curves:
         lengths, sigma = curve.edge_lengths, 0.8 * _free_radii(curve, thickest)
         weights = 0.5 * np.bincount(np.concatenate([mesh.tails, mesh.heads]), np.tile(lengths, 2), len(curve))
         between = 0.25 * (sigma[mesh.tails] + sigma[mesh.heads]) ** 2 / lengths
@@ -136,8 +137,8 @@ def tube_radii(mesh: Mesh, points: Sequence[FloatArray], frames: FloatArray) -> 
     the curve and from frame to frame. Where many strands are close they are not much thicker elsewhere, which would
     hide them.
     """
-    thickest = _thickest(mesh, points)
     curves = [Curve(p, mesh) for p in points]
+    thickest = min(map(thickest_radius, curves))  # which does not change in a film where there is room for it
     radii = np.array([_gentle(curve, _bendable(curve, _free_radii(curve, thickest))) for curve in curves])
     # at most so many times as thick as where the most crowded fifth of the tube ends
     np.minimum(radii, 2.2 * np.quantile(radii, 0.2, axis=1, keepdims=True), out=radii)
@@ -181,11 +182,6 @@ def _bendable(curve: Curve, radii: FloatArray) -> FloatArray:
             part = part + np.where(straight, step, -step)
         found[piece] = np.minimum(fits, radii[piece])
     return found
-
-
-def _thickest(mesh: Mesh, points: Sequence[FloatArray]) -> float:
-    """The radius that looks right at all keys; it does not change in a film where there is room for it."""
-    return min(thickest_radius(Curve(p, mesh)) for p in points)
 
 
 def _free_radii(curve: Curve, thickest: float) -> FloatArray:

@@ -10,7 +10,6 @@ import numpy as np
 
 from ..base.arguments import checked
 from ..base.errors import CurveError, MobiusFlowError
-from ..base.types import IntArray
 from ..collision import check_embedded, minimal_gap
 from ..curve import Curve, Mesh
 from ..curve.refine import evenly
@@ -114,30 +113,28 @@ def figure(shown: Motion, radius: float | None = None, title: str = "") -> Any:
         raise MobiusFlowError('pictures need Plotly: pip install plotly (the extra "view")') from error
     radius = shown.radius if radius is None else radius
     energies, moves = shown.energies, len(shown.curves) > 1
-    line = (
-        [{"type": "scatter", "y": list(energies), "mode": "lines", "line": {"color": COLOURS[0]}}] if energies else []
-    )
-
+    line = [{"type": "scatter", "y": list(energies), "mode": "lines", "line": {"color": COLOURS[0]}}]
     made = tubes(shown.curves, radius)
 
     def changing(k: int) -> list[dict[str, Any]]:
         """Traces of a frame: tubes, and of a motion a mark on the line of energies."""
         corners = (frames[k].points.T.astype(np.float32) for frames in made)
-        marked = energies[k : k + moves]
-        mark = {
-            "type": "scatter",
-            "x": [k],
-            "y": list(marked),
-            "marker": {"size": 11, "color": COLOURS[1]},
-            "cliponaxis": False,
-        }
+        marked, dot = energies[k : k + moves], {"size": 11, "color": COLOURS[1]}
+        mark = {"type": "scatter", "x": [k], "y": list(marked), "marker": dot, "cliponaxis": False}
         surfaces = [{"type": "mesh3d", **dict(zip("xyz", xyz, strict=True))} for xyz in corners]
         return [*surfaces, mark] if marked else surfaces
 
-    first, mark = changing(0)[: len(made)], changing(0)[len(made) :]
-    surfaces = [trace | _surface(k, made[k][0].faces.T) for k, trace in enumerate(first)]
+    traces = [*changing(0), *(line if energies else [])]
+    light = {"ambient": 0.55, "diffuse": 0.8, "specular": 0.3, "roughness": 0.4}
+    for k, (first, *_) in enumerate(made):  # what does not change of a component's surface
+        traces[k] |= dict(zip("ijk", first.faces.T.astype(np.int32), strict=True))
+        traces[k] |= {"color": COLOURS[k % len(COLOURS)], "lighting": light}
+        traces[k] |= {
+            "lightposition": {"x": 1e4, "y": 2e4, "z": 3e4},
+            "hoverinfo": "name",
+            "name": f"component {k + 1}",
+        }
     frames = [{"data": changing(k), "name": str(k)} for k in range(len(shown.curves))] if moves else []
-    traces = [*surfaces, *mark, *line]
     built = go.Figure({"data": traces, "frames": frames, "layout": _layout(shown, radius, title)})
     display = built._ipython_display_
 
@@ -189,14 +186,6 @@ def page(shown: Motion, radius: float | None = None, title: str = "") -> str:
     """The figure as one HTML file that needs no network."""
     made = figure(shown, radius, title)
     return str(made.to_html(include_plotlyjs=True, auto_play=False, default_height="96vh"))
-
-
-def _surface(k: int, corners: IntArray) -> dict[str, Any]:
-    """The properties of a component's surface that do not change."""
-    light = {"ambient": 0.55, "diffuse": 0.8, "specular": 0.3, "roughness": 0.4}
-    look = {"color": COLOURS[k % len(COLOURS)], "lighting": light, "lightposition": {"x": 1e4, "y": 2e4, "z": 3e4}}
-    faces = dict(zip("ijk", corners.astype(np.int32), strict=True))
-    return {**faces, **look, "hoverinfo": "name", "name": f"component {k + 1}"}
 
 
 def _layout(shown: Motion, radius: float, title: str) -> dict[str, Any]:

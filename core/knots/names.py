@@ -49,17 +49,12 @@ ALIASES: Mapping[str, str] = dict(_TABLES["other names"])
 """Other names for knots and links of the table, and for sums of them."""
 
 
-def larger_name(name: str) -> str | None:
-    """The Hoste-Thistlethwaite name, such as K11n34, of one in small letters (``11n_34``); None for other names."""
-    match = _LARGER.fullmatch(name)
-    if match is None:
-        return None
-    kind, crossings, sort, number = match.groups()
-    return f"{(kind or 'k').upper()}{crossings}{sort}{number}"
+def larger_word(kind: str, crossings: str, sort: str, number: str) -> Word:
+    """A braid word from spherogram for a Hoste-Thistlethwaite name, such as K11n34 or ``11n_34``, in four parts.
 
-
-def larger_word(name: str) -> Word:
-    """A braid word from spherogram, of the mirror image it chooses; MobiusFlowError if there is none, or no table."""
+    It is of the mirror image that spherogram chooses.  Raises MobiusFlowError if there is none, or no table.
+    """
+    name = f"{(kind or 'k').upper()}{crossings}{sort}{number}"
     try:
         from spherogram import Link
     except ImportError as error:
@@ -168,8 +163,8 @@ def _prime_word(part: str, name: str) -> Word:
         return braid_word(_WORDS[part])
     if squeezed in _TABLE:
         return KNOTS[_TABLE[squeezed]]
-    if (larger := larger_name(squeezed)) is not None:
-        return larger_word(larger)
+    if (larger := _LARGER.fullmatch(squeezed)) is not None:
+        return larger_word(*larger.groups())
     bare, mirrored = _unmirrored(part)
     if bare in ("", part):
         plain = _plain(name)
