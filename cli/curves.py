@@ -7,10 +7,10 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from ..core import Curve, CurveError, CurveFileError, MobiusFlowError, write_curve
+from ..core import Curve, CurveError, CurveFileError, write_curve
 from ..core.base.errors import wrong_suffix
 from ..core.io import FORMATS, CurveFile, Format, load_curve
-from .streams import OutputStreamError, emit
+from .terminal import emit
 
 STREAM, DEVICE = "-", "/dev/stdout"
 INPUT, OUTPUT = "standard input", "standard output"
@@ -65,15 +65,12 @@ def measured(path: str, name: str | None) -> Iterator[Curve]:
 
 
 def write(path: str, curve: Curve, name: str | None = None) -> None:
-    """Write a curve; raises MobiusFlowError, or BrokenPipeError where standard output is a closed pipe."""
+    """Write a curve; raises MobiusFlowError, or on standard output OutputStreamError or BrokenPipeError."""
     form = format_for(path, name)
-    if path != STREAM:
-        write_curve(path, curve, form)
-        return
-    try:
+    if path == STREAM:
         emit(form.text(curve).rstrip("\n"))
-    except OutputStreamError as error:
-        raise MobiusFlowError(str(error)) from error
+    else:
+        write_curve(path, curve, form)
 
 
 def check_regular(path: str | os.PathLike[str]) -> None:

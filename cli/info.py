@@ -14,8 +14,7 @@ from ..core.driver.info import Info, info, measure
 from ..core.energies import ENERGIES
 from ..core.knots.exterior import FLOER
 from . import curves
-from .streams import emit
-from .terminal import Item, command, report
+from .terminal import Item, command, emit, report
 
 _MEASURES = ("length", "thickness", "ropelength", "writhe", "average_crossing_number")
 _ENERGY_EPILOG = """\

@@ -10,11 +10,10 @@ from ..core.io import FORMATS, CurveFile
 from ..core.morph import DifferentError, NoMotionError, compare, morphing, moving
 from . import curves
 from . import options as relax_options
-from .places import admit, check_places, output_for
+from .places import check_holds, check_output, check_places
 from .relax import EXIT_STATUS, add_outputs, places, run_to_end, write_results
 from .signals import INTERRUPTED
-from .streams import emit
-from .terminal import one_line
+from .terminal import emit, one_line
 
 NOT_FOUND = 1
 NAMES = ("A", "B")  # of the curves, on the command line and in sentences
@@ -91,20 +90,20 @@ def read_pair(options: argparse.Namespace, wanted: RelaxOptions) -> tuple[tuple[
 
 def _run(options: argparse.Namespace) -> int:
     """Find the motion, write every requested output, and return the exit status."""
-    output = output_for(options.output, options.format, options.look, options.loop or options.constant_radius)
+    check_output(options.output, options.format, options.look, options.loop or options.constant_radius)
     wanted = relax_options.from_arguments(options)
     check_places(inputs(options), places(options))
     (file, task), (other, goal) = read_pair(options, wanted)
-    admit(output, options.output, file.curve)
+    check_holds(options.output, options.format, file.curve)
     settings = vars(wanted.resolved) | {"avoid": [each.name for each in task.obstacles]}
     origin = relax_options.provenance(settings, str(file.source.path), file.source.sha256)
     origin["to"] = {"name": str(other.source.path), "sha256": other.source.sha256}
     try:
-        result, iterates = run_to_end(morphing((task, goal), wanted, NAMES), task, wanted, output, options)
+        result, iterates = run_to_end(morphing((task, goal), wanted, NAMES), task, wanted, options)
     except NoMotionError as error:
         print(one_line(f"mobius-flow: {error}"), file=sys.stderr)
         return NOT_FOUND
-    write_results(options, output, result, iterates, origin)
+    write_results(options, result, iterates, origin)
     return NOT_FOUND if result.status is Status.TIME_LIMIT else EXIT_STATUS[result.status]
 
 

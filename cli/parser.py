@@ -10,8 +10,7 @@ from importlib.metadata import EntryPoint, entry_points
 from typing import Any, NoReturn
 
 from .. import __version__
-from .streams import emit
-from .terminal import sentence
+from .terminal import emit, sentence
 
 COMMANDS = {  # the module of each, which has add_COMMAND(parser), and what it does; see also `joined`
     "relax": ("relax", "relax a curve"),

@@ -6,7 +6,6 @@ import sys
 from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
 
 from ..core import Curve, Iterate, MobiusFlowError, RelaxOptions, Result, Status, Task, Trajectory, relax, write_curve
 from ..core.base.errors import counted
@@ -20,7 +19,18 @@ from . import curves, signals
 from . import options as relax_options
 from .options import DEFAULT, LOOKS
 from .parser import further
-from .places import OUTPUTS, OutputKind, Write, admit, check_places, is_file, kept, output_for, writing
+from .places import (
+    OUTPUTS,
+    Write,
+    check_holds,
+    check_output,
+    check_places,
+    is_file,
+    is_scene,
+    kept,
+    write_output,
+    writing,
+)
 from .progress import progress
 from .terminal import GREEN, RED, YELLOW, command, digits, power, quoted, report
 
@@ -86,18 +96,18 @@ def add_outputs(parser: argparse.ArgumentParser) -> None:
 
 def _run(options: argparse.Namespace) -> int:
     """Relax, write every requested output, and return the exit status."""
-    output = output_for(options.output, options.format, options.look, options.loop or options.constant_radius)
+    check_output(options.output, options.format, options.look, options.loop or options.constant_radius)
     wanted = relax_options.from_arguments(options)
     check_places(relax_options.inputs(options), places(options))
     file = curves.read(options.input, options.format)
     with curves.refusals(file):
         task = relax_options.task(options, file)
-    admit(output, options.output, file.curve)
+    check_holds(options.output, options.format, file.curve)
     respected = {"pins": task.pins, "pin_tangents": task.pin_tangents, "avoid": [each.name for each in task.obstacles]}
     origin = relax_options.provenance(vars(wanted.resolved) | respected, str(file.source.path), file.source.sha256)
     with curves.refusals(file):
-        result, iterates = run_to_end(relax(task, wanted), task, wanted, output, options)
-    write_results(options, output, result, iterates, origin)
+        result, iterates = run_to_end(relax(task, wanted), task, wanted, options)
+    write_results(options, result, iterates, origin)
     return EXIT_STATUS[result.status]
 
 
@@ -107,13 +117,13 @@ def places(options: argparse.Namespace) -> dict[str, str | None]:
 
 
 def run_to_end(
-    relaxation: Relaxation, task: Task, wanted: RelaxOptions, output: OutputKind, options: argparse.Namespace
+    relaxation: Relaxation, task: Task, wanted: RelaxOptions, options: argparse.Namespace
 ) -> tuple[Result, list[Iterate]]:
     """Run to the end or an interrupt. Signals interrupt steps only: neither what is recorded nor the end is lost."""
     iterates: list[Iterate] = []
-    recorded = output.is_scene or options.trajectory is not None
+    recorded = is_scene(options.output) or options.trajectory is not None
     signals.hold()
-    with progress(wanted, _shown(options)) as draw:
+    with progress(wanted, not options.quiet and sys.stderr.isatty()) as draw:
 
         def on_iterate(iterate: Iterate) -> None:
             if recorded or not iterates:  # what is said begins with the first
@@ -125,62 +135,54 @@ def run_to_end(
         return finish(signals.interruptible(relaxation), task, wanted, on_iterate), iterates
 
 
-def _shown(options: argparse.Namespace) -> bool:
-    return not options.quiet and sys.stderr.isatty()
-
-
-class _Job(NamedTuple):
-    """A result to be written; see `kept`."""
-
-    path: str
-    write: Write
-    rescue: Write | None = None
-    name: str | None = None
-    slow: bool = False  # may take long, or never end: it can be interrupted, and comes last
-
-    def begin(self, interrupted: bool, path: str) -> None:
-        """Write; long tasks are not begun after an interrupt."""
-        if self.slow and interrupted:
-            raise KeyboardInterrupt
-        if self.slow:
-            signals.allow()
-        self.write(path)
-
-
 def write_results(
-    options: argparse.Namespace,
-    output: OutputKind,
-    result: Result,
-    iterates: list[Iterate],
-    origin: Mapping[str, object],
+    options: argparse.Namespace, result: Result, iterates: list[Iterate], origin: Mapping[str, object]
 ) -> None:
-    """Write every requested output, and report on standard error how the run ended, unless quiet."""
+    """Write every requested output, and report on standard error how the run ended, unless quiet.
 
-    def save_trajectory(path: str) -> None:
-        trajectory = Trajectory(origin, result.task.obstacles)
+    If one cannot be written, the others still are. Files come first: a film takes a minute, and a stream may never
+    end, so that these can be interrupted; they are not begun after an interrupt.
+    """
+
+    def report_as_json(path: str) -> None:
+        text = json.dumps(result.report() | dict(origin), indent=1) + "\n"
+        with writing(path) as temporary:
+            temporary.write_text(text, encoding="utf-8")
+
+    def trajectory(path: str) -> None:
+        made = Trajectory(origin, result.task.obstacles)
         for iterate in iterates:
-            trajectory.add(iterate)
-        trajectory.save(path)
+            made.add(iterate)
+        made.save(path)
 
-    def write(path: str) -> None:
+    def output(path: str) -> None:
         playing = Playing(options.look, options.loop, options.constant_radius)
-        output.write(path, result, iterates, _shown(options), playing)
+        shown = not options.quiet and sys.stderr.isatty()
+        write_output(path, options.format, result, iterates, playing, shown)
 
-    # report, trajectory, and curve or scene: if one cannot be written, the others still are
-    extras = (options.report, partial(_write_report, result, origin)), (options.trajectory, save_trajectory)
-    jobs = [_Job(path, save, slow=not is_file(path)) for path, save in extras if path is not None]
-    if output.is_scene:  # a film takes a minute
-        plain = partial(write_curve, curve=result.curve)
-        jobs.append(_Job(options.output, write, plain, f"{Path(options.output).stem}.obj", slow=True))
-    else:
-        name = f"curve.{options.format or 'txt'}" if options.output == curves.STREAM else None
-        jobs.append(_Job(options.output, write, name=name, slow=not is_file(options.output)))
+    def patiently(write: Write) -> Write:
+        def begin(path: str) -> None:
+            if interrupted:
+                raise KeyboardInterrupt
+            signals.allow()
+            write(path)
+
+        return begin
+
+    scene, name = is_scene(options.output), None
+    if scene or options.output == curves.STREAM:  # of what is kept
+        name = f"{Path(options.output).stem}.obj" if scene else f"curve.{options.format or 'txt'}"
+    extras = (options.report, report_as_json), (options.trajectory, trajectory)
+    jobs: list[tuple[str, Write, Write, str | None]]
+    jobs = [(path, write, write, None) for path, write in extras if path is not None]
+    jobs.append((options.output, output, partial(write_curve, curve=result.curve) if scene else output, name))
+    slow = {path: not is_file(path) or (scene and path == options.output) for path, *_ in jobs}
     failures: list[str] = []
     interrupted = False
-    for job in sorted(jobs, key=lambda job: job.slow):
+    for path, write, rescue, name in sorted(jobs, key=lambda job: slow[job[0]]):
         signals.hold()
         try:
-            failures += kept(job.path, partial(job.begin, interrupted), job.rescue or job.write, job.name)
+            failures += kept(path, patiently(write) if slow[path] else write, rescue, name)
         except KeyboardInterrupt as interrupt:
             interrupted = True
             failures.append(str(interrupt))
@@ -191,12 +193,6 @@ def write_results(
     signals.allow()
     if not options.quiet:
         print(_said(options, result, iterates[0].curve, falls="to" not in origin), file=sys.stderr)
-
-
-def _write_report(result: Result, origin: Mapping[str, object], path: str) -> None:
-    text = json.dumps(result.report() | dict(origin), indent=1) + "\n"
-    with writing(path) as temporary:
-        temporary.write_text(text, encoding="utf-8")
 
 
 def _said(options: argparse.Namespace, result: Result, first: Curve, falls: bool) -> str:
@@ -210,10 +206,9 @@ def _said(options: argparse.Namespace, result: Result, first: Curve, falls: bool
     reason, *notes = result.outcome.clauses
     told = "" if falls and result.outcome.converged else str(reason).partition(": ")[2] or reason
     written = [path for path in places(options).values() if path not in (None, curves.STREAM, curves.DEVICE)]
-    is_curve = Path(options.output).suffix.lower() in written_formats()
-    following = ["info", options.output] * is_curve
-    if options.trajectory in written:
-        following = ["verify", options.trajectory]
+    following = ["verify", options.trajectory] if options.trajectory in written else []
+    if not following and Path(options.output).suffix.lower() in written_formats():
+        following = ["info", options.output]
     certified = "no contact on the whole path" if result.certified else "NO: contact is not ruled out everywhere"
     rows = [
         ("reason", told),

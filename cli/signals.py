@@ -18,27 +18,24 @@ _Item = TypeVar("_Item")
 _Result = TypeVar("_Result")
 
 INTERRUPTED = 130
-_NUMBERS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
-_UNSET = (signal.SIG_DFL, signal.default_int_handler)  # neither ignored, as by nohup, nor someone else's
-_TOGETHER = 1.0  # seconds in which signals count as one: a terminal and a parent process often send one each
-_LEAVE, _RAISE, _HOLD = "leave", "raise", "hold"
 
 
 class _State:
     """What the next signal does, whether one is waiting, and when the last one was raised."""
 
-    mode = _RAISE
+    mode = "raise"  # or "hold", or "leave" the process
     waiting = False
     raised = -math.inf  # by the monotonic clock
+    together = 1.0  # seconds in which signals count as one: a terminal and a parent process often send one each
 
 
 def hold() -> None:
-    _State.mode = _HOLD
+    _State.mode = "hold"
 
 
 def allow() -> None:
     """Let signals interrupt again, starting with one that has been waiting."""
-    _State.mode = _RAISE
+    _State.mode = "raise"
     if _State.waiting:
         _interrupt()
 
@@ -60,7 +57,7 @@ def interruptible(work: Generator[_Item, None, _Result]) -> Generator[_Item, Non
 def raised() -> Iterator[None]:
     """Let signals raise KeyboardInterrupt in a block; those that are ignored or handled by others are left alone."""
     mode, previous = _State.mode, _install()
-    _State.mode, _State.waiting, _State.raised = _RAISE, False, -math.inf
+    _State.mode, _State.waiting, _State.raised = "raise", False, -math.inf
     try:
         yield
     finally:
@@ -71,30 +68,31 @@ def raised() -> Iterator[None]:
 
 def leave_at_once() -> None:
     """Let signals end the process with one sentence as long as there is nothing to lose, such as during imports."""
-    _State.mode = _LEAVE
+    _State.mode = "leave"
     _install()
 
 
 def _install() -> dict[int, Any]:
     if threading.current_thread() is not threading.main_thread():
         return {}
-    return {number: signal.signal(number, _receive) for number in _NUMBERS if signal.getsignal(number) in _UNSET}
+    numbers = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+    unset = (signal.SIG_DFL, signal.default_int_handler)  # neither ignored, as by nohup, nor someone else's
+    return {number: signal.signal(number, _receive) for number in numbers if signal.getsignal(number) in unset}
 
 
 def _receive(_number: int, _frame: FrameType | None) -> None:
-    if time.monotonic() - _State.raised < _TOGETHER:
+    if time.monotonic() - _State.raised < _State.together:
         return
-    if _State.mode == _LEAVE:
-        _State.mode = _HOLD  # one sentence, even if another signal comes now
+    if _State.mode == "raise":
+        _interrupt()
+    if _State.mode == "leave":
+        _State.mode = "hold"  # one sentence, even if another signal comes now
         with contextlib.suppress(OSError):
             os.write(2, b"mobius-flow: interrupted\n")
         os._exit(INTERRUPTED)
-    if _State.mode == _HOLD:
-        _State.waiting = True
-        return
-    _interrupt()
+    _State.waiting = True
 
 
 def _interrupt() -> None:
-    _State.mode, _State.waiting, _State.raised = _HOLD, False, time.monotonic()
+    _State.mode, _State.waiting, _State.raised = "hold", False, time.monotonic()
     raise KeyboardInterrupt

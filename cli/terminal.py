@@ -1,16 +1,34 @@
 """What commands say: sentences, reports and tables, wrapped and coloured in a terminal and plain elsewhere."""
 
+import contextlib
+import io
 import math
 import os
 import re
 import shlex
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from typing import TextIO
 
 GREEN, RED, YELLOW, FAINT = 32, 31, 33, 2
-_NUMBER = re.compile(r"(-?[\d.,]+(e[+-]?\d+)?)?")
 Item = str | Sequence[str]  # a text, whose words may be on different lines; or items that are left whole, such as paths
+
+
+class OutputStreamError(OSError):
+    """Standard output cannot be written."""
+
+
+def emit(text: str) -> None:
+    """Print to standard output, at once; raises OutputStreamError, or BrokenPipeError if the pipe is closed."""
+    try:
+        print(text, flush=True)
+    except OSError as error:
+        with contextlib.suppress(OSError, ValueError):  # the rest goes nowhere, so that Python's exit is quiet
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if isinstance(error, BrokenPipeError):
+            raise
+        reason = "it is closed" if isinstance(error, io.UnsupportedOperation) else error.strerror or error
+        raise OutputStreamError(f"standard output cannot be written: {reason}") from error
 
 
 def one_line(text: str) -> str:
@@ -76,19 +94,18 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]], stream: TextIO) ->
     """Rows below the names of their columns; numbers stand at the right of theirs, and the last column is wrapped."""
     cells = [list(map(one_line, row)) for row in (head, *rows)]
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
-    right = [all(map(_NUMBER.fullmatch, column[1:])) for column in zip(*cells, strict=True)]
+    number = re.compile(r"(-?[\d.,]+(e[+-]?\d+)?)?")
+    right = [all(map(number.fullmatch, column[1:])) for column in zip(*cells, strict=True)]
 
-    def lines() -> Iterator[str]:
-        for number, row in enumerate(cells):
-            *first, last = (
-                cell.rjust(width) if is_right else cell.ljust(width)
-                for cell, width, is_right in zip(row, widths, right, strict=True)
-            )
-            start = "".join(f"{cell}  " for cell in first)
-            line = (start + (last if right[-1] else wrapped(row[-1], stream, len(start)))).rstrip()
-            yield line if number else painted(line, FAINT, stream)
-
-    return "\n".join(lines())
+    lines = []
+    for row in cells:
+        padded = [
+            cell.rjust(width) if is_right else cell.ljust(width)
+            for cell, width, is_right in zip(row, widths, right, strict=True)
+        ]
+        start = "".join(f"{cell}  " for cell in padded[:-1])
+        lines.append((start + (padded[-1] if right[-1] else wrapped(row[-1], stream, len(start)))).rstrip())
+    return "\n".join([painted(lines[0], FAINT, stream), *lines[1:]])
 
 
 def quoted(path: object) -> str:

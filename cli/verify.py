@@ -15,8 +15,7 @@ from ..core.proof import verify
 from .curves import INPUT, STREAM
 from .places import is_file
 from .progress import live
-from .streams import emit
-from .terminal import GREEN, RED, painted, wrapped
+from .terminal import GREEN, RED, emit, painted, wrapped
 
 MAX_BYTES = 4 << 30  # of a stream, which is copied to a temporary file: archives are read from their ends
 _EPILOG = """\

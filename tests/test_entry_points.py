@@ -54,7 +54,7 @@ stiffness = planted:stiffness
 def planted(tmp_path):
     """Install a package by hand, with the entry points given, and give the directory that it is in."""
 
-    def plant(text: str) -> Path:
+    def plant(text):
         info = tmp_path / "planted_package-1.0.dist-info"
         info.mkdir()
         (info / "METADATA").write_text("Metadata-Version: 2.1\nName: planted-package\nVersion: 1.0\n")

@@ -14,7 +14,7 @@ _SPEC.loader.exec_module(tool)
 
 
 @pytest.mark.parametrize("mutant", list(tool.mutants()), ids=lambda mutant: mutant.name)
-def test_what_is_to_be_broken_is_there_once(mutant) -> None:
+def test_what_is_to_be_broken_is_there_once(mutant):
     assert (ROOT / mutant.file).read_text(encoding="utf-8").count(mutant.old) == 1
     file, _, test = mutant.test.partition("::")
     assert (ROOT / file).exists()

@@ -134,7 +134,7 @@ PLUGINS = {
 }
 
 
-def plant(root: Path, plugin: Plugin) -> None:
+def plant(root, plugin):
     """Add the file, and the lines to the table."""
     if plugin.file is not None:
         shutil.copy(SOURCES / plugin.file, root / plugin.room)

@@ -3,10 +3,9 @@
 import hashlib
 from pathlib import Path
 
-from ...cli.places import foreign
 from ...core.base.errors import OutputError
 from ...core.base.files import atomic_write
-from ..batch.job import sha256_of
+from ..batch.job import foreign, sha256_of
 
 SUMS = "SHA256SUMS"
 _MARK = "# mobius-flow atlas; check with: sha256sum -c SHA256SUMS\n"

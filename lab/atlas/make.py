@@ -12,8 +12,7 @@ from typing import Any
 from ...cli.options import DEFAULT
 from ...cli.places import check_directory, export
 from ...cli.progress import live
-from ...cli.streams import emit
-from ...cli.terminal import quoted, report
+from ...cli.terminal import emit, quoted, report
 from ...core.base.errors import MobiusFlowError, counted
 from . import data, pages
 from .entries import curve_of, entry

@@ -10,8 +10,7 @@ from ...cli import options as relax_options
 from ...cli import signals
 from ...cli.places import check_place
 from ...cli.progress import live
-from ...cli.streams import emit
-from ...cli.terminal import GREEN, YELLOW, command, quoted, report, table
+from ...cli.terminal import GREEN, YELLOW, command, emit, quoted, report, table
 from ...core.base.errors import OptionError, OutputError, counted
 from . import cluster
 from .folder import check_replaceable, finished, sweep

@@ -11,10 +11,9 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from ...cli.places import foreign
 from ...core import MobiusFlowError, Status
 from ...core.base.errors import reason_of
-from .job import CURVE, REPORT, TRAJECTORY, Job, limit_of, sha256_of
+from .job import CURVE, REPORT, TRAJECTORY, Job, foreign, limit_of, sha256_of
 from .table import Row
 
 _ROOM = ".mobius-flow-{}.partial"  # short, so that it fits beside any valid name of results

@@ -206,3 +206,9 @@ def sha256_of(path: Path) -> str | None:
         return None
     with path.open("rb") as stream:
         return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+def foreign(path: Path, command: str) -> MobiusFlowError:
+    """The error about something in the way of a command's files: a command replaces nothing but its own."""
+    why = f"was not written by mobius-flow {command}, or has been changed since"
+    return MobiusFlowError(f"{path}: {why}; move it, or name another directory")

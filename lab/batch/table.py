@@ -10,12 +10,11 @@ from pathlib import Path
 from typing import get_args, get_type_hints
 
 from ... import __version__
-from ...cli.places import foreign
 from ...cli.terminal import one_line
 from ...core import RelaxOptions
 from ...core.base.errors import OutputError
 from ...core.base.files import atomic_write
-from .job import CSV, PARQUET, Job, as_text, sha256_of
+from .job import CSV, PARQUET, Job, as_text, foreign, sha256_of
 
 FAILED = "failed"
 _MARK = b"mobius-flow batch"  # in the Parquet file's metadata: SHA-256 of the CSV beside it, and of the one before

@@ -13,8 +13,7 @@ from ...cli import curves, signals
 from ...cli import options as relax_options
 from ...cli.places import check_places, kept, writing
 from ...cli.progress import live
-from ...cli.streams import emit
-from ...cli.terminal import power, say_written, sentence, table, width_of
+from ...cli.terminal import emit, power, say_written, sentence, table, width_of
 from ...core import METHODS, MobiusFlowError
 from ...core.base.errors import OptionError, counted, wrong_suffix
 from .comparison import History, variants

@@ -3,7 +3,6 @@
 import shutil
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 from mobius_flow.cli import main
@@ -26,13 +25,7 @@ echo "${COMPREPLY[@]}"
         (["verify", "pat"], "path.npz"),
     ],
 )
-def test_bash_completes_commands_options_names_and_files(
-    words: list[str],
-    offered: str,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_bash_completes_commands_options_names_and_files(words, offered, tmp_path, monkeypatch, capsys):
     pytest.importorskip("shtab")
     assert main(["--print-completion", "bash"]) == 0
     (tmp_path / "script").write_text(capsys.readouterr().out)
@@ -43,13 +36,13 @@ def test_bash_completes_commands_options_names_and_files(
 
 
 @pytest.mark.parametrize("shell", ["zsh", "fish"])
-def test_other_shells_have_scripts(shell: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_other_shells_have_scripts(shell, capsys):
     pytest.importorskip("shtab")
     assert main(["--print-completion", shell]) == 0
     assert "escape-saddles" in capsys.readouterr().out
 
 
-def test_completion_names_what_is_missing(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_completion_names_what_is_missing(monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "shtab", None)
     assert main(["--print-completion", "bash"]) == 2
     assert "pip install shtab" in capsys.readouterr().err

@@ -1,24 +1,94 @@
-"""Runs that are interrupted keep the best curve; processes that are killed leave no half-written file."""
+"""Signals interrupt the work, not the writing of its results; processes that are killed leave no half-written file."""
 
 import json
 import os
+import re
 import signal
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from mobius_flow.cli import main
-from mobius_flow.core import Iterate, RelaxOptions, Result, Task, read_curve, write_curve
-from mobius_flow.core.driver import Relaxation, finish
+from mobius_flow.cli import places, signals
+from mobius_flow.core import Trajectory, read_curve, relax, write_curve
+from mobius_flow.core.base.deadline import termination_raises
+from mobius_flow.core.driver import finish
 from mobius_flow.core.proof import verify
+from mobius_flow.lab.compare import command as compare_command
+from mobius_flow.lab.compare.comparison import compare
 from processes import finished, running
 from shapes import regular_polygon, torus_trefoil
 
-pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals")
+pytestmark = [pytest.mark.skipif(os.name != "posix", reason="signals"), pytest.mark.usefixtures("room")]
+BOTH = pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])  # SIGINT is ignored in background jobs
+COMMAND = ["relax", "trefoil.txt", "o.txt", "--report", "r.json", "--trajectory", "t.npz", "--vertices", "60"]
+COMMAND += ["--method", "flow-l2"]
+ENDLESS = ["--tolerance", "1e-30", "--max-iterations", "1000000"]
+FILM = [*COMMAND[:2], "film.mp4", *COMMAND[3:], "--max-iterations", "3"]
 
-ENDLESS = ["--tolerance", "1e-30", "--vertices", "120", "--method", "flow-l2", "--max-iterations", "1000000"]
+
+@BOTH
+def test_the_first_signal_raises_and_the_next_wait(number, terminated):
+    with signals.raised():
+        with pytest.raises(KeyboardInterrupt):
+            terminated(number)
+        terminated(number)
+    assert signal.getsignal(number) is signal.SIG_DFL
+
+
+def test_held_signals_wait_until_they_are_allowed(terminated):
+    with signals.raised():
+        signals.hold()
+        terminated()
+        terminated()
+        with pytest.raises(KeyboardInterrupt):
+            signals.allow()
+        signals.allow()  # both were one
+
+
+def test_signals_wait_while_an_iterate_is_recorded(terminated):
+    """They interrupt the computation of the next one: what is written ends with one and the same iterate."""
+    with signals.raised():
+        iterates = signals.interruptible(relax(torus_trefoil(60)))
+        next(iterates)
+        terminated()
+        with pytest.raises(KeyboardInterrupt):
+            next(iterates)
+
+
+def test_one_that_comes_later_interrupts_again(terminated, monkeypatch):
+    with signals.raised():
+        with pytest.raises(KeyboardInterrupt):
+            terminated()
+        monkeypatch.setattr(signals._State, "together", 0.0)
+        signals.allow()
+        with pytest.raises(KeyboardInterrupt):
+            terminated()
+
+
+def test_ignored_signals_stay_ignored(terminated):
+    signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as nohup does
+    with signals.raised():
+        terminated(signal.SIGHUP)
+    assert signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
+
+
+@BOTH
+def test_termination_raises_what_is_wanted(number, terminated):
+    with pytest.raises(SystemExit), termination_raises(SystemExit(143)):
+        terminated(number)
+    assert signal.getsignal(number) is signal.SIG_DFL
+
+
+def check_results(status):
+    """Curve and trajectory end with the same frame, and all is as it should be."""
+    assert json.loads(Path("r.json").read_text())["status"] == status
+    assert verify("t.npz").accepted
+    with np.load("t.npz") as archive:
+        assert np.array_equal(archive["stage_000"][-1], read_curve("o.txt").vertices)
+    assert sorted(os.listdir()) == ["o.txt", "r.json", "t.npz", "trefoil.txt"]
+
+
 TALKATIVE = """
 import sys
 from contextlib import nullcontext
@@ -28,80 +98,145 @@ sys.exit(main(sys.argv[1:]))
 """
 
 
-@pytest.fixture
-def trefoil(tmp_path: Path) -> Path:
-    path = tmp_path / "trefoil.txt"
-    write_curve(path, torus_trefoil(60))
-    return path
-
-
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_keeps_curve_report_and_trajectory(trefoil: Path, tmp_path: Path, number: signal.Signals) -> None:
-    out, report, trajectory = tmp_path / "o.txt", tmp_path / "r.json", tmp_path / "t.npz"
-    arguments = ["relax", trefoil, out, "--report", report, "--trajectory", trajectory, *ENDLESS]
-    command = [sys.executable, "-c", TALKATIVE, *map(str, arguments)]
-    with running(command) as process:
-        assert process.stdout is not None
+def test_a_signal_keeps_curve_report_and_trajectory(number):
+    with running([sys.executable, "-c", TALKATIVE, *COMMAND, *ENDLESS]) as process:
         assert process.stdout.readline() == "running\n"
         process.send_signal(number)
         _, error = process.communicate()
     assert process.returncode == 130
     assert error.startswith("✗ interrupted")
     assert "\n  reason      the curve reached so far is kept\n" in error
-    assert json.loads(report.read_text())["status"] == "interrupted"
-    verdict = verify(trajectory)
-    assert verdict.accepted
-    assert verdict.legs >= 2
-    with np.load(trajectory) as archive:
-        assert np.array_equal(archive["stage_000"][-1], read_curve(out).vertices)
-    assert sorted(os.listdir(tmp_path)) == ["o.txt", "r.json", "t.npz", "trefoil.txt"]
+    check_results("interrupted")
 
 
-def test_an_interrupt_while_an_iterate_is_recorded(
-    trefoil: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Curve and trajectory end with the same frame."""
-    out, trajectory = tmp_path / "o.txt", tmp_path / "t.npz"
+@BOTH
+def test_signals_while_results_are_written_cost_nothing(number, terminated, on_iterate, monkeypatch, run):
+    """Two at once in the run, and more while the trajectory is written."""
+    save = Trajectory.save
 
-    def interrupting(
-        relaxation: Relaxation, task: Task, options: RelaxOptions, callback: Callable[[Iterate], None]
-    ) -> Result:
-        def wrapped(iterate: Iterate) -> None:
-            callback(iterate)
-            if iterate.index == 3:
-                raise KeyboardInterrupt
+    def interrupted(iterate):
+        if iterate.index == 3:
+            terminated(number)
+            terminated()
 
-        return finish(relaxation, task, options, wrapped)
+    def interrupted_save(self, path):
+        terminated(number)
+        save(self, path)
+        terminated(number)
 
-    monkeypatch.setattr("mobius_flow.cli.relax.finish", interrupting)
-    assert main(["relax", str(trefoil), str(out), "--trajectory", str(trajectory), "--quiet", *ENDLESS]) == 130
-    with np.load(trajectory) as archive:
-        assert len(archive["stage_000"]) >= 4
-        assert np.array_equal(archive["stage_000"][-1], read_curve(out).vertices)
-    assert verify(trajectory).accepted
+    on_iterate(interrupted)
+    monkeypatch.setattr(Trajectory, "save", interrupted_save)
+    monkeypatch.setattr(signals._State, "together", 0.0)
+    assert run(*COMMAND, *ENDLESS)[0] == 130
+    check_results("interrupted")
 
 
-def test_the_handler_is_put_back(trefoil: Path) -> None:
-    before = signal.getsignal(signal.SIGTERM)
-    assert main(["energy", str(trefoil)]) == 0
-    assert signal.getsignal(signal.SIGTERM) is before
+@pytest.fixture
+def interrupted_at_the_end(terminated, monkeypatch):
+    """A signal comes after the last step, before the results are written."""
+
+    def interrupted(*arguments):
+        result = finish(*arguments)
+        terminated()
+        return result
+
+    monkeypatch.setattr("mobius_flow.cli.relax.finish", interrupted)
 
 
-KILLED_WRITES = """
-import os, signal, sys, time
-from mobius_flow.cli.relax import _write_report
-from mobius_flow.core import Trajectory, RelaxOptions, minimize, read_curve, relax, write_curve
-source, room = sys.argv[1:]
-curve = read_curve(source)
-trajectory = Trajectory()
-for iterate in relax(curve, RelaxOptions(vertices=len(curve), max_iterations=2, edge_lengths="keep")):
-    trajectory.add(iterate)
-result = minimize(curve, RelaxOptions(vertices=len(curve), max_iterations=0))
+@pytest.mark.usefixtures("interrupted_at_the_end")
+def test_a_signal_after_the_last_step_costs_nothing(run):
+    assert run(*COMMAND, "--max-iterations", 3) == (130, "", "mobius-flow: interrupted\n")
+    check_results("iteration_limit")
+
+
+@pytest.mark.usefixtures("interrupted_at_the_end")
+def test_files_come_before_streams_that_may_be_interrupted(run):
+    os.mkfifo("pipe")
+    reader = os.open("pipe", os.O_RDONLY | os.O_NONBLOCK)
+    assert run(*COMMAND[:4], "pipe", *COMMAND[5:], "--max-iterations", 3)[0] == 130
+    assert os.read(reader, 100) == b""
+    os.close(reader)
+    assert len(read_curve("o.txt")) == 60
+    assert verify("t.npz").accepted
+
+
+@pytest.mark.parametrize("when", ["in the film", "in the run, too", "by Blender", "while the trajectory is written"])
+def test_a_film_can_be_interrupted_and_the_curve_is_kept(when, terminated, monkeypatch, on_iterate, run):
+    save = Trajectory.save
+
+    def interrupted(iterate):
+        if when == "in the run, too" and iterate.index == 2:
+            terminated()
+
+    def interrupted_save(self, path):
+        if when == "while the trajectory is written":
+            terminated()
+        save(self, path)
+
+    def film(path, *_):
+        if when == "by Blender":
+            raise KeyboardInterrupt
+        assert when != "while the trajectory is written", "it is not begun"
+        terminated()
+        Path(path).write_text("too late")
+
+    on_iterate(interrupted)
+    monkeypatch.setattr(Trajectory, "save", interrupted_save)
+    monkeypatch.setattr(signals._State, "together", 0.0)
+    monkeypatch.setattr(places.export, "require_blender", lambda: None)
+    monkeypatch.setattr(places.export, "write_movie", film)
+    status, _, said = run(*FILM)
+    assert status == 130
+    assert sorted(os.listdir()) == ["r.json", "t.npz", "trefoil.txt"]
+    assert json.loads(Path("r.json").read_text())["iterations"] == (2 if when == "in the run, too" else 3)
+    kept = re.fullmatch(
+        r"mobius-flow: interrupted: .*film.mp4 is not written \(the result is kept as (.*obj)\)\n", said
+    )
+    assert kept is not None, said
+    assert len(read_curve(kept[1])) == 60
+
+
+def test_memory_that_runs_out_keeps_the_curve(on_iterate, run):
+    def failing(iterate):
+        if iterate.index == 3:
+            raise MemoryError
+
+    on_iterate(failing)
+    status, _, said = run(*COMMAND, "--max-iterations", 9)
+    assert status == 1
+    assert "memory ran out" in said
+    check_results("stalled")
+
+
+@pytest.mark.parametrize(("memory", "status", "said"), [(False, 130, "interrupted"), (True, 1, "not enough memory")])
+def test_compare_keeps_the_methods_that_are_done(memory, status, said, terminated, monkeypatch, run):
+    def interrupted(curve, methods, *more):
+        yield from compare(curve, methods[:1], *more)
+        if memory:
+            raise MemoryError
+        terminated()
+
+    monkeypatch.setattr(compare_command, "compared", interrupted)
+    found = run(*["compare", "trefoil.txt", "--methods", "cg,lbfgs", "--max-iterations", "2", "-o", "c.json"])
+    assert found[0] == status
+    assert said in found[2].splitlines()[-1]
+    assert [run["method"] for run in json.loads(Path("c.json").read_text())] == ["cg"]
+
+
+KILLED_WRITES = r"""
+import json, os, signal, sys, time
+from mobius_flow.cli.places import writing
+from mobius_flow.core import RelaxOptions, Trajectory, minimize, read_curve, write_curve
+curve, trajectory = read_curve("source.txt"), Trajectory()
+minimize(curve, RelaxOptions(vertices=len(curve), max_iterations=2, edge_lengths="keep"), trajectory.add)
+def report(path):
+    with writing(path) as temporary:
+        temporary.write_text(json.dumps([0.0] * 9999))
 writers = {name: lambda path: write_curve(path, curve) for name in ("a.txt", "a.obj", "a.vect", "a.json")}
-writers |= {"r.json": lambda path: _write_report(result, {}, path), "t.npz": trajectory.save}
 for k, pause in enumerate((0.0007, 0.0053, 0.0111)):
-    for name, write in writers.items():
-        path = f"{room}/{k}-{name}"
+    for name, write in (writers | {"r.json": report, "t.npz": trajectory.save}).items():
+        path = f"{k}-{name}"
         write(path)
         child = os.fork()
         while not child:
@@ -112,18 +247,17 @@ for k, pause in enumerate((0.0007, 0.0053, 0.0111)):
 """
 
 
-def test_a_kill_while_writing_leaves_a_whole_file(tmp_path: Path) -> None:
+def test_a_kill_while_writing_leaves_a_whole_file(room):
     """Processes write the same file over and over, and are killed at odd moments."""
-    source, room, curve = tmp_path / "source.txt", tmp_path / "room", regular_polygon(300)
-    write_curve(source, curve)
-    room.mkdir()
-    done = finished([sys.executable, "-c", KILLED_WRITES, str(source), str(room)])
+    curve = regular_polygon(300)
+    write_curve("source.txt", curve)
+    done = finished([sys.executable, "-c", KILLED_WRITES])
     assert done.returncode == 0, done.stderr
     written = [path for path in room.iterdir() if path.name[0] in "012"]
     assert len(written) == 18
     for path in written:
         if path.name.endswith("r.json"):
-            assert json.loads(path.read_text())["vertices"] == len(curve)
+            assert len(json.loads(path.read_text())) == 9999
         elif path.name.endswith(".npz"):
             assert verify(path).accepted
         else:

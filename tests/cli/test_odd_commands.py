@@ -15,7 +15,7 @@ PATIENT = ["--patience", "200"]  # on a machine that has other work to do
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
-def test_odd_commands_are_taken_well(kind: str) -> None:
+def test_odd_commands_are_taken_well(kind):
     # a process of its own: the memory of the one that starts a command counts as the command's
     words = [sys.executable, str(TOOLS / "odd_commands.py"), "--only", kind, "--count", "2", "--seed", "7", *PATIENT]
     done = subprocess.run(words, capture_output=True, text=True, check=False)

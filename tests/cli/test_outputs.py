@@ -5,202 +5,275 @@ import os
 import re
 import subprocess
 import sys
-import tempfile
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from mobius_flow.cli import main, places
+from commands import SHORT
+from mobius_flow.cli import places
 from mobius_flow.cli import relax as relax_command
 from mobius_flow.core import read_curve, write_curve
 from mobius_flow.core.base.errors import MobiusFlowError
 from mobius_flow.core.base.files import atomic_write
 from mobius_flow.core.io import FORMATS
 from mobius_flow.core.proof import verify
-from shapes import regular_polygon, torus_trefoil
+from processes import finished
+from shapes import regular_polygon
 
-SHORT = ["--vertices", "60", "--max-iterations", "2", "--quiet"]
+OUTPUTS = {
+    "OUT": "relax trefoil.txt {}",
+    "--report": "relax trefoil.txt o.txt --report {}",
+    "--trajectory": "relax trefoil.txt o.txt --trajectory {}",
+    "knot": "knot 3_1 {}",
+    "compare": "compare trefoil.txt -o {}",
+    "atlas": "atlas results -o {}",
+    "list": "knot list.txt {}",
+    "batch": "batch 3_1 -o {}",
+}
+FILES = [*OUTPUTS][:4]
+ALL = [
+    "relax",
+    "trefoil.txt",
+    "place/o.txt",
+    "--report",
+    "place/r.json",
+    "--trajectory",
+    "place/t.npz",
+    *SHORT,
+    "--quiet",
+]
+NAMES = ["o.txt", "r.json", "t.npz"]
+
+pytestmark = pytest.mark.usefixtures("room")
 
 
 @pytest.fixture
-def trefoil(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
-    """A curve in the working directory; temporary files go below it."""
-    write_curve(tmp_path / "trefoil.txt", torus_trefoil(60))
-    (tmp_path / "scratch").mkdir()
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "scratch"))
-    return "trefoil.txt"
+def idle(monkeypatch):
+    """No work is done: what is refused is so before."""
 
-
-def refused(words: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> str:
-    """The one line of a command that is refused before any work."""
-
-    def working(*_arguments: object) -> None:
+    def working(*_):
         raise AssertionError
 
     monkeypatch.setattr(relax_command, "relax", working)
     monkeypatch.setattr("mobius_flow.lab.compare.comparison._run", working)
-    assert main(words) == 2
-    said = capsys.readouterr().err
-    assert said.count("\n") == 1
-    return said
+    monkeypatch.setattr(places.export, "require_blender", lambda: None)
 
 
-@pytest.mark.parametrize("alias", ["trefoil.txt", "./trefoil.txt", "hard.txt", "soft.txt", "TREFOIL"])
-@pytest.mark.parametrize("option", ["OUT", "--report", "--trajectory", "compare"])
-def test_the_input_is_no_output(
-    trefoil: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, alias: str, option: str
-) -> None:
-    os.link(trefoil, "hard.txt")
-    os.symlink(trefoil, "soft.txt")
-    alias = os.path.abspath(trefoil) if alias == "TREFOIL" else alias
-    before = Path(trefoil).read_text()
-    words = {"OUT": ["relax", trefoil, alias]}.get(option, ["relax", trefoil, "o.txt", option, alias])
-    if option == "compare":
-        os.rename(trefoil, "trefoil.json")
-        os.symlink("trefoil.json", trefoil)
-        words = ["compare", "trefoil.json", "-o", "trefoil.json"]
-    assert "are the same file" in refused(words, capsys, monkeypatch)
-    assert Path(trefoil).read_text() == before
+def words(output, place):
+    return [word.format(place) for word in OUTPUTS[output].split()]
 
 
-@pytest.mark.parametrize("extras", [["--report", "./o.txt"], ["--report", "x", "--trajectory", "scratch/../x"]])
-def test_outputs_are_files_of_their_own(
-    trefoil: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, extras: list[str]
-) -> None:
-    assert "are the same file" in refused(["relax", trefoil, "o.txt", *extras], capsys, monkeypatch)
+@pytest.mark.usefixtures("idle")
+@pytest.mark.parametrize(
+    ("place", "said"),
+    [
+        ("no/such/o.txt", "the directory no/such does not exist"),
+        ("directory", "directory: is a directory; name a file"),
+        ("trefoil.txt/o.txt", "cannot be written"),
+        ("x" * 300 + ".txt", "cannot be written"),
+        ("y/" * 3000 + "o.txt", "cannot be written"),
+        ("o\0.txt", "cannot be written"),
+    ],
+)
+@pytest.mark.parametrize("output", [*FILES, "compare"])
+def test_places_where_no_file_can_be(output, place, said, refused):
+    os.mkdir("directory")
+    if output in ("OUT", "knot") and place == "directory":
+        os.rename("directory", place := "directory.txt")
+        said = said.replace("directory: ", "directory.txt: ")
+    if output == "compare":
+        os.rename("directory", "directory.csv")
+        place = "directory.csv" if place == "directory" else place.replace(".txt", ".csv")
+        said = said.replace("directory: ", "directory.csv: ") if place.startswith("directory") else "cannot be written"
+    before = sorted(os.listdir())
+    assert said in refused(*words(output, place))
+    assert sorted(os.listdir()) == before
+
+
+@pytest.mark.parametrize("output", ["atlas", "list", "batch"])
+def test_a_directory_that_cannot_be_written_is_noticed_before_any_work(output, refused):
+    """As in one that is read-only, which does not stop the superuser of this test."""
+    Path("list.txt").write_text("3_1\n")
+    Path("file").touch()
+    assert "file/out: cannot be written" in refused(*words(output, "file/out"))
+
+
+@pytest.mark.usefixtures("idle")
+@pytest.mark.parametrize(
+    ("alias", "output"),
+    [
+        *((alias, "OUT") for alias in ("trefoil.txt", "./trefoil.txt", "hard.txt", "soft.txt", "TREFOIL")),
+        *(("soft.txt", output) for output in ("--report", "--trajectory", "compare")),
+        ("./o.txt", "--report"),
+        ("room/../o.txt", "--trajectory"),
+    ],
+)
+def test_no_file_is_named_twice(alias, output, room, refused):
+    os.mkdir("room")
+    os.link("trefoil.txt", "hard.txt")
+    os.symlink("trefoil.txt", "soft.txt")
+    before = Path("trefoil.txt").read_text()
+    command = words(output, str(room / "trefoil.txt") if alias == "TREFOIL" else alias)
+    if output == "compare":
+        os.rename("trefoil.txt", "trefoil.json")
+        os.symlink("trefoil.json", "trefoil.txt")
+        command = ["compare", "trefoil.json", "-o", "trefoil.json"]
+    assert "are the same file" in refused(*command)
+    assert Path("trefoil.txt").read_text() == before
     assert not os.path.exists("o.txt")
 
 
-def test_devices_may_be_named_twice(trefoil: str) -> None:
-    assert main(["relax", trefoil, "o.txt", "--report", os.devnull, "--trajectory", os.devnull, *SHORT]) == 0
+def test_devices_may_be_named_twice(run):
+    devices = ["--report", os.devnull, "--trajectory", os.devnull]
+    assert run("relax", "trefoil.txt", "o.txt", *devices, *SHORT, "--quiet") == (0, "", "")
 
 
-@pytest.mark.parametrize("place", ["x" * 300 + ".txt", "trefoil.txt/o.txt", "o\0.txt", "y/" * 3000 + "o.txt"])
-@pytest.mark.parametrize("option", ["OUT", "--report", "--trajectory", "compare", "knot"])
-def test_places_that_cannot_be(
-    trefoil: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, place: str, option: str
-) -> None:
-    words = {
-        "OUT": ["relax", trefoil, place],
-        "compare": ["compare", trefoil, "-o", place.replace(".txt", ".csv")],
-        "knot": ["knot", "3_1", place],
-    }.get(option, ["relax", trefoil, "o.txt", option, place])
-    assert "cannot be written" in refused(words, capsys, monkeypatch)
-
-
-def test_what_an_output_cannot_hold_is_refused_before_the_work(
-    trefoil: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.mark.usefixtures("idle")
+def test_what_an_output_cannot_hold_is_refused_before_the_work(refused):
     write_curve("four.json", regular_polygon(30, dimension=4))
-    monkeypatch.setattr(places.export, "require_blender", lambda: None)
     for output in ("o.txt", "o.obj", "o.vect", "o.blend", "o.mp4", "o.png"):
-        assert output in refused(["relax", "four.json", output], capsys, monkeypatch)
+        assert output in refused("relax", "four.json", output)
 
 
+@pytest.mark.usefixtures("idle")
 @pytest.mark.parametrize(
-    ("words", "expected"),
+    ("command", "said"),
     [
-        (["--methods", "lbfgs,nonsense"], "unknown"),
-        (["--methods", "lbfgs,lbfgs"], "give each of them once"),
-        (["--methods", "cg", "--penalty", "3"], "penalty"),
-        (["--methods", "lbfgs", "--metric", "nonsense"], "unknown"),
+        ("relax trefoil.txt o.png --look neno", "did you mean neon"),
+        ("relax trefoil.txt o.obj --look neon", "--look is for .blend, .mp4, .png"),
+        ("relax trefoil.txt o.obj --loop", "mobius-flow: --loop and --constant-radius are for .blend, .mp4\n"),
+        ("relax trefoil.txt o.png --constant-radius", "--loop and --constant-radius are for .blend, .mp4\n"),
+        ("relax trefoil.txt o.stl", "; mobius-flow view makes .stl of one of those\n"),
+        ("relax trefoil.txt o.npz", "; --trajectory writes motions\n"),
+        ("compare trefoil.txt -o c.json --methods lbfgs,nonsense", "unknown"),
+        ("compare trefoil.txt -o c.json --methods lbfgs,lbfgs", "give each of them once"),
+        ("compare trefoil.txt -o c.json --methods cg --penalty 3", "penalty"),
+        ("compare trefoil.txt -o c.json --methods lbfgs --metric nonsense", "unknown"),
     ],
 )
-def test_compare_looks_at_all_methods_first(
-    trefoil: str,
-    capsys: pytest.CaptureFixture[str],
-    monkeypatch: pytest.MonkeyPatch,
-    words: list[str],
-    expected: str,
-) -> None:
-    assert expected in refused(["compare", trefoil, "-o", "c.json", *words], capsys, monkeypatch)
+def test_what_no_output_can_be_is_refused_before_the_work(command, said, refused):
+    assert said in refused(*command.split())
 
 
-def test_compare_looks_for_matplotlib_first(
-    trefoil: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.mark.usefixtures("idle")
+@pytest.mark.parametrize("command", ["relax", "knot"])
+def test_formats_that_are_only_read_are_no_outputs(command, run, refused):
+    (told,) = re.findall(r"\n  OUT +(.*?)\s+or\s+-", run(command, "--help")[1], re.DOTALL)
+    assert set(FORMATS) - set(re.findall(r"\.\w+", told)) == {".dt", ".pdb", ".cif"}
+    for output in (["o.dt"], ["-", "--format", "dt"]):
+        refused(command, "trefoil.txt" if command == "relax" else "3_1", *output)
+    assert not Path("o.dt").exists()
+
+
+@pytest.mark.usefixtures("idle")
+def test_compare_looks_for_matplotlib_first(monkeypatch, refused):
     monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
-    assert "need matplotlib" in refused(["compare", trefoil, "-o", "c.png"], capsys, monkeypatch)
-
-
-@pytest.mark.skipif(os.name != "posix", reason="a new process")
-def test_the_backend_of_matplotlib_does_not_matter(trefoil: str) -> None:
-    pytest.importorskip("matplotlib")
-    words = [
-        sys.executable,
-        "-P",
-        "-m",
-        "mobius_flow",
-        "compare",
-        trefoil,
-        "-o",
-        "c.svg",
-        "--methods",
-        "cg",
-        *SHORT[:4],
-    ]
-    done = subprocess.run(words, env={**os.environ, "MPLBACKEND": "nonsense"}, capture_output=True, check=False)
-    assert done.returncode == 0, done.stderr
-    assert Path("c.svg").stat().st_size > 1000
+    assert "need matplotlib" in refused("compare", "trefoil.txt", "-o", "c.png")
 
 
 @pytest.fixture
-def mounted(trefoil: str) -> Path:
-    """A file that is mounted by itself over another one."""
-    if sys.platform != "linux" or os.geteuid() != 0:
-        pytest.skip("only the superuser mounts files")
-    return Path("mounted")
-
-
-def test_files_that_are_mounts(mounted: Path, trefoil: str) -> None:
-    mounted.mkdir()
-    names = ["o.txt", "r.json", "t.npz"]
+def mounted():
+    """A function that mounts something, where the test may."""
     done = []
-    try:
-        for name in names:
-            (mounted / name).write_text("old")
-            Path(f"source-{name}").write_text("old")
-            command = ["mount", "--bind", f"source-{name}", str(mounted / name)]
-            if subprocess.run(command, capture_output=True, check=False).returncode:
-                pytest.skip("no file can be mounted here")
-            done.append(name)
-        extras = ["--report", str(mounted / "r.json"), "--trajectory", str(mounted / "t.npz")]
-        assert main(["relax", trefoil, str(mounted / "o.txt"), *extras, *SHORT]) == 0
-        assert len(read_curve(mounted / "o.txt")) == 60
-        assert json.loads(Path("source-r.json").read_text())["vertices"] == 60
-        assert verify(mounted / "t.npz").accepted
-        assert sorted(os.listdir(mounted)) == names
-    finally:
-        for name in done:
-            subprocess.run(["umount", str(mounted / name)], check=True)
+
+    def mount(*options, at):
+        if sys.platform != "linux" or os.geteuid() != 0:
+            pytest.skip("only the superuser mounts")
+        if subprocess.run(["mount", *options, at], capture_output=True, check=False).returncode:
+            pytest.skip("nothing can be mounted here")
+        done.append(at)
+
+    yield mount
+    for at in done:
+        subprocess.run(["umount", at], check=True)
 
 
-def test_a_file_in_a_directory_where_none_can_be_made(
-    trefoil: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_disk_that_is_full_or_read_only_keeps_the_old_files(mounted, refused):
+    os.mkdir("place")
+    mounted("-t", "tmpfs", "-o", "size=32k", "tmpfs", at="place")
+    for name in NAMES:
+        Path("place", name).write_text("old")
+    with suppress(OSError), open("place/full", "wb", buffering=0) as stream:
+        while stream.write(b"x" * 512):
+            pass
+    said = refused(*ALL)
+    for name in NAMES:
+        assert f"place/{name}: cannot be written: No space left on device (the result is kept as " in said
+    subprocess.run(["mount", "-o", "remount,ro", "place"], check=True)
+    for output, name in zip(FILES, NAMES, strict=False):
+        assert "is write-protected" in refused(*words(output, f"place/{name}"))
+    assert sorted(os.listdir("place")) == sorted([*NAMES, "full"])
+    assert {Path("place", name).read_text() for name in NAMES} == {"old"}
+
+
+def test_files_that_are_mounts(mounted, run):
+    os.mkdir("place")
+    for name in NAMES:
+        Path(f"source-{name}").write_text("old")
+        Path("place", name).touch()
+        mounted("--bind", f"source-{name}", at=f"place/{name}")
+    assert run(*ALL) == (0, "", "")
+    assert len(read_curve("place/o.txt")) == 60
+    assert json.loads(Path("source-r.json").read_text())["vertices"] == 60
+    assert verify("place/t.npz").accepted
+    assert sorted(os.listdir("place")) == NAMES
+
+
+LIMITED = """
+import resource, sys
+from mobius_flow.cli import main
+resource.setrlimit(resource.RLIMIT_FSIZE, (300, 300))
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="limits of file sizes")
+def test_files_that_may_not_grow():
+    """Every output fails, and all are told in one sentence."""
+    os.mkdir("place")
+    for name in NAMES:
+        Path("place", name).write_text("old")
+    done = finished([sys.executable, "-c", LIMITED, *ALL])
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+    for name in NAMES:
+        assert f"{name}: cannot be written: File too large" in done.stderr
+        assert Path("place", name).read_text() == "old"
+    assert sorted(os.listdir("place")) == NAMES
+
+
+@pytest.mark.skipif(os.name != "posix" or os.geteuid() == 0, reason="the superuser may write anywhere")
+def test_a_write_protected_file_and_directory(refused):
+    os.mkdir("place")
+    Path("place/o.txt").write_text("old")
+    os.chmod("place/o.txt", 0o444)
+    assert "write-protected" in refused("relax", "trefoil.txt", "place/o.txt")
+    os.chmod("place", 0o555)
+    assert "write-protected" in refused("relax", "trefoil.txt", "place/p.txt")
+
+
+def test_a_file_in_a_directory_where_none_can_be_made(room, scratch, monkeypatch, run):
     """As in a read-only directory, which does not stop the superuser of this test."""
-    (tmp_path / "o.txt").write_text("old and rather long\n" * 1000)
-    number = (tmp_path / "o.txt").stat().st_ino
-    make = os.open
+    Path("o.txt").write_text("old and rather long\n" * 1000)
+    number, make = os.stat("o.txt").st_ino, os.open
 
-    def refusing(path: str, flags: int, mode: int = 0o777, **options: int) -> int:
-        if flags & os.O_CREAT and Path(path).parent == tmp_path:
+    def refusing(path, flags, mode=0o777, **options):
+        if flags & os.O_CREAT and Path(path).parent == room:
             raise PermissionError(13, "Permission denied")
         return make(path, flags, mode, **options)
 
     monkeypatch.setattr(os, "open", refusing)
-    assert main(["relax", trefoil, "o.txt", *SHORT]) == 0
+    assert run("relax", "trefoil.txt", "o.txt", *SHORT, "--quiet")[0] == 0
     assert len(read_curve("o.txt")) == 60
     assert os.stat("o.txt").st_ino == number
-    assert os.listdir("scratch") == []
+    assert os.listdir(scratch) == []
 
 
-def test_copying_that_fails_brings_the_old_contents_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    target = tmp_path / "a.txt"
+def test_copying_that_fails_brings_the_old_contents_back(tmp_path, monkeypatch):
+    target, write = tmp_path / "a.txt", os.write
     target.write_text("old")
-    write = os.write
+    before = sorted(os.listdir(tmp_path))
 
-    def full(descriptor: int, data: bytes) -> int:
+    def full(descriptor, data):
         if bytes(data) == b"new and longer":
             write(descriptor, b"new ")
             raise OSError(28, "No space left on device")
@@ -211,105 +284,47 @@ def test_copying_that_fails_brings_the_old_contents_back(tmp_path: Path, monkeyp
     with pytest.raises(OSError, match="No space"), atomic_write(target) as temporary:
         temporary.write_text("new and longer")
     assert target.read_text() == "old"
-    assert os.listdir(tmp_path) == ["a.txt"]
+    assert sorted(os.listdir(tmp_path)) == before
 
 
-def kept_as(said: str) -> list[str]:
-    return re.findall(r"the result is kept as ([^)]+)\)", said)
-
-
-def test_results_without_room_are_kept_elsewhere(
-    trefoil: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_results_without_room_are_kept_elsewhere(refused, monkeypatch):
     """The directory disappears during the run."""
     os.mkdir("place")
     finish = relax_command.finish
 
-    def disappearing(*arguments: object) -> object:
-        result = finish(*arguments)  # type: ignore[arg-type]
+    def disappearing(*arguments):
+        result = finish(*arguments)
         os.rmdir("place")
         return result
 
     monkeypatch.setattr(relax_command, "finish", disappearing)
-    extras = ["--report", "place/r.json", "--trajectory", "place/t.npz"]
-    assert main(["relax", trefoil, "place/o.obj", *extras, *SHORT]) == 2
-    said = capsys.readouterr().err
-    assert said.count("\n") == 1
-    report, trajectory, curve = kept_as(said)
+    report, trajectory, curve = re.findall(r"the result is kept as ([^)]+)\)", refused(*ALL))
     assert json.loads(Path(report).read_text())["vertices"] == 60
     assert verify(trajectory).accepted
     assert len(read_curve(curve)) == 60
 
 
-def test_of_a_film_that_fails_the_curve_is_kept(
-    trefoil: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def failing(*_arguments: object) -> None:
+def test_of_a_film_that_fails_the_curve_is_kept_and_how_it_is_played_reaches_it(refused, monkeypatch):
+    played = []
+
+    def failing(*arguments):
+        played.append(arguments[-1])
         raise MobiusFlowError("film.mp4: cannot be written: no")
 
     monkeypatch.setattr(places.export, "require_blender", lambda: None)
     monkeypatch.setattr(places.export, "write_movie", failing)
-    assert main(["relax", trefoil, "film.mp4", *SHORT]) == 2
-    (curve,) = kept_as(capsys.readouterr().err)
+    said = refused("relax", "trefoil.txt", "film.mp4", "--loop", "--quiet", *SHORT)
+    (curve,) = re.findall(r"the result is kept as ([^)]+)\)", said)
     assert curve.endswith("film.obj")
     assert len(read_curve(curve)) == 60
-
-
-def test_how_films_are_played_reaches_them_and_nothing_else(
-    trefoil: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    played = []
-    monkeypatch.setattr(places.export, "require_blender", lambda: None)
-    monkeypatch.setattr(places.export, "write_movie", lambda *arguments: played.append(arguments[-1]))
-    assert main(["relax", trefoil, "film.mp4", "--loop", "--quiet", *SHORT]) == 0
     assert (played[0].loop, played[0].constant_radius) == (True, False)
-    for out in ("o.obj", "o.png"):
-        assert main(["relax", trefoil, out, "--constant-radius", *SHORT]) == 2
-        assert capsys.readouterr().err == "mobius-flow: --loop and --constant-radius are for .blend, .mp4\n"
 
 
-def test_what_cannot_be_kept_leaves_nothing(trefoil: str) -> None:
-    def failing(path: str) -> None:
+def test_what_cannot_be_kept_leaves_nothing(scratch):
+    def failing(path):
         if Path(path).parent.is_dir():
             Path(path).write_text("half")
         raise MobiusFlowError("no")
 
     assert places.kept("nowhere/o.txt", failing) == ["no"]
-    assert os.listdir("scratch") == []
-
-
-def written_formats(command: str, capsys: pytest.CaptureFixture[str]) -> list[str]:
-    """The suffixes that the help of a command has at OUT."""
-    assert main([command, "--help"]) == 0
-    (told,) = re.findall(r"\n  OUT +(.*?)\s+or\s+-", capsys.readouterr().out, re.DOTALL)
-    return re.findall(r"\.\w+", told)
-
-
-@pytest.mark.parametrize("command", ["relax", "knot"])
-def test_formats_that_are_only_read_are_no_outputs(
-    command: str, trefoil: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    told = written_formats(command, capsys)
-    curve = regular_polygon(12)
-    for suffix in set(FORMATS) & set(told):
-        if suffix != ".pd":  # which has no circles
-            assert FORMATS[suffix].text(curve)
-    only_read = set(FORMATS) - set(told)
-    assert only_read == {".dt", ".pdb", ".cif"}
-    for words in (["o.dt"], ["-", "--format", "dt"]):
-        assert refused([command, trefoil if command == "relax" else "3_1", *words], capsys, monkeypatch)
-    assert not Path("o.dt").exists()
-
-
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (["o.png", "--look", "neno"], "did you mean neon"),
-        (["o.obj", "--look", "neon"], "--look is for .blend, .mp4, .png"),
-    ],
-)
-def test_looks_are_known_ones_and_of_scenes(
-    trefoil: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, words: list[str], said: str
-) -> None:
-    monkeypatch.setattr(places.export, "require_blender", lambda: None)
-    assert said in refused(["relax", trefoil, *words], capsys, monkeypatch)
+    assert os.listdir(scratch) == []

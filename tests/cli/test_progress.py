@@ -13,12 +13,12 @@ from shapes import torus_trefoil
 
 
 class Terminal(io.StringIO):
-    def isatty(self) -> bool:
+    def isatty(self):
         return True
 
 
 @pytest.fixture
-def terminal(monkeypatch: pytest.MonkeyPatch) -> Terminal:
+def terminal(monkeypatch):
     """A terminal of 40 columns, in which every line is seen."""
     for name in ("NO_COLOR", "FORCE_COLOR", "TERM"):
         monkeypatch.delenv(name, raising=False)
@@ -27,7 +27,7 @@ def terminal(monkeypatch: pytest.MonkeyPatch) -> Terminal:
     return Terminal()
 
 
-def test_a_run_is_shown_by_what_is_known_of_it(terminal: Terminal, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_run_is_shown_by_what_is_known_of_it(terminal, monkeypatch):
     """There is no share of the work that would be known; the line is no longer than the terminal, and vanishes."""
     monkeypatch.setattr(sys, "stderr", terminal)
     monkeypatch.setenv("COLUMNS", "200")
@@ -45,13 +45,13 @@ def test_a_run_is_shown_by_what_is_known_of_it(terminal: Terminal, monkeypatch: 
     assert "x" * 40 not in terminal.getvalue()
 
 
-def test_pipes_see_nothing_of_it(capsys: pytest.CaptureFixture[str]) -> None:
+def test_pipes_see_nothing_of_it(capsys):
     with live() as show:
         show("something")
     assert capsys.readouterr() == ("", "")
 
 
-def test_a_notebook_keeps_the_last_line(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_notebook_keeps_the_last_line(monkeypatch):
     shown: list[str] = []
     place = SimpleNamespace(update=lambda data, raw: shown.append(data["text/plain"]))
     display = SimpleNamespace(display=lambda data, raw, display_id: place)
@@ -64,9 +64,7 @@ def test_a_notebook_keeps_the_last_line(monkeypatch: pytest.MonkeyPatch) -> None
     assert shown == ["first", "last, too soon after the first"]
 
 
-def test_a_straight_segment_whose_energy_is_zero_is_shown_too(
-    terminal: Terminal, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_straight_segment_whose_energy_is_zero_is_shown_too(terminal, monkeypatch):
     monkeypatch.setattr(sys, "stderr", terminal)
     segment = Curve([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]], Mesh((2,), (False,)))
     with progress(options := RelaxOptions(vertices=3)) as draw:
@@ -74,7 +72,7 @@ def test_a_straight_segment_whose_energy_is_zero_is_shown_too(
     assert "iteration 0 · E 0.0000 · gradient 0 → " in terminal.getvalue()
 
 
-def test_reports_and_tables_are_wrapped_in_terminals_only(terminal: Terminal) -> None:
+def test_reports_and_tables_are_wrapped_in_terminals_only(terminal):
     words = "no contact on the whole path, which is long enough to be wrapped"
     rows = [("certified", words), ("empty", ""), ("wrote", ["a b.txt", "c" * 20, "d.npz"])]
     plain = report(("✓ converged", "9 iterations"), rows, io.StringIO())
@@ -95,9 +93,7 @@ def test_reports_and_tables_are_wrapped_in_terminals_only(terminal: Terminal) ->
     ("variables", "coloured"),
     [({}, True), ({"NO_COLOR": "1"}, False), ({"TERM": "dumb"}, False), ({"TERM": "dumb", "FORCE_COLOR": "1"}, True)],
 )
-def test_colours_are_as_the_environment_wants_them(
-    variables: dict[str, str], coloured: bool, terminal: Terminal, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_colours_are_as_the_environment_wants_them(variables, coloured, terminal, monkeypatch):
     for name, value in variables.items():
         monkeypatch.setenv(name, value)
     assert ("\x1b" in painted("x", 32, terminal)) is coloured
@@ -118,5 +114,5 @@ def test_colours_are_as_the_environment_wants_them(
         (0.0, 0.1, "0"),
     ],
 )
-def test_digits(value: float, error: float, shown: str) -> None:
+def test_digits(value, error, shown):
     assert digits(value, error) == shown

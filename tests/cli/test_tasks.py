@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from mobius_flow.cli import main, places
-from mobius_flow.core import Curve, Obstacle, read_curve, write_curve
+from mobius_flow.core import read_curve, write_curve
 from mobius_flow.core.knots import knot
 from shapes import half_circle, regular_polygon, torus_trefoil
 from solids import plate
@@ -18,14 +18,14 @@ SHORT = ["--vertices", "120", "--max-iterations", "4", "--quiet"]
 posix = pytest.mark.skipif(os.name != "posix", reason="links and pipes")
 
 
-def write_mesh(path: str, obstacle: Obstacle) -> None:
+def write_mesh(path, obstacle):
     vertices = [f"v {x!r} {y!r} {z!r}" for x, y, z in obstacle.vertices.tolist()]
     faces = ["f " + " ".join(str(k + 1) for k in face) for face in obstacle.faces.tolist()]
     Path(path).write_text("\n".join([*vertices, *faces]) + "\n")
 
 
 @pytest.fixture(autouse=True)
-def room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def room(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     write_curve("bent.obj", BENT)
     trefoil = torus_trefoil(60)
@@ -35,20 +35,20 @@ def room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     write_curve("ring.json", regular_polygon(30).with_vertices(9.0 * regular_polygon(30).vertices))
 
 
-def run(*words: object) -> int:
+def run(*words):
     return main([str(word) for word in words])
 
 
-def report() -> dict[str, object]:
+def report():
     found: dict[str, object] = json.loads(Path("r.json").read_text())
     return found
 
 
-def vertices_of(curve: Curve) -> set[tuple[float, ...]]:
+def vertices_of(curve):
     return {tuple(vertex) for vertex in curve.vertices.tolist()}
 
 
-def test_obstacles_are_avoided_reported_and_verified(capsys: pytest.CaptureFixture[str]) -> None:
+def test_obstacles_are_avoided_reported_and_verified(capsys):
     write_curve("ring.txt", read_curve("ring.json"))
     avoid = [word for name in ("ceiling.obj", "floor.obj", "ring.txt") for word in ("--avoid", name)]
     outputs = ["--report", "r.json", "--trajectory", "t.npz", "--max-iterations", 8]
@@ -64,7 +64,7 @@ def test_obstacles_are_avoided_reported_and_verified(capsys: pytest.CaptureFixtu
     assert (verdict["obstacles"], verdict["obstacle"]) == (3, None)
 
 
-def test_a_verdict_names_the_obstacle_counted_from_one(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_verdict_names_the_obstacle_counted_from_one(capsys):
     arrays = {"stage_000": torus_trefoil(60).vertices[None], "component_sizes_000": np.array([60])}
     wall = plate(0.2)
     np.savez("t.npz", **arrays, obstacle_000_vertices=wall.vertices, obstacle_000_faces=wall.faces)
@@ -75,7 +75,7 @@ def test_a_verdict_names_the_obstacle_counted_from_one(capsys: pytest.CaptureFix
 
 
 @posix
-def test_an_obstacle_that_is_named_twice_counts_once() -> None:
+def test_an_obstacle_that_is_named_twice_counts_once():
     os.link("ceiling.obj", "hard.obj")
     os.symlink("ceiling.obj", "soft.obj")
     again = [word for name in ("ceiling", "./ceiling", "hard", "soft") for word in ("--avoid", f"{name}.obj")]
@@ -89,7 +89,7 @@ def test_an_obstacle_that_is_named_twice_counts_once() -> None:
 
 
 @pytest.mark.parametrize("words", [["--pin", "12,40"], ["--pin=12", "--pin", " 40 "]])
-def test_pinned_vertices_are_in_the_result_and_in_the_report(words: list[str]) -> None:
+def test_pinned_vertices_are_in_the_result_and_in_the_report(words):
     assert run("relax", "bent.obj", "out.obj", "--report", "r.json", "--trajectory", "t.npz", *words, *SHORT) == 0
     assert run("verify", "t.npz") == 0
     end = read_curve("out.obj")
@@ -98,14 +98,14 @@ def test_pinned_vertices_are_in_the_result_and_in_the_report(words: list[str]) -
     assert not vertices_of(BENT) <= vertices_of(end)
 
 
-def test_tangents_are_pinned_by_neighbours() -> None:
+def test_tangents_are_pinned_by_neighbours():
     assert run("relax", "bent.obj", "out.obj", "--report", "r.json", "--pin", "12", "--pin-tangents", *SHORT) == 0
     first, middle, last = report()["pins"]
     assert (last - middle, middle - first) == (1, 1)
     assert tuple(read_curve("out.obj").vertices[middle]) == tuple(BENT.vertices[11])
 
 
-def test_vertices_are_counted_as_the_file_does() -> None:
+def test_vertices_are_counted_as_the_file_does():
     """OBJ lists vertices in any order, and those of other things among them; lines say how the curve runs."""
     order = np.random.default_rng(107).permutation(60)
     number = np.argsort(order) + 2  # after one that is on no line
@@ -118,7 +118,7 @@ def test_vertices_are_counted_as_the_file_does() -> None:
     assert len(report()["pins"]) == 2
 
 
-def test_a_vertex_that_closes_a_polygon_is_its_first() -> None:
+def test_a_vertex_that_closes_a_polygon_is_its_first():
     points = [*BENT.vertices.tolist(), BENT.vertices[0].tolist()]
     lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in points] + [f"l {' '.join(map(str, range(1, 62)))}"]
     Path("closed.obj").write_text("\n".join(lines))
@@ -126,14 +126,14 @@ def test_a_vertex_that_closes_a_polygon_is_its_first() -> None:
     assert tuple(BENT.vertices[0]) in vertices_of(read_curve("out.obj"))
 
 
-def test_compare_takes_pins_and_avoids_obstacles() -> None:
+def test_compare_takes_pins_and_avoids_obstacles():
     words = ["--methods", "lbfgs,cg", "--pin", "12,40", "--avoid", BALL, "--max-iterations", "2", "-o", "table.csv"]
     write_curve("small.obj", BENT.with_vertices(0.1 * BENT.vertices))
     assert run("compare", "small.obj", *words) == 0
     assert len(Path("table.csv").read_text().splitlines()) == 7
 
 
-def test_a_knot_grows_in_the_ball_of_the_examples(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_knot_grows_in_the_ball_of_the_examples(capsys):
     write_curve("small.obj", knot("3_1", vertices=60))
     outputs = ["packed.obj", "--report", "r.json", "--trajectory", "t.npz", "--vertices", 60, "--max-iterations", 15]
     assert run("relax", "small.obj", *outputs, "--avoid", BALL, "--grow", 1.3) == 0
@@ -145,7 +145,7 @@ def test_a_knot_grows_in_the_ball_of_the_examples(capsys: pytest.CaptureFixture[
 
 
 @pytest.mark.parametrize("suffix", [".txt", ".obj", ".json"])
-def test_overhand_arcs_stay_open(suffix: str) -> None:
+def test_overhand_arcs_stay_open(suffix):
     arc, out = f"arc{suffix}", f"out{suffix}"
     assert run("knot", "overhand", arc, "--vertices", 50) == 0
     limits = "--vertices", 50, "--max-iterations", 3
@@ -158,7 +158,7 @@ def test_overhand_arcs_stay_open(suffix: str) -> None:
         assert arrays["component_closed_000"].tolist() == [False]
 
 
-def test_files_of_closed_curves_are_as_they_were() -> None:
+def test_files_of_closed_curves_are_as_they_were():
     assert run("relax", "trefoil.txt", "o.json", "--trajectory", "t.npz", "--max-iterations", 1) == 0
     with np.load("t.npz") as arrays:
         assert not [name for name in arrays if "closed" in name]
@@ -193,9 +193,7 @@ def test_files_of_closed_curves_are_as_they_were() -> None:
         ),
     ],
 )
-def test_what_cannot_be_is_refused_in_one_line(
-    words: list[str], said: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_what_cannot_be_is_refused_in_one_line(words, said, monkeypatch, capsys):
     monkeypatch.setattr(places.export, "require_blender", lambda: None)
     Path("bad.obj").write_text("v 0 0 0\nf 1 2 3\n")
     Path("empty.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\n")
@@ -215,12 +213,12 @@ def test_what_cannot_be_is_refused_in_one_line(
         assert Path("ring.json").read_text() == before
 
 
-def test_too_few_vertices(capsys: pytest.CaptureFixture[str]) -> None:
+def test_too_few_vertices(capsys):
     assert run("knot", "overhand", "a.txt", "--vertices", 39) == 2
     assert "39 vertices are too few for this arc; give 40 or more" in capsys.readouterr().err
 
 
-def test_energy_of_half_a_circle(capsys: pytest.CaptureFixture[str]) -> None:
+def test_energy_of_half_a_circle(capsys):
     write_curve("half.txt", half_circle(400))
     assert run("energy", "half.txt") == 0
     assert float(capsys.readouterr().out) == pytest.approx(2 * np.log(np.pi / 2), rel=1e-5)

@@ -24,20 +24,20 @@ from mobius_flow.core.curve.symmetry import symmetries
 from mobius_flow.core.knots import knot, knot_type
 from mobius_flow.lab.atlas import data, entries, make, pages, runs
 from mobius_flow.lab.batch.table import Row
-from mobius_flow.lab.smooth.rest import RestingCurve, at_rest, energy_of
+from mobius_flow.lab.smooth.rest import at_rest, energy_of
 
 HIGHER = 2.0  # energy above the least
 
 
 @pytest.fixture(scope="module")
-def trefoil() -> RestingCurve:
+def trefoil():
     found = at_rest(minimize(knot("3_1", 90), RelaxOptions(vertices=90)).curve)
     assert found is not None
     return found
 
 
 @pytest.fixture
-def results(tmp_path: Path, trefoil: RestingCurve, monkeypatch: pytest.MonkeyPatch) -> Path:
+def results(tmp_path, trefoil, monkeypatch):
     """Two runs to the trefoil, one of them turned and mirrored, one said to be higher; and two that do not count."""
     monkeypatch.setattr(runs, "is_at_rest", lambda rest: True)
     place = tmp_path / "results"
@@ -56,10 +56,10 @@ def results(tmp_path: Path, trefoil: RestingCurve, monkeypatch: pytest.MonkeyPat
 
 
 @pytest.fixture
-def atlas(run, results: Path, tmp_path: Path):
+def atlas(run, results, tmp_path):
     """Make it without pictures; what is said."""
 
-    def make(*words: str, status: int = 0) -> str:
+    def make(*words, status=0):
         code, out, err = run("atlas", results, "-o", tmp_path / "atlas", "--look", "none", *words)
         assert code == status
         return out + err
@@ -67,12 +67,12 @@ def atlas(run, results: Path, tmp_path: Path):
     return make
 
 
-def table(path: Path) -> list[dict[str, str]]:
+def table(path):
     with path.open(encoding="utf-8", newline="") as stream:
         return list(csv.DictReader(stream))
 
 
-def test_minima_are_counted_measured_and_described(atlas, tmp_path: Path, trefoil: RestingCurve) -> None:
+def test_minima_are_counted_measured_and_described(atlas, tmp_path, trefoil):
     told = atlas()
     assert told.startswith(
         "✓ 1 type      from 3 runs\n  left out    1 run whose type is not proved to be one of the table: 3_1-4;"
@@ -114,7 +114,7 @@ def test_minima_are_counted_measured_and_described(atlas, tmp_path: Path, trefoi
     assert f"{100 * HIGHER / trefoil.energy:.3f} %" in page
 
 
-def test_bounds_are_those_of_the_type_that_is_proved_or_of_its_mirror_image(trefoil: RestingCurve) -> None:
+def test_bounds_are_those_of_the_type_that_is_proved_or_of_its_mirror_image(trefoil):
     for curve in (trefoil.curve, trefoil.curve.mirrored):
         lower, upper = entries._proved("3_1", curve) or (np.nan, np.nan)
         assert lower <= upper < lower + 1e-5
@@ -122,7 +122,7 @@ def test_bounds_are_those_of_the_type_that_is_proved_or_of_its_mirror_image(tref
         assert entries._proved("4_1", curve) is None
 
 
-def test_made_knots_have_the_type_of_their_name_and_files_what_is_proved() -> None:
+def test_made_knots_have_the_type_of_their_name_and_files_what_is_proved():
     kinds = {"start": 2, "seed": 2, "status": "converged", "message": "", "options": "{}", "kind": "scrambled"}
     made = Row(name="m10_71", type_before="10_71 or m10_71", type_after="10_71 or m10_71", proved=False, **kinds)
     file = Row(name="5_1", type_before="5_2", type_after="5_2", proved=True, input_sha256="1f", **kinds)
@@ -131,7 +131,7 @@ def test_made_knots_have_the_type_of_their_name_and_files_what_is_proved() -> No
     assert runs._type_of(replace(file, proved=False)) == ("", False)
 
 
-def test_links_lead_to_files(atlas, tmp_path: Path) -> None:
+def test_links_lead_to_files(atlas, tmp_path):
     atlas()
     for page in tmp_path.glob("atlas/**/*.html"):
         links = re.findall(r'(?:href|src)="(.*?)"', page.read_text())
@@ -139,7 +139,7 @@ def test_links_lead_to_files(atlas, tmp_path: Path) -> None:
         assert [link for link in links if not (page.parent / link).is_file()] == []
 
 
-def test_the_second_time_nothing_is_made(atlas, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_second_time_nothing_is_made(atlas, tmp_path, monkeypatch):
     atlas()
     before = {path: path.stat().st_mtime_ns for path in tmp_path.glob("atlas/**/*") if path.is_file()}
     monkeypatch.setattr(entries, "_made", None)
@@ -148,12 +148,12 @@ def test_the_second_time_nothing_is_made(atlas, tmp_path: Path, monkeypatch: pyt
     assert [path.name for path in before if before[path] != after[path]] == ["SHA256SUMS"]
 
 
-def test_a_directory_that_is_given_twice_counts_once(atlas, run, results: Path, tmp_path: Path) -> None:
+def test_a_directory_that_is_given_twice_counts_once(atlas, run, results, tmp_path):
     twice = run("atlas", results, results / ".." / results.name, "-o", tmp_path / "atlas", "--look", "none")
     assert twice == (0, atlas(), "")
 
 
-def test_checksums_are_those_of_all_files(atlas, tmp_path: Path) -> None:
+def test_checksums_are_those_of_all_files(atlas, tmp_path):
     atlas()
     lines = (tmp_path / "atlas/SHA256SUMS").read_text().splitlines()[1:]
     listed = {name: digest for digest, name in (line.split("  ") for line in lines)}
@@ -161,7 +161,7 @@ def test_checksums_are_those_of_all_files(atlas, tmp_path: Path) -> None:
     assert listed == {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in there.items()}
 
 
-def test_what_is_new_is_added_and_what_is_gone_is_removed(atlas, results: Path, tmp_path: Path) -> None:
+def test_what_is_new_is_added_and_what_is_gone_is_removed(atlas, results, tmp_path):
     atlas()
     shutil.rmtree(results / "3_1-3")
     (tmp_path / "atlas/mine.txt").write_text("of somebody else")
@@ -170,8 +170,8 @@ def test_what_is_new_is_added_and_what_is_gone_is_removed(atlas, results: Path, 
     assert (tmp_path / "atlas/mine.txt").exists()
 
 
-def test_interrupted_it_goes_on(atlas, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def interrupt(*_: object) -> None:
+def test_interrupted_it_goes_on(atlas, tmp_path, monkeypatch):
+    def interrupt(*_):
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
@@ -184,7 +184,7 @@ def test_interrupted_it_goes_on(atlas, tmp_path: Path, monkeypatch: pytest.Monke
 
 
 @pytest.mark.parametrize("changed", ["data/minima.csv", "style.css"])
-def test_files_that_are_changed_are_kept(atlas, tmp_path: Path, changed: str) -> None:
+def test_files_that_are_changed_are_kept(atlas, tmp_path, changed):
     atlas()
     file = tmp_path / "atlas" / changed
     file.write_text("mine")
@@ -194,7 +194,7 @@ def test_files_that_are_changed_are_kept(atlas, tmp_path: Path, changed: str) ->
     assert file.read_text() == "mine"
 
 
-def test_other_directories_are_left_alone(atlas, tmp_path: Path) -> None:
+def test_other_directories_are_left_alone(atlas, tmp_path):
     (tmp_path / "atlas").mkdir()
     (tmp_path / "atlas/letter.txt").write_text("dear")
     assert "move it, or name another directory" in atlas(status=2)
@@ -202,7 +202,7 @@ def test_other_directories_are_left_alone(atlas, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("case", ["none", "empty", "without", "unproved", "edited"])
-def test_results_that_are_none(run, results: Path, tmp_path: Path, trefoil: RestingCurve, case: str) -> None:
+def test_results_that_are_none(run, results, tmp_path, trefoil, case):
     place = tmp_path / case
     if case != "none":
         place.mkdir()
@@ -222,18 +222,18 @@ def test_results_that_are_none(run, results: Path, tmp_path: Path, trefoil: Rest
     assert not (tmp_path / "atlas").exists()
 
 
-def hopf(folder: Path, curve: Curve) -> None:
+def hopf(folder, curve):
     link = knot("hopf", 40)
     sizes = link.mesh.component_sizes
     np.savez(folder / "trajectory.npz", stage_000=link.vertices[None], component_sizes_000=sizes)
 
 
-def through_itself(folder: Path, curve: Curve) -> None:
+def through_itself(folder, curve):
     frames = np.stack([-curve.vertices, curve.vertices])
     np.savez(folder / "trajectory.npz", stage_000=frames, component_sizes_000=[len(curve)])
 
 
-def five(folder: Path, curve: Curve) -> None:
+def five(folder, curve):
     cinquefoil = knot("5_1", 60)
     write_curve(folder / "curve.txt", cinquefoil)
     np.savez(folder / "trajectory.npz", stage_000=cinquefoil.vertices[None], component_sizes_000=[60])
@@ -249,7 +249,7 @@ FORGERIES: dict[str, tuple[Callable[[Path, Curve], None] | float, str]] = {
 
 
 @pytest.mark.parametrize(("forged", "reason"), FORGERIES.values(), ids=FORGERIES)
-def test_reports_are_not_believed(run, tmp_path: Path, trefoil: RestingCurve, forged, reason: str) -> None:
+def test_reports_are_not_believed(run, tmp_path, trefoil, forged, reason):
     """Whatever a report says, whose checksum is right, of a run beside one that counts."""
     claim = trefoil.energy + (forged if isinstance(forged, float) else 0.0)
     known = {"type_after": "3_1", "proved": True, "index": 0, "extrapolated_energy_error": 4.0}
@@ -267,7 +267,7 @@ def test_reports_are_not_believed(run, tmp_path: Path, trefoil: RestingCurve, fo
     assert (status, err) == (2, f"mobius-flow: there is nothing for an atlas: 1 run {reason}: 3_1-2\n")
 
 
-def test_nothing_behind_links_is_touched(atlas, tmp_path: Path) -> None:
+def test_nothing_behind_links_is_touched(atlas, tmp_path):
     """As where somebody lists a file of yours with its checksum, and links its folder."""
     atlas()
     (tmp_path / "yours").mkdir()
@@ -280,7 +280,7 @@ def test_nothing_behind_links_is_touched(atlas, tmp_path: Path) -> None:
     assert yours.read_text() == "mine"
 
 
-def test_commands_to_be_copied_are_quoted(run, results: Path, tmp_path: Path, trefoil: RestingCurve) -> None:
+def test_commands_to_be_copied_are_quoted(run, results, tmp_path, trefoil):
     name = "$(touch X)&lt;b"
     known = {"type_after": "3_1", "proved": True, "index": 0, "input_sha256": "1f\ntouch X"}
     energies = {"extrapolated_energy": trefoil.energy, "extrapolated_energy_error": 0.1 * trefoil.error}
@@ -293,7 +293,7 @@ def test_commands_to_be_copied_are_quoted(run, results: Path, tmp_path: Path, tr
         assert name not in line or f"results/{name}/trajectory.npz" in words
 
 
-def test_pictures_are_rendered_once(run, results: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_pictures_are_rendered_once(run, results, tmp_path, monkeypatch):
     pytest.importorskip("bpy")
     monkeypatch.setattr(make, "LARGE", (48, 36))
     monkeypatch.setattr(make, "SMALL", (32, 24))
@@ -306,9 +306,7 @@ def test_pictures_are_rendered_once(run, results: Path, tmp_path: Path, monkeypa
     assert run(*words)[0] == 0
 
 
-def test_pages_need_jinja2_which_is_told_before_the_work(
-    run, results: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_pages_need_jinja2_which_is_told_before_the_work(run, results, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "jinja2", None)
     status, _, said = run("atlas", results, "-o", tmp_path / "atlas", "--look", "none")
     assert status == 2
@@ -316,8 +314,8 @@ def test_pages_need_jinja2_which_is_told_before_the_work(
     assert not (tmp_path / "atlas").exists()
 
 
-def test_without_blender_there_are_no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
-    def missing() -> None:
+def test_without_blender_there_are_no_pictures(monkeypatch):
+    def missing():
         raise MobiusFlowError("not installed")
 
     monkeypatch.setattr(export, "require_blender", missing)
@@ -326,9 +324,7 @@ def test_without_blender_there_are_no_pictures(monkeypatch: pytest.MonkeyPatch) 
         make.usable("STUDIO")
 
 
-def test_balanced_curves_may_miss_their_symmetries_by_little(
-    trefoil: RestingCurve, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_balanced_curves_may_miss_their_symmetries_by_little(trefoil, monkeypatch):
     monkeypatch.setattr(entries, "_proves", lambda: False)
     monkeypatch.setattr(entries, "balanced", lambda rest: rest)
     row = Row(name="3_1", start=1, seed=None, status="converged", message="", options="{}")
@@ -337,26 +333,26 @@ def test_balanced_curves_may_miss_their_symmetries_by_little(
         assert entries._described("3_1", [runs.AtlasRun(row, Path(), curve, "")])["symmetry"] == name
 
 
-def test_bounds_are_rounded_outwards() -> None:
+def test_bounds_are_rounded_outwards():
     known = {"upper_bound": 74.4120430000001, "lower_bound": 22.849556}
     assert data.bounds(known) == {"upper_bound": "74.412044", "lower_bound": "22.849555"}  # of doubles, not of decimals
     assert data.bounds({"upper_bound": None, "lower_bound": 4.0}) == {"upper_bound": "", "lower_bound": "4.000000"}
 
 
-def test_commands_of_files_have_their_hash() -> None:
+def test_commands_of_files_have_their_hash():
     row = Row(name="5_1", start=2, seed=2, status="converged", message="", options="{}", input_sha256="1f")
     found = entries._command(row)
     assert found == "mobius-flow batch FILE --starts 2 --extrapolate -o results  # SHA-256 of FILE: 1f"
 
 
-def test_energies_are_rounded_to_their_errors() -> None:
+def test_energies_are_rounded_to_their_errors():
     assert [data.rounded(74.4120429, error) for error in (3e-8, 2e-3, 0.3, 1e-15)] == [
         *("74.41204290", "74.412", "74.4", "74.412042900")
     ]
 
 
 @pytest.mark.skipif(shutil.which("chromium") is None, reason="a browser")
-def test_the_index_is_sorted_and_filtered_in_a_browser(tmp_path: Path) -> None:
+def test_the_index_is_sorted_and_filtered_in_a_browser(tmp_path):
     rows = "".join(f'<tr data-name="{name}"><td {value}></td></tr>' for name, value in ORDER)
     script = (Path(pages.__file__).parent / "sort.js").read_text(encoding="utf-8")
     done = """

@@ -4,7 +4,6 @@ import csv
 import json
 import time
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,7 +19,7 @@ from shapes import torus_trefoil
 HELPED = History("flow-l2", "stalled", (0.0, 0.1, 0.2, 0.3), (9.0, 8.0, 7.0, 6.5), (1.0, 0.9, 0.8, 0.7), (2, 3), "l2")
 
 
-def test_fallback_steps_in_tables(tmp_path: Path) -> None:
+def test_fallback_steps_in_tables(tmp_path):
     WRITERS[".csv"](tmp_path / "a.csv", [HELPED])
     rows = list(csv.DictReader((tmp_path / "a.csv").read_text(encoding="utf-8").splitlines()))
     assert [row["fallback"] for row in rows] == ["0", "0", "1", "1"]
@@ -31,9 +30,7 @@ def test_fallback_steps_in_tables(tmp_path: Path) -> None:
     assert set(plain) == {"method", "status", "seconds", "energy", "gradient_norm", "fallback", "metric"}
 
 
-def test_figures_show_energy_its_distance_to_the_least_and_the_gradient(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_figures_show_energy_its_distance_to_the_least_and_the_gradient(tmp_path, monkeypatch):
     axes, figure = pytest.importorskip("matplotlib.axes"), pytest.importorskip("matplotlib.figure")
     drawn, said = [], []
     plot, title = axes.Axes.plot, figure.Figure.suptitle
@@ -65,14 +62,14 @@ def test_figures_show_energy_its_distance_to_the_least_and_the_gradient(
     assert len(styles) == len(every), "no two methods look the same"
 
 
-def test_the_least_energy_is_that_of_methods_that_keep_lengths() -> None:
+def test_the_least_energy_is_that_of_methods_that_keep_lengths():
     other = replace(HELPED, method="penalty-cg", energy=(9.0, 5.0))
     assert least_energy([HELPED, other]) == 6.5
     assert least_energy([other]) == 5.0
 
 
 @pytest.mark.parametrize("mirror", [[1, 1, 1], [1, 1, -1]])
-def test_nearer_strands_cover_farther_ones(mirror: list[int]) -> None:
+def test_nearer_strands_cover_farther_ones(mirror):
     """The picture is no mirror image."""
     pytest.importorskip("matplotlib")
     axes = figure_class()().subplots()
@@ -83,7 +80,7 @@ def test_nearer_strands_cover_farther_ones(mirror: list[int]) -> None:
     assert _writhe_sign(np.array(lines.get_segments())[::2]) == np.sign(writhe_and_crossings(curve)[0])
 
 
-def _writhe_sign(segments: np.ndarray) -> int:
+def _writhe_sign(segments):
     """Sign of the crossings of a drawing whose segments come from far to near."""
     signs = []
     for near, (a, b) in enumerate(segments):
@@ -98,7 +95,7 @@ def _writhe_sign(segments: np.ndarray) -> int:
     return int(signs[0])
 
 
-def test_a_strip_has_a_row_for_each_method(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_strip_has_a_row_for_each_method(tmp_path, capsys):
     pytest.importorskip("matplotlib")
     write_curve(tmp_path / "in.txt", torus_trefoil(40))
     words = ["compare", tmp_path / "in.txt", "-o", tmp_path / "s.png", "--methods", "cg,flow-l2", "--vertices", "40"]
@@ -107,7 +104,7 @@ def test_a_strip_has_a_row_for_each_method(tmp_path: Path, capsys: pytest.Captur
     assert [line.split()[1:4] for line in capsys.readouterr().out.splitlines()[1:]] == 2 * [["iteration", "limit", "3"]]
 
 
-def test_a_strip_ends_with_its_last_stage(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_strip_ends_with_its_last_stage(tmp_path, capsys):
     pytest.importorskip("matplotlib")
     write_curve(tmp_path / "in.txt", torus_trefoil(40))
     words = ["compare", tmp_path / "in.txt", "-o", tmp_path / "s.png", "--methods", "cg", "--strip", "2,0"]
@@ -115,16 +112,14 @@ def test_a_strip_ends_with_its_last_stage(tmp_path: Path, capsys: pytest.Capture
     assert " iteration limit           2 " in capsys.readouterr().out
 
 
-def test_a_strip_shows_the_end_where_a_stage_was_not_reached(tmp_path: Path) -> None:
+def test_a_strip_shows_the_end_where_a_stage_was_not_reached(tmp_path):
     pytest.importorskip("matplotlib")
     curve = torus_trefoil(20)
     write_strip([0, 50], tmp_path / "s.svg", [replace(HELPED, stages={0: curve, 3: curve})])
     assert (tmp_path / "s.svg").stat().st_size > 5000
 
 
-def test_what_is_compared_is_announced_and_a_table_needs_no_file(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_what_is_compared_is_announced_and_a_table_needs_no_file(tmp_path, monkeypatch, capsys):
     write_curve(tmp_path / "in.txt", torus_trefoil(20))
     named = ", ".join(usual())
     words = ["compare", str(tmp_path / "in.txt"), "--vertices", "20", "--max-iterations", "1"]
@@ -139,7 +134,7 @@ def test_what_is_compared_is_announced_and_a_table_needs_no_file(
     assert shown.err.endswith(f"✓ wrote       {tmp_path}/c.csv\n")
 
 
-def test_the_time_limit_is_the_clocks(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_time_limit_is_the_clocks(monkeypatch):
     """What is recorded is processor time, which a busy machine does not change."""
     step = Run.step
     monkeypatch.setattr(Run, "step", lambda self: time.sleep(0.2) or step(self))
@@ -158,13 +153,7 @@ def test_the_time_limit_is_the_clocks(monkeypatch: pytest.MonkeyPatch) -> None:
         (["--time-limit", "inf", "-o", "s.csv"], "time_limit is inf; it must be a finite number above 0"),
     ],
 )
-def test_what_cannot_be_is_refused(
-    words: list[str],
-    said: str,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_what_cannot_be_is_refused(words, said, tmp_path, monkeypatch, capsys):
     pytest.importorskip("matplotlib")
     monkeypatch.chdir(tmp_path)
     write_curve("in.txt", torus_trefoil(20))

@@ -12,7 +12,7 @@ from shapes import regular_polygon
 from torus_energies import torus_knot_minimum
 
 
-def of_series(*coefficients: float) -> Extrapolation:
+def of_series(*coefficients):
     """Of energies 1 + a h² + b h⁴ + …"""
     first, second, third = (
         1.0 + sum(c * h ** (2 * k) for k, c in enumerate(coefficients, 1)) for h in (1.0, 0.5, 0.25)
@@ -20,7 +20,7 @@ def of_series(*coefficients: float) -> Extrapolation:
     return Extrapolation((first, second, third))
 
 
-def test_a_pure_second_order_error_is_taken_off() -> None:
+def test_a_pure_second_order_error_is_taken_off():
     found = of_series(0.1)
     assert found.ratio == pytest.approx(4.0)
     assert found.order == pytest.approx(2.0)
@@ -30,13 +30,13 @@ def test_a_pure_second_order_error_is_taken_off() -> None:
 
 @pytest.mark.parametrize("fourth", [-0.05, -0.01, 0.003, 0.02, 0.1])
 @pytest.mark.parametrize("sixth", [-0.01, 0.01])
-def test_the_limit_is_within_the_error(fourth: float, sixth: float) -> None:
+def test_the_limit_is_within_the_error(fourth, sixth):
     found = of_series(0.1, fourth, sixth)
     assert abs(found.energy - 1.0) <= found.error
 
 
 @pytest.mark.parametrize("energies", [(1.0, 1.1, 1.0), (1.2, 1.1, 1.0), (1.0, 1.0, 1.0), (1.0, 0.9, 0.9)])
-def test_energies_of_no_order_have_a_large_error(energies: tuple[float, float, float]) -> None:
+def test_energies_of_no_order_have_a_large_error(energies):
     found = Extrapolation(energies)
     assert math.isfinite(found.energy)
     assert found.error == pytest.approx(float(np.abs(np.diff(energies)).sum()))
@@ -46,7 +46,7 @@ def test_energies_of_no_order_have_a_large_error(energies: tuple[float, float, f
     ("name", "vertices", "smooth"),
     [("3_1", 90, torus_knot_minimum(2, 3)), ("5_1", 120, torus_knot_minimum(2, 5)), ("hopf", 80, 8.0 + 4.0 * np.pi**2)],
 )
-def test_known_energies_are_within_the_error(name: str, vertices: int, smooth: float) -> None:
+def test_known_energies_are_within_the_error(name, vertices, smooth):
     options = RelaxOptions(vertices=vertices)
     found = extrapolated(minimize(knot(name, vertices), options).curve, options)
     assert found is not None
@@ -54,19 +54,19 @@ def test_known_energies_are_within_the_error(name: str, vertices: int, smooth: f
     assert abs(found.energy - smooth) < 0.1 * abs(found.energies[2] - smooth)
 
 
-def test_loose_runs_are_tightened() -> None:
+def test_loose_runs_are_tightened():
     options = RelaxOptions(vertices=90, tolerance=0.1)
     found = extrapolated(minimize(knot("3_1", 90), options).curve, options)
     assert found is not None
     assert abs(found.energy - torus_knot_minimum(2, 3)) <= found.error
 
 
-def test_runs_that_do_not_converge_have_none() -> None:
+def test_runs_that_do_not_converge_have_none():
     bent = regular_polygon(24).vertices * [1.0, 0.5, 1.0]
     assert extrapolated(Curve(bent), RelaxOptions(max_iterations=0)) is None
 
 
-def test_pins_stay_and_ends_are_free() -> None:
+def test_pins_stay_and_ends_are_free():
     """An arc between pins bends into the same shape on every mesh; halved edges have other numbers of vertices."""
     t = np.linspace(0.0, np.pi, 13)
     arc = Curve(np.column_stack([np.cos(t), 0.5 * np.sin(t), 0.2 * np.sin(2.0 * t)]), Mesh((13,), (False,)))
@@ -79,7 +79,7 @@ def test_pins_stay_and_ends_are_free() -> None:
     assert found.energies[0] == pytest.approx(result.final_energy, rel=1e-3)
 
 
-def test_a_minimum_is_not_left_by_hops(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_minimum_is_not_left_by_hops(monkeypatch):
     asked: list[RelaxOptions] = []
     monkeypatch.setattr(extrapolation, "minimize", lambda *given: asked.append(given[1]) or minimize(*given))
     options = RelaxOptions(vertices=24, hops=3)

@@ -2,8 +2,6 @@
 
 import os
 import sys
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -19,7 +17,7 @@ CURVES = {"round": regular_polygon(24), "knot": torus_trefoil(60), "knot-2": tor
 
 
 @pytest.fixture
-def results(tmp_path: Path) -> Path:
+def results(tmp_path):
     """Three results."""
     place = tmp_path / "results"
     write_run(place, "knot", 1, CURVES["knot"], energy=74.5)
@@ -29,15 +27,13 @@ def results(tmp_path: Path) -> Path:
     return place
 
 
-def test_every_result_has_its_picture_name_and_energy(
-    results: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_every_result_has_its_picture_name_and_energy(results, tmp_path, monkeypatch, capsys):
     image = pytest.importorskip("matplotlib.image")
     drawn: list[Curve] = []
     titles: list[str] = []
     write_page = gallery._write_page
 
-    def draw(path: Path, curve: Curve, width: int, height: int, look: str, *, cut_out: bool) -> None:
+    def draw(path, curve, width, height, look, *, cut_out):
         assert cut_out
         drawn.append(curve)
         picture = np.full((height, width, 4), 0.1 * len(drawn))
@@ -45,7 +41,7 @@ def test_every_result_has_its_picture_name_and_energy(
         picture[height // 4 : -height // 4, width // 4 : -width // 4, 3] = 1.0
         image.imsave(path, picture)
 
-    def spied(path: str, given: list[str], *more: Any) -> None:
+    def spied(path, given, *more):
         titles.extend(given)
         write_page(path, given, *more)
 
@@ -63,7 +59,7 @@ def test_every_result_has_its_picture_name_and_energy(
     assert np.ptp(edge, axis=0).max() == 0.0  # pictures fade into one ground
 
 
-def test_only_what_is_named_is_shown_in_that_order(results: Path) -> None:
+def test_only_what_is_named_is_shown_in_that_order(results):
     assert [each.name for each in gallery._chosen(results, "round, knot")] == ["round", "knot"]
     with pytest.raises(MobiusFlowError, match=f"{results}: has no '3_1'; leave it out of --only"):
         gallery._chosen(results, "knot,3_1")
@@ -71,9 +67,7 @@ def test_only_what_is_named_is_shown_in_that_order(results: Path) -> None:
 
 @pytest.mark.parametrize("options", ["{}", '{"avoid": [{"name": "ball.obj"}]}', '{"pins": [0]}'])
 @pytest.mark.parametrize("curve", [half_circle(30), torus_trefoil(60)])
-def test_curves_whose_moebius_images_are_something_else_are_shown_as_they_are(
-    tmp_path: Path, curve: Curve, options: str
-) -> None:
+def test_curves_whose_moebius_images_are_something_else_are_shown_as_they_are(tmp_path, curve, options):
     write_run(tmp_path, "k", 1, curve, energy=1.0, options=options)
     (shown,) = gallery._chosen(tmp_path, None)
     moved = not np.array_equal(shown.look().vertices, curve.vertices)
@@ -81,14 +75,14 @@ def test_curves_whose_moebius_images_are_something_else_are_shown_as_they_are(
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes with names")
-def test_a_pipe_is_no_result(results: Path) -> None:
+def test_a_pipe_is_no_result(results):
     (results / "round/curve.txt").unlink()
     os.mkfifo(results / "round/curve.txt")
     with pytest.raises(MobiusFlowError, match=r"round/curve.txt: cannot be read: it is missing, or not a regular file"):
         gallery._chosen(results, None)
 
 
-def test_rendered_by_blender(results: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_rendered_by_blender(results, tmp_path, monkeypatch):
     pytest.importorskip("bpy")
     image = pytest.importorskip("matplotlib.image")
     assert main(["gallery", str(results), "-o", str(tmp_path / "page.png"), "--size", "32"]) == 0
@@ -96,9 +90,7 @@ def test_rendered_by_blender(results: Path, tmp_path: Path, monkeypatch: pytest.
 
 
 @pytest.mark.parametrize("library", ["bpy", "matplotlib.figure"])
-def test_a_missing_library_is_named(
-    library: str, results: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_missing_library_is_named(library, results, monkeypatch, capsys):
     if library != "bpy":
         monkeypatch.setattr(export, "require_blender", lambda: None)
     monkeypatch.setitem(sys.modules, library, None)
@@ -118,14 +110,7 @@ def test_a_missing_library_is_named(
         ("results", "page.png --size 2", "size is 2; give 16 to 4000"),
     ],
 )
-def test_one_sentence(
-    place: str,
-    out: str,
-    told: str,
-    results: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_one_sentence(place, out, told, results, monkeypatch, capsys):
     pytest.importorskip("matplotlib")
     monkeypatch.setattr(export, "require_blender", lambda: None)
     (results.parent / "empty").mkdir()

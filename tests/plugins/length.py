@@ -3,7 +3,7 @@
 import argparse
 
 from . import curves
-from .streams import emit
+from .terminal import emit
 
 
 def add_length(parser: argparse.ArgumentParser) -> None:

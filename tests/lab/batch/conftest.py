@@ -1,8 +1,6 @@
 """One cluster for all tests of batches."""
 
 import csv
-from collections.abc import Callable, Iterator
-from pathlib import Path
 
 import pytest
 from mobius_flow.cli import main
@@ -12,7 +10,7 @@ Rows = list[dict[str, str]]
 
 
 @pytest.fixture(scope="session")
-def scheduler(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+def scheduler(tmp_path_factory):
     """The address of a scheduler in this process, with one worker."""
     distributed = pytest.importorskip("distributed")
     one = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "memory_limit": 0}
@@ -24,10 +22,10 @@ def scheduler(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 
 
 @pytest.fixture
-def batch(scheduler: str, tmp_path: Path) -> Callable[..., Rows]:
+def batch(scheduler, tmp_path):
     """Run a batch on it into tmp_path/out, and give the rows of its table."""
 
-    def run(*words: object, status: int = 0) -> Rows:
+    def run(*words, status=0):
         out = tmp_path / "out"
         assert main(["batch", *map(str, words), "-o", str(out), "--scheduler", scheduler]) == status
         with (out / "results.csv").open(encoding="utf-8", newline="") as stream:

@@ -6,10 +6,9 @@ import signal
 import socket
 import sys
 import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from contextlib import nullcontext
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -31,17 +30,17 @@ TINY = ("--vertices", 40, "--max-iterations", 3)
 
 
 @pytest.fixture
-def ring(tmp_path: Path) -> Path:
+def ring(tmp_path):
     path = tmp_path / "ring.txt"
     write_curve(path, regular_polygon(12))
     return path
 
 
-def pick(rows: Rows, *columns: str) -> list[tuple[str, ...]]:
+def pick(rows, *columns):
     return [tuple(row[name] for name in columns) for row in rows]
 
 
-def test_rows_and_folders(batch: Batch, ring: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_rows_and_folders(batch, ring, tmp_path, capsys):
     write_curve(tmp_path / "knot.obj", torus_trefoil(30))
     rows = batch(ring, tmp_path / "knot.obj", "L2a1", "--starts", 2, "--seed", 5, "--max-iterations", 3)
     captured = capsys.readouterr()
@@ -77,9 +76,7 @@ def test_rows_and_folders(batch: Batch, ring: Path, tmp_path: Path, capsys: pyte
     }
 
 
-def test_what_another_batch_has_done_meanwhile_is_not_done_again(
-    batch: Batch, ring: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_another_batch_has_done_meanwhile_is_not_done_again(batch, ring, tmp_path, monkeypatch):
     (row,) = batch(ring, *TINY)
     made = json.loads((tmp_path / "out/ring/report.json").read_text())["recipe"]
     monkeypatch.setattr(single, "_relaxed", None)
@@ -87,7 +84,7 @@ def test_what_another_batch_has_done_meanwhile_is_not_done_again(
     assert str(found.energy) == row["energy"]
 
 
-def test_the_first_start_is_the_input_and_others_are_scrambled(batch: Batch, ring: Path, tmp_path: Path) -> None:
+def test_the_first_start_is_the_input_and_others_are_scrambled(batch, ring, tmp_path):
     batch(ring, "--starts", 3, "--vertices", 12, "--max-iterations", 0)
     given, *starts = (read_curve(tmp_path / f"out/{name}/curve.txt").vertices for name in ("ring", "ring-2", "ring-3"))
     assert np.array_equal(given, read_curve(ring).vertices)
@@ -95,7 +92,7 @@ def test_the_first_start_is_the_input_and_others_are_scrambled(batch: Batch, rin
     assert not np.array_equal(*starts)
 
 
-def test_parquet_holds_the_same(batch: Batch, ring: Path, tmp_path: Path) -> None:
+def test_parquet_holds_the_same(batch, ring, tmp_path):
     (tmp_path / "empty.txt").touch()
     rows = batch(ring, tmp_path / "empty.txt", *TINY)
     parquet = pytest.importorskip("pyarrow.parquet")
@@ -111,7 +108,7 @@ def test_parquet_holds_the_same(batch: Batch, ring: Path, tmp_path: Path) -> Non
     assert as_text == rows
 
 
-def test_extrapolated_energy_and_index(batch: Batch, tmp_path: Path) -> None:
+def test_extrapolated_energy_and_index(batch, tmp_path):
     (row,) = batch("3_1", "--vertices", 90, "--extrapolate", "--stability")
     report = json.loads((tmp_path / "out/3_1/report.json").read_text())
     assert row["index"] == str(report["negative_eigenvalues"])
@@ -120,7 +117,7 @@ def test_extrapolated_energy_and_index(batch: Batch, tmp_path: Path) -> None:
     assert FourierCurve.of_lists(report["smooth"]).modes == [36]
 
 
-def test_starts_of_knots_of_the_table_are_of_several_kinds(batch: Batch, tmp_path: Path) -> None:
+def test_starts_of_knots_of_the_table_are_of_several_kinds(batch, tmp_path):
     rows = batch("m3_1", "T(2,3)", "--starts", 6, "--max-iterations", 0)
     kinds = {name: [kind for each, kind in pick(rows, "name", "kind") if each == name] for name in ("m3_1", "T(2,3)")}
     assert kinds["m3_1"] == ["named", "smooth", "lattice", "drawn", "hopped", "drawn"]
@@ -129,20 +126,18 @@ def test_starts_of_knots_of_the_table_are_of_several_kinds(batch: Batch, tmp_pat
     assert len({row["energy"] for row in rows}) == len(rows)
 
 
-def test_what_is_finished_is_not_repeated(
-    batch: Batch, ring: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_is_finished_is_not_repeated(batch, ring, tmp_path, monkeypatch):
     done: list[tuple[str, int]] = []
     run = cluster.rows
 
-    def spied(submit: Any, jobs: Iterable[Job]) -> Any:
+    def spied(submit, jobs):
         jobs = list(jobs)
         done.extend((job.name, job.start) for job in jobs)
         return run(submit, jobs)
 
     monkeypatch.setattr(cluster, "rows", spied)
 
-    def again(*words: object) -> tuple[list[tuple[str, int]], Rows]:
+    def again(*words):
         done.clear()
         rows = batch(ring, tmp_path / "bad.txt", "--starts", 2, *words)
         return sorted(done), rows
@@ -166,7 +161,7 @@ def test_what_is_finished_is_not_repeated(
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes with names")
-def test_poisoned_inputs_are_rows(batch: Batch, ring: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_poisoned_inputs_are_rows(batch, ring, tmp_path, capsys):
     poison = tmp_path / "poison"
     poison.mkdir()
     os.mkfifo(poison / "pipe.txt")
@@ -201,7 +196,7 @@ def test_poisoned_inputs_are_rows(batch: Batch, ring: Path, tmp_path: Path, caps
     }
 
 
-def test_the_time_limit(batch: Batch, ring: Path, tmp_path: Path) -> None:
+def test_the_time_limit(batch, ring, tmp_path):
     """What was reached is kept, and done again where there is more time; what is finished is not."""
     short, shorter, longer = (("7_7", "--max-iterations", 3, "--time-limit", limit) for limit in (1e-3, 1e-4, 1000))
     curve = tmp_path / "out" / "7_7" / "curve.txt"
@@ -213,9 +208,7 @@ def test_the_time_limit(batch: Batch, ring: Path, tmp_path: Path) -> None:
     assert curve.stat().st_mtime_ns != written
 
 
-def test_a_run_that_goes_on_after_its_time_limit_is_killed(
-    batch: Batch, ring: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_run_that_goes_on_after_its_time_limit_is_killed(batch, ring, tmp_path, monkeypatch):
     monkeypatch.setattr(sandbox, "GRACE", 0.0)
     told = pick(batch("7_7", "--time-limit", 1e-3), "status", "message")
     assert told == [("failed", "stopped after 0.002 s, long after its time limit")]
@@ -226,13 +219,11 @@ def test_a_run_that_goes_on_after_its_time_limit_is_killed(
 
 
 @pytest.mark.parametrize("deaths", [2, 3])
-def test_a_killed_run_is_tried_again(
-    deaths: int, batch: Batch, ring: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_killed_run_is_tried_again(deaths, batch, ring, tmp_path, monkeypatch):
     asked = []
     answer = sandbox.Sandbox._answer
 
-    def killed(box: sandbox.Sandbox, line: str = "") -> str:
+    def killed(box, line=""):
         if line:
             asked.append(line)
             if len(asked) <= deaths:
@@ -247,9 +238,7 @@ def test_a_killed_run_is_tried_again(
     assert (tmp_path / "out/ring").is_dir() == (deaths < 3)
 
 
-def test_an_interrupt_leaves_the_table(
-    batch: Batch, ring: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_interrupt_leaves_the_table(batch, ring, monkeypatch, capsys):
     monkeypatch.setattr(campaign, "live", lambda *_: nullcontext(lambda _: os.kill(os.getpid(), signal.SIGINT)))
     rows = batch(ring, "3_1..8_21", *TINY, status=130)
     assert len(rows) == 1
@@ -257,14 +246,14 @@ def test_an_interrupt_leaves_the_table(
     assert capsys.readouterr().err == "36 runs\nmobius-flow: interrupted\n"
 
 
-def test_few_runs_are_submitted_at_a_time(scheduler: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_few_runs_are_submitted_at_a_time(scheduler, tmp_path, monkeypatch):
     monkeypatch.setattr(cluster, "WINDOW", 3)
     monkeypatch.setattr(sandbox, "run", lambda job: Row.failure(job, "as asked for"))
     jobs = [Job(f"{k}", 1, None, None, None, f"{tmp_path}/{k}", {}, False) for k in range(20)]
     submitted = []
     with cluster.submitting(scheduler) as submit:
 
-        def counted(*words: object) -> object:
+        def counted(*words):
             submitted.append(1)
             return submit(*words)
 
@@ -290,9 +279,7 @@ def test_few_runs_are_submitted_at_a_time(scheduler: str, tmp_path: Path, monkey
         (["3_1", "--scheduler", "tls://127.0.0.1:9"], "tls://127.0.0.1:9: no Dask scheduler answers there"),
     ],
 )
-def test_one_sentence(
-    words: list[str], told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_one_sentence(words, told, tmp_path, monkeypatch, capsys):
     pytest.importorskip("distributed")
     monkeypatch.setattr(cluster, "_PATIENCE", 1.0)
     monkeypatch.chdir(tmp_path)
@@ -305,9 +292,7 @@ def test_one_sentence(
     assert said.count("\n") == 1
 
 
-def test_a_directory_that_cannot_be_written_is_told_before_the_work(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_directory_that_cannot_be_written_is_told_before_the_work(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(cluster, "submitting", lambda *_: pytest.fail("work for nothing"))
     words = ["batch", "3_1", "-o", str(tmp_path)]
     with monkeypatch.context() as read_only:
@@ -320,9 +305,7 @@ def test_a_directory_that_cannot_be_written_is_told_before_the_work(
 
 
 @pytest.mark.parametrize("library", ["distributed", "pyarrow"])
-def test_a_missing_library_is_named(
-    library: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_missing_library_is_named(library, tmp_path, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, library, None)
     assert main(["batch", "3_1", "-o", str(tmp_path / "out"), "--scheduler", "tcp://127.0.0.1:9"]) == 2
     said = capsys.readouterr().err
@@ -330,15 +313,13 @@ def test_a_missing_library_is_named(
     assert '".[lab]"' in said
 
 
-def test_workers_of_another_version_are_refused(ring: Path, tmp_path: Path) -> None:
+def test_workers_of_another_version_are_refused(ring, tmp_path):
     row = single.relaxed(Job("ring", 1, None, str(ring), None, str(tmp_path / "out"), {}, False, version="0.0"))
     assert row.failed
     assert "and 0.0 is wanted" in row.message
 
 
-def test_modules_where_it_is_called_are_not_its_own(
-    batch: Batch, ring: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_modules_where_it_is_called_are_not_its_own(batch, ring, tmp_path, monkeypatch):
     (tmp_path / "queue.py").write_text("raise RuntimeError\n")
     monkeypatch.chdir(tmp_path)
     with sandbox.closed():  # so that another child starts here
@@ -346,7 +327,7 @@ def test_modules_where_it_is_called_are_not_its_own(
     assert pick(batch(ring, *TINY), "status") != [("failed",)]
 
 
-def test_codes_in_files_and_names_that_are_no_text(batch: Batch, ring: Path, tmp_path: Path) -> None:
+def test_codes_in_files_and_names_that_are_no_text(batch, ring, tmp_path):
     (tmp_path / "trefoil.pd").write_text("PD[X[1,5,2,4], X[3,1,4,6], X[5,3,6,2]]")
     (tmp_path / "knot.stl").touch()
     odd = ring.with_name(os.fsdecode(b"n\xff.txt"))
@@ -357,9 +338,7 @@ def test_codes_in_files_and_names_that_are_no_text(batch: Batch, ring: Path, tmp
     assert read_curve(tmp_path / "out" / "n\\xff" / "curve.txt")
 
 
-def test_a_name_too_long_for_a_folder_is_told_before_the_work(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_name_too_long_for_a_folder_is_told_before_the_work(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(cluster, "submitting", lambda *_: pytest.fail("work for nothing"))
     name = f"braid({','.join(['1'] * 151)})"
     assert main(["batch", name, "-o", str(tmp_path / "out")]) == 2
@@ -368,13 +347,13 @@ def test_a_name_too_long_for_a_folder_is_told_before_the_work(
     )
 
 
-def test_knot_inputs_are_what_the_command_knot_makes(batch: Batch, tmp_path: Path) -> None:
+def test_knot_inputs_are_what_the_command_knot_makes(batch, tmp_path):
     start = knot("4_1")
     batch("4_1", "--vertices", len(start), "--max-iterations", 0)
     assert np.array_equal(read_curve(tmp_path / "out/4_1/curve.txt").vertices, start.vertices)
 
 
-def test_a_peer_that_takes_the_call_and_says_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_peer_that_takes_the_call_and_says_nothing(monkeypatch):
     pytest.importorskip("distributed")
     monkeypatch.setattr(cluster, "_PATIENCE", 1.0)
     with socket.create_server(("127.0.0.1", 0)) as peer:

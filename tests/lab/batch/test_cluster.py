@@ -5,10 +5,8 @@ import os
 import re
 import signal
 import socket
-import subprocess
 import sys
 import time
-from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
@@ -23,13 +21,13 @@ psutil = pytest.importorskip("psutil")  # which Dask needs too
 PATIENCE = 300.0  # seconds
 
 
-def table(path: Path) -> list[dict[str, str]]:
+def table(path):
     with (path / "results.csv").open(encoding="utf-8", newline="") as stream:
         return list(csv.DictReader(stream))
 
 
 @pytest.fixture
-def rings(tmp_path: Path) -> Path:
+def rings(tmp_path):
     place = tmp_path / "in"
     place.mkdir()
     for k in range(8):
@@ -37,9 +35,7 @@ def rings(tmp_path: Path) -> Path:
     return place
 
 
-def test_this_machine_s_cores_with_one_blas_thread_each(
-    rings: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
-) -> None:
+def test_this_machine_s_cores_with_one_blas_thread_each(rings, tmp_path, monkeypatch, capfd):
     monkeypatch.setenv("OPENBLAS_NUM_THREADS", "7")
     assert main(["batch", str(rings), "-o", str(tmp_path / "out"), "--max-iterations", "1", "--vertices", "20"]) == 0
     said = capfd.readouterr()
@@ -49,20 +45,20 @@ def test_this_machine_s_cores_with_one_blas_thread_each(
     assert '"blas_threads": 1,' in (tmp_path / "out/ring3/report.json").read_text()
 
 
-def command(*words: str) -> list[str]:
+def command(*words):
     """Dask's command as the documents give it, on this machine alone."""
     return [sys.executable, "-m", "mobius_flow.lab.batch.dask", *words, "--host", "127.0.0.1"]
 
 
 @pytest.fixture
-def port() -> int:
+def port():
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         return int(free.getsockname()[1])
 
 
 @contextmanager
-def cluster(port: int, workers: int, room: Path) -> Iterator[list["subprocess.Popen[str]"]]:
+def cluster(port, workers, room):
     """The processes of a scheduler and of its workers, which have one thread each."""
     one = ("--nthreads", "1", "--no-nanny", "--no-dashboard", "--local-directory", str(room))
     worker = command("worker", f"tcp://127.0.0.1:{port}", *one)
@@ -71,7 +67,7 @@ def cluster(port: int, workers: int, room: Path) -> Iterator[list["subprocess.Po
         yield [stack.enter_context(running(each)) for each in [scheduler] + [worker] * workers]
 
 
-def wait_for_one(out: Path) -> None:
+def wait_for_one(out):
     """Until there are the results of a run."""
     until = time.monotonic() + PATIENCE
     while not any(out.glob("ring*/")) and time.monotonic() < until:
@@ -79,7 +75,7 @@ def wait_for_one(out: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_worker_that_is_killed_costs_no_row(port: int, rings: Path, tmp_path: Path) -> None:
+def test_a_worker_that_is_killed_costs_no_row(port, rings, tmp_path):
     out = tmp_path / "out"
     words = ["batch", str(rings), "-o", str(out), "--scheduler", f"tcp://127.0.0.1:{port}"]
     program = [sys.executable, "-m", "mobius_flow", *words, "--vertices", "60", "--tolerance", "1e-9"]
@@ -96,7 +92,7 @@ def test_a_worker_that_is_killed_costs_no_row(port: int, rings: Path, tmp_path: 
 
 
 @pytest.mark.slow
-def test_an_interrupt_leaves_nothing_on_the_cluster(port: int, rings: Path, tmp_path: Path) -> None:
+def test_an_interrupt_leaves_nothing_on_the_cluster(port, rings, tmp_path):
     out, address = tmp_path / "out", f"tcp://127.0.0.1:{port}"
     words = ["batch", str(rings), "7_1..8_21", "-o", str(out), "--scheduler", address]
     with cluster(port, 1, tmp_path) as processes, running([sys.executable, "-m", "mobius_flow", *words]) as process:
@@ -120,7 +116,7 @@ def test_an_interrupt_leaves_nothing_on_the_cluster(port: int, rings: Path, tmp_
 
 
 @pytest.mark.slow
-def test_a_scheduler_that_is_killed_costs_no_result(port: int, rings: Path, tmp_path: Path) -> None:
+def test_a_scheduler_that_is_killed_costs_no_result(port, rings, tmp_path):
     out = tmp_path / "out"
     words = ["batch", str(rings), "-o", str(out), "--vertices", "60", "--tolerance", "1e-9"]
     program = [sys.executable, "-m", "mobius_flow", *words, "--scheduler", f"tcp://127.0.0.1:{port}"]
@@ -141,7 +137,7 @@ def test_a_scheduler_that_is_killed_costs_no_result(port: int, rings: Path, tmp_
 
 
 @pytest.mark.slow
-def test_a_command_that_is_killed_costs_nothing(port: int, rings: Path, tmp_path: Path) -> None:
+def test_a_command_that_is_killed_costs_nothing(port, rings, tmp_path):
     """What its runs under way come to on the cluster is found by the same command, and not done again."""
     out = tmp_path / "out"
     words = ["batch", str(rings), "-o", str(out), "--scheduler", f"tcp://127.0.0.1:{port}"]
@@ -159,7 +155,7 @@ def test_a_command_that_is_killed_costs_nothing(port: int, rings: Path, tmp_path
 
 
 @pytest.mark.slow
-def test_it_works_beside_snappy_and_listens_on_loopback_alone(port: int, rings: Path, tmp_path: Path) -> None:
+def test_it_works_beside_snappy_and_listens_on_loopback_alone(port, rings, tmp_path):
     """The commands of the documents, with nannies, where SnapPy is installed in place of python-snappy."""
     manual = (Path(__file__).parents[3] / "docs/batch.md").read_text(encoding="utf-8")
     commands = re.findall(r"^    python -m mobius_flow.lab.batch.dask (.*?) *#", manual, re.MULTILINE)
@@ -198,7 +194,7 @@ os._exit(0)
 
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="looks at processes")
-def test_children_end_with_their_parent() -> None:
+def test_children_end_with_their_parent():
     pid = finished([sys.executable, "-c", ORPHAN]).stdout.strip()
     until = time.monotonic() + PATIENCE
     while (left := _runs(pid)) and time.monotonic() < until:
@@ -206,7 +202,7 @@ def test_children_end_with_their_parent() -> None:
     assert not left
 
 
-def _runs(pid: str) -> bool:
+def _runs(pid):
     try:
         return " Z " not in Path(f"/proc/{pid}/stat").read_text()
     except OSError:

@@ -3,7 +3,6 @@
 import json
 import os
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import pytest
 from mobius_flow.lab.batch.folder import new_folder, sweep, write_report
@@ -11,23 +10,23 @@ from mobius_flow.lab.batch.job import Job
 from mobius_flow.lab.batch.table import Row
 
 
-def fill(path: Path, text: str) -> None:
+def fill(path, text):
     with new_folder(path) as room:
         write(room, text)
 
 
-def write(room: Path, text: str) -> None:
+def write(room, text):
     job = Job(text, 1, None, None, None, "", {}, False)
     for name in ("curve.txt", "trajectory.npz"):
         (room / name).write_text(text)
     write_report(room, job, Row.failure(job, ""), {})
 
 
-def contents(path: Path) -> list[str]:
+def contents(path):
     return [(path / "curve.txt").read_text(), json.loads((path / "report.json").read_text())["row"]["name"]]
 
 
-def test_it_appears_whole(tmp_path: Path) -> None:
+def test_it_appears_whole(tmp_path):
     with new_folder(tmp_path / "a") as room:
         write(room, "new")
         assert not (tmp_path / "a").exists()
@@ -35,20 +34,20 @@ def test_it_appears_whole(tmp_path: Path) -> None:
     assert len(list(tmp_path.iterdir())) == 1
 
 
-def test_a_failure_leaves_nothing(tmp_path: Path) -> None:
+def test_a_failure_leaves_nothing(tmp_path):
     with pytest.raises(KeyboardInterrupt), new_folder(tmp_path / "a"):
         raise KeyboardInterrupt
     assert not list(tmp_path.iterdir())
 
 
-def test_new_results_replace_old_ones(tmp_path: Path) -> None:
+def test_new_results_replace_old_ones(tmp_path):
     fill(tmp_path / "a", "old")
     fill(tmp_path / "a", "new")
     assert contents(tmp_path / "a") == ["new", "new"]
     assert len(list(tmp_path.iterdir())) == 1
 
 
-def test_two_at_once_make_one(tmp_path: Path) -> None:
+def test_two_at_once_make_one(tmp_path):
     with ThreadPoolExecutor(2) as pool, new_folder(tmp_path / "a") as room:
         write(room, "late")
         pool.submit(fill, tmp_path / "a", "early").result()
@@ -56,7 +55,7 @@ def test_two_at_once_make_one(tmp_path: Path) -> None:
     assert len(list(tmp_path.iterdir())) == 1
 
 
-def test_sweeping_leaves_what_another_batch_may_be_filling(tmp_path: Path) -> None:
+def test_sweeping_leaves_what_another_batch_may_be_filling(tmp_path):
     fill(tmp_path / "a", "done")
     for name in ("other.partial", ".mobius-flow-x.partial", ".mobius-flow-y.partial"):
         (tmp_path / name).mkdir()
@@ -73,6 +72,6 @@ def test_sweeping_leaves_what_another_batch_may_be_filling(tmp_path: Path) -> No
     assert [path.name for path in visited.iterdir()] == ["thesis.tex"]
 
 
-def test_the_longest_names_have_results(tmp_path: Path) -> None:
+def test_the_longest_names_have_results(tmp_path):
     fill(tmp_path / ("n" * 255), "done")
     assert contents(tmp_path / ("n" * 255)) == ["done", "done"]

@@ -9,7 +9,7 @@ import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import ExitStack, contextmanager, nullcontext
 from pathlib import Path
 
@@ -33,7 +33,7 @@ OLD = time.time() - 1e6
 
 
 @pytest.fixture(scope="module")
-def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def results(tmp_path_factory):
     """A directory of results, and the input beside it."""
     place = tmp_path_factory.mktemp("results")
     write_curve(place / "ring.txt", regular_polygon(12))
@@ -42,29 +42,29 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def place(results: Path, tmp_path: Path) -> Path:
+def place(results, tmp_path):
     """A copy of it, to be spoiled."""
     shutil.copytree(results, tmp_path / "place")
     return tmp_path / "place"
 
 
-def replaced_by(path: Path, text: str) -> None:
+def replaced_by(path, text):
     if path.is_dir():
         shutil.rmtree(path)
     path.unlink(missing_ok=True)
     path.write_text(text)
 
 
-def moved_and_linked(path: Path) -> None:
+def moved_and_linked(path):
     path.rename(path.parents[1] / "elsewhere")
     path.symlink_to(path.parents[1] / "elsewhere")
 
 
-def with_a_note_in_the_table(path: Path) -> None:
+def with_a_note_in_the_table(path):
     path.write_text(path.read_text().replace("stopped at", "discuss with Anna: stopped at"))
 
 
-def with_a_column(path: Path) -> None:
+def with_a_column(path):
     import pyarrow as pa
     import pyarrow.parquet as pq
 
@@ -72,23 +72,23 @@ def with_a_column(path: Path) -> None:
     pq.write_table(table.append_column("remark", pa.array(["mine"])), path)
 
 
-def with_a_remark(path: Path) -> None:
+def with_a_remark(path):
     path.write_text(json.dumps(json.loads(path.read_text()) | {"remark": "mine"}))
 
 
-def someone_s_project(path: Path) -> None:
+def someone_s_project(path):
     shutil.rmtree(path)
     path.mkdir()
     (path / "thesis.tex").write_text("x")
     (path / "report.json").write_text('{"row": {}, "recipe": {}}')
 
 
-def emptied(path: Path) -> None:
+def emptied(path):
     shutil.rmtree(path)
     path.mkdir()
 
 
-def a_pipe(path: Path) -> None:
+def a_pipe(path):
     path.unlink()
     os.mkfifo(path)
 
@@ -114,7 +114,7 @@ FOREIGN: dict[str, tuple[str, Callable[[Path], object]]] = {
 }
 
 
-def everything(place: Path) -> dict[str, tuple[object, ...]]:
+def everything(place):
     """What is in a directory, to the byte."""
     found = {}
     for path in sorted(place.rglob("*")):
@@ -126,9 +126,7 @@ def everything(place: Path) -> dict[str, tuple[object, ...]]:
 
 @pytest.mark.skipif(os.name != "posix", reason="links and pipes")
 @pytest.mark.parametrize(("path", "spoil"), FOREIGN.values(), ids=FOREIGN)
-def test_what_is_not_its_own_is_refused_before_any_work(
-    path: str, spoil: Callable[[Path], object], place: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_what_is_not_its_own_is_refused_before_any_work(path, spoil, place, capsys):
     spoil(place / path)
     if path == "out/results.csv" and (place / path).is_symlink():
         (place / "elsewhere").write_text("mine")
@@ -142,7 +140,7 @@ def test_what_is_not_its_own_is_refused_before_any_work(
     assert everything(place) == before
 
 
-def test_results_are_replaced_and_other_files_are_left_alone(place: Path) -> None:
+def test_results_are_replaced_and_other_files_are_left_alone(place):
     (place / "out/notes").mkdir()
     for name in ("notes/thesis.tex", "notes.md", ".mobius-flow-mine.partial"):
         (place / "out" / name).write_text("mine")
@@ -153,7 +151,7 @@ def test_results_are_replaced_and_other_files_are_left_alone(place: Path) -> Non
     assert len(everything(place)) == len(mine) + 7  # ring.txt, ring, its three files, and the tables
 
 
-def test_what_arrives_during_the_work_survives(place: Path) -> None:
+def test_what_arrives_during_the_work_survives(place):
     with ExitStack() as stack:
         stack.enter_context(pytest.raises(MobiusFlowError, match=r"thesis\.tex: was not written by"))
         stack.enter_context(new_folder(place / "out/ring"))
@@ -163,9 +161,7 @@ def test_what_arrives_during_the_work_survives(place: Path) -> None:
     assert sorted(os.listdir(place / "out")) == ["results.csv", "results.parquet", "ring"]
 
 
-def test_a_table_that_is_edited_during_the_work_survives(
-    place: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_table_that_is_edited_during_the_work_survives(place, monkeypatch, capsys):
     table = place / "out/results.csv"
     monkeypatch.setattr(campaign, "live", lambda *_: nullcontext(lambda _: table.write_text("mine")))
     words = ["batch", str(place / "ring.txt"), "-o", str(place / "out"), *OTHERWISE]
@@ -179,7 +175,7 @@ def test_a_table_that_is_edited_during_the_work_survives(
 
 
 @pytest.mark.slow
-def test_a_batch_that_is_killed_between_its_tables_goes_on(place: Path) -> None:
+def test_a_batch_that_is_killed_between_its_tables_goes_on(place):
     old = (place / "out/results.csv").read_bytes()
     words = ["batch", str(place / "ring.txt"), "-o", str(place / "out"), "--quiet"]
     assert main([*words, *OTHERWISE]) == 0
@@ -188,7 +184,7 @@ def test_a_batch_that_is_killed_between_its_tables_goes_on(place: Path) -> None:
 
 
 @pytest.mark.slow
-def test_results_that_are_called_like_unfinished_ones_are_not_swept_away(place: Path) -> None:
+def test_results_that_are_called_like_unfinished_ones_are_not_swept_away(place):
     name = ".mobius-flow-x.partial"
     (place / "ring.txt").rename(place / f"{name}.txt")
     words = ["batch", str(place / f"{name}.txt"), "-o", str(place / "out"), "--quiet"]
@@ -200,7 +196,7 @@ def test_results_that_are_called_like_unfinished_ones_are_not_swept_away(place: 
     assert len(os.listdir(place / "out" / name)) == 3
 
 
-def test_no_cell_is_a_formula(results: Path, tmp_path: Path) -> None:
+def test_no_cell_is_a_formula(results, tmp_path):
     names = ["=1+1", "-2", "+3", "@SUM(A1)", "\t=1", "＝1"]
     for name in names:
         shutil.copy(results / "ring.txt", tmp_path / f"{name}.txt")
@@ -215,7 +211,7 @@ def test_no_cell_is_a_formula(results: Path, tmp_path: Path) -> None:
     assert read_curve(tmp_path / "out/_=1+1/curve.txt")
 
 
-def test_a_curve_has_a_head(results: Path) -> None:
+def test_a_curve_has_a_head(results):
     first, second, _ = (results / "out/ring/curve.txt").read_text(encoding="utf-8").split("\n", 2)
     with (results / "out/results.csv").open(encoding="utf-8", newline="") as stream:
         (row,) = csv.DictReader(stream)
@@ -224,7 +220,7 @@ def test_a_curve_has_a_head(results: Path) -> None:
     assert row["input_sha256"] == hashlib.sha256((results / "ring.txt").read_bytes()).hexdigest()
 
 
-def test_a_curve_in_four_dimensions_is_refused_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_curve_in_four_dimensions_is_refused_at_once(tmp_path, monkeypatch):
 
     write_curve(tmp_path / "a.json", Curve(np.pad(regular_polygon(12).vertices, ((0, 0), (0, 1)))))
     monkeypatch.setattr(single, "minimize", lambda *_: pytest.fail("work for nothing"))
@@ -242,13 +238,13 @@ def test_a_curve_in_four_dimensions_is_refused_at_once(tmp_path: Path, monkeypat
 
 
 @pytest.mark.slow
-def test_any_time_limit(results: Path, tmp_path: Path) -> None:
+def test_any_time_limit(results, tmp_path):
     words = [str(results / "ring.txt"), "-o", str(tmp_path / "out"), *QUICK, "--time-limit", "1e300"]
     ended = finished([*PROGRAM, *words])
     assert (ended.returncode, ended.stdout, ended.stderr) == (0, "1 run: 1 converged\n", "")
 
 
-def test_it_listens_to_nobody_and_leaves_nothing_in_the_temporary_directory(tmp_path: Path) -> None:
+def test_it_listens_to_nobody_and_leaves_nothing_in_the_temporary_directory(tmp_path):
     temporary = tmp_path / "tmp"
     temporary.mkdir()
     words = [*PROGRAM, "9_1..9_3", "-o", str(tmp_path / "out")]
@@ -265,7 +261,7 @@ def test_it_listens_to_nobody_and_leaves_nothing_in_the_temporary_directory(tmp_
 
 
 @contextmanager
-def full_disk(place: Path) -> Iterator[None]:
+def full_disk(place):
     """A file system of one megabyte."""
     place.mkdir()
     if os.name != "posix" or os.geteuid() != 0:
@@ -279,7 +275,7 @@ def full_disk(place: Path) -> Iterator[None]:
 
 
 @pytest.mark.slow
-def test_a_full_disk_costs_no_result(results: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_full_disk_costs_no_result(results, tmp_path, capsys):
     with full_disk(tmp_path / "disk"):
         out = tmp_path / "disk/out"
         words = ["batch", str(results / "ring.txt"), str(tmp_path / "*.txt"), "-o", str(out), *QUICK]

@@ -12,18 +12,18 @@ STILL = {"avoid": [], "pins": [], "pin_tangents": False}
 
 
 @pytest.fixture(autouse=True)
-def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def files(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for name in ("b.txt", "a.obj", "notes.md", "more/c.txt", "empty/notes.md"):
         Path(name).parent.mkdir(exist_ok=True)
         Path(name).write_text("0 0 0\n")
 
 
-def names(*words: str) -> list[str]:
+def names(*words):
     return [each.name for each in inputs(words)]
 
 
-def test_files_directories_and_patterns() -> None:
+def test_files_directories_and_patterns():
     assert names("b.txt") == ["b"]
     assert names(".") == ["a", "b"]
     assert names("more", "*.obj") == ["c", "a"]
@@ -31,7 +31,7 @@ def test_files_directories_and_patterns() -> None:
     assert inputs(["b.txt"]) == [Input("b", Path("b.txt").absolute())]
 
 
-def test_codes_are_files(tmp_path: Path) -> None:
+def test_codes_are_files(tmp_path):
     Path("more/trefoil.pd").write_text("PD[X[1,5,2,4], X[3,1,4,6], X[5,3,6,2]]")
     assert names("more") == ["c", "trefoil"]
 
@@ -39,7 +39,7 @@ def test_codes_are_files(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("file", "name"), [("..txt", "..txt"), ("...txt", "...txt"), (b"n\xff.txt", "n\\xff"), ("a b ü.txt", "a b ü")]
 )
-def test_any_file_has_a_name_for_its_results(file: str | bytes, name: str) -> None:
+def test_any_file_has_a_name_for_its_results(file, name):
     try:
         Path(os.fsdecode(file)).write_text("0 0 0\n")
     except OSError:
@@ -47,18 +47,18 @@ def test_any_file_has_a_name_for_its_results(file: str | bytes, name: str) -> No
     assert names(os.fsdecode(file)) == [name]
 
 
-def test_knots_and_ranges_in_the_table_s_order() -> None:
+def test_knots_and_ranges_in_the_table_s_order():
     assert names("3_1..6_1") == ["3_1", "4_1", "5_1", "5_2", "6_1"]
     assert names("8_21..9_2") == ["8_21", "9_1", "9_2"]
     assert names("trefoil..4_1") == ["3_1", "4_1"]
     assert names("T(3,5)", "goeritz", "3_1#m3_1", "hopf") == ["T(3,5)", "goeritz", "3_1#m3_1", "hopf"]
 
 
-def test_nothing_comes_twice() -> None:
+def test_nothing_comes_twice():
     assert names("a.obj", ".", "*.txt", "3_1", "3_1..4_1") == ["a", "b", "3_1", "4_1"]
 
 
-def test_a_file_comes_before_a_knot() -> None:
+def test_a_file_comes_before_a_knot():
     Path("3_1").write_text("0 0 0\n")
     assert inputs(["3_1"])[0].file is not None
 
@@ -83,7 +83,7 @@ def test_a_file_comes_before_a_knot() -> None:
         ("PD[X[1,5,2,4], X[3,1,4,6], X[5,3,6,2]]", "a code cannot name a folder"),
     ],
 )
-def test_words_that_name_nothing(word: str, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_words_that_name_nothing(word, told, tmp_path, monkeypatch):
     (tmp_path / "empty/empty").mkdir()
     if word == "..":
         monkeypatch.chdir(tmp_path / "empty/empty")
@@ -91,7 +91,7 @@ def test_words_that_name_nothing(word: str, told: str, tmp_path: Path, monkeypat
         inputs([word])
 
 
-def test_starts_have_folders_and_seeds(tmp_path: Path) -> None:
+def test_starts_have_folders_and_seeds(tmp_path):
     plan = jobs(inputs(["3_1", "b.txt"]), 3, tmp_path, RelaxOptions(seed=10), STILL, False)
     made = list(plan)
     assert len(plan) == len(made)
@@ -101,7 +101,7 @@ def test_starts_have_folders_and_seeds(tmp_path: Path) -> None:
     assert len({job.sha256 for job in made[1::2]}) == 1
 
 
-def test_a_billion_starts_are_planned_when_their_turn_comes(tmp_path: Path) -> None:
+def test_a_billion_starts_are_planned_when_their_turn_comes(tmp_path):
     plan = jobs(inputs(["3_1", "b.txt"]), 999_999_999, tmp_path, RelaxOptions(seed=10), STILL, False)
     assert len(plan) == 1_999_999_998
     assert next(iter(plan)).name == "3_1"
@@ -112,7 +112,7 @@ def test_a_billion_starts_are_planned_when_their_turn_comes(tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("other", ["more/b.txt", "B.obj", "results.csv.txt", "b-2.txt"])
-def test_results_do_not_share_a_folder(other: str, tmp_path: Path) -> None:
+def test_results_do_not_share_a_folder(other, tmp_path):
     Path(other).write_text("0 0 0\n")
     with pytest.raises(MobiusFlowError, match="rename it"):
         jobs(inputs(["b.txt", other]), 2, tmp_path, RelaxOptions(), STILL, False)

@@ -9,12 +9,12 @@ from mobius_flow.lab.smooth.basis import Basis, parameters
 from shapes import hopf_link, torus_trefoil
 
 
-def fitted() -> FourierCurve:
+def fitted():
     link = hopf_link(50)
     return FourierCurve.of(link, parameters(link), [7, 5])
 
 
-def test_fits_visit_the_vertices() -> None:
+def test_fits_visit_the_vertices():
     polygon = torus_trefoil(200)
     (at,) = parameters(polygon)
     curve = FourierCurve.of(polygon, [at], [40])
@@ -22,7 +22,7 @@ def test_fits_visit_the_vertices() -> None:
     np.testing.assert_allclose((waves @ curve.coefficients[0]).real, polygon.vertices, rtol=0, atol=1e-5)
 
 
-def test_unknowns_are_another_way_to_write_coefficients() -> None:
+def test_unknowns_are_another_way_to_write_coefficients():
     curve = fitted()
     basis = Basis.of(curve.modes, 6)
     z = basis.unknowns(curve)
@@ -32,7 +32,7 @@ def test_unknowns_are_another_way_to_write_coefficients() -> None:
     np.testing.assert_allclose(basis.unknowns_of(basis.values @ z), z, rtol=0, atol=1e-11)
 
 
-def test_slopes_are_derivatives() -> None:
+def test_slopes_are_derivatives():
     curve = fitted()
     basis = Basis.of(curve.modes, 60)
     z = basis.unknowns(curve)
@@ -43,7 +43,7 @@ def test_slopes_are_derivatives() -> None:
         assert np.abs(v - difference).max() < 0.01 * np.abs(v).max()
 
 
-def test_more_modes_do_not_change_the_curve() -> None:
+def test_more_modes_do_not_change_the_curve():
     curve = fitted()
     np.testing.assert_allclose(
         curve.with_modes([9, 9]).polygon([20, 20]).vertices, curve.polygon([20, 20]).vertices, rtol=0, atol=1e-14
@@ -51,19 +51,19 @@ def test_more_modes_do_not_change_the_curve() -> None:
     assert curve.with_modes([9, 9]).with_modes([7, 5]).modes == curve.modes
 
 
-def test_curves_as_json() -> None:
+def test_curves_as_json():
     curve = fitted().rounded(2.0**-20)
     again = FourierCurve.of_lists(json.loads(json.dumps(curve.as_lists)))
     assert all(map(np.array_equal, curve.coefficients, again.coefficients))
 
 
-def test_rounding_is_to_the_nearest_multiple() -> None:
+def test_rounding_is_to_the_nearest_multiple():
     (c, _), (r, _) = fitted().coefficients, fitted().rounded(2.0**-10).coefficients
     assert np.array_equal(r * 2.0**10, np.round(r * 2.0**10))
     assert np.abs((c - r).view(np.float64)).max() <= 2.0**-11
 
 
-def test_parameters_are_those_of_moebius_images_too() -> None:
+def test_parameters_are_those_of_moebius_images_too():
     polygon = torus_trefoil(400)
     x = polygon.vertices - [2.5, 0.0, 0.3]
     image = polygon.with_vertices(x / np.sum(x**2, axis=1, keepdims=True))

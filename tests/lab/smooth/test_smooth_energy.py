@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.curve.fourier import FourierCurve
 from mobius_flow.core.energies import MoebiusEnergy
 from mobius_flow.lab.smooth.basis import Basis, parameters, sliding
@@ -12,7 +11,7 @@ from shapes import torus_trefoil
 from taylor import taylor_slope
 
 
-def random_link(rng: np.random.Generator) -> tuple[Basis, FloatArray, FloatArray]:
+def random_link(rng):
     """A basis, a link of two components some way apart, and a direction."""
     basis = Basis.of([5, 3], 9)
     z = rng.normal(size=(len(basis.scale), 3))
@@ -20,7 +19,7 @@ def random_link(rng: np.random.Generator) -> tuple[Basis, FloatArray, FloatArray
     return basis, z, rng.normal(size=z.shape)
 
 
-def circles(*centres: tuple[float, float, float]) -> FourierCurve:
+def circles(*centres):
     """Unit circles, parallel to the planes of x and y and of x and z in turn."""
     parts = []
     for k, centre in enumerate(centres):
@@ -29,12 +28,12 @@ def circles(*centres: tuple[float, float, float]) -> FourierCurve:
     return FourierCurve(tuple(parts))
 
 
-def test_a_circle_and_the_hopf_link_of_circles() -> None:
+def test_a_circle_and_the_hopf_link_of_circles():
     assert energy_of(circles((0, 0, 0)), 8) == pytest.approx(4.0, abs=1e-12)
     assert energy_of(circles((0, 0, 0), (1, 0, 0)), 40) == pytest.approx(8.0 + 2.0 * linked_circles(), rel=1e-9)
 
 
-def linked_circles() -> float:
+def linked_circles():
     """∬ 1/|x − y|² of two circles, by brute force."""
     t = 2.0 * np.pi * np.arange(400) / 400
     x = np.stack([np.cos(t), np.sin(t), 0 * t], axis=1)
@@ -42,14 +41,14 @@ def linked_circles() -> float:
     return float((2.0 * np.pi / 400) ** 2 * np.sum(1.0 / np.sum((x[:, None] - y) ** 2, axis=2)))
 
 
-def test_it_is_what_the_energies_of_polygons_tend_to() -> None:
+def test_it_is_what_the_energies_of_polygons_tend_to():
     polygon = torus_trefoil(400)
     curve = FourierCurve.of(polygon, parameters(polygon), [20])
     values = [MoebiusEnergy().value(curve.polygon([n])) for n in (400, 800)]
     assert energy_of(curve, 8) == pytest.approx((4.0 * values[1] - values[0]) / 3.0, rel=1e-6)
 
 
-def test_the_trapezoidal_rule_converges_geometrically() -> None:
+def test_the_trapezoidal_rule_converges_geometrically():
     polygon = torus_trefoil(400)
     curve = FourierCurve.of(polygon, parameters(polygon), [12])
     exact = energy_of(curve, 16)
@@ -58,12 +57,12 @@ def test_the_trapezoidal_rule_converges_geometrically() -> None:
     assert errors[2] < 0.05 * errors[1]
 
 
-def test_derivatives() -> None:
+def test_derivatives():
     basis, z, u = random_link(np.random.default_rng(1))
     pairs = SampledPairs.of(basis, z)
     first, second = np.sum(pairs.gradient * u), u.ravel() @ pairs.hessian @ u.ravel()
 
-    def along(t: float) -> float:
+    def along(t):
         return SampledPairs.of(basis, z + t * u).energy
 
     assert taylor_slope(along, [pairs.energy, first], 1e-2) == pytest.approx(2.0, abs=0.1)
@@ -71,11 +70,11 @@ def test_derivatives() -> None:
     np.testing.assert_allclose(pairs.hessian, pairs.hessian.T, rtol=0, atol=1e-9 * np.abs(pairs.hessian).max())
 
 
-def test_sliding_is_what_changes_speeds() -> None:
+def test_sliding_is_what_changes_speeds():
     """The form against differences: of logarithms of speeds over their components' averages."""
     basis, z, u = random_link(np.random.default_rng(2))
 
-    def excess(t: float) -> FloatArray:
+    def excess(t):
         logarithms = np.log(np.linalg.norm(basis.slopes @ (z + t * u), axis=1))
         return logarithms - basis.averages(logarithms)
 
