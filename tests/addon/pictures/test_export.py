@@ -40,18 +40,6 @@ def iterates():
     return iterates_of(torus_trefoil(40))
 
 
-def test_a_scene_plays_the_relaxation(tmp_path, iterates):
-    assert export.write_blend(tmp_path / "a.blend", iterates)
-    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "a.blend"))
-    obj = bpy.data.objects["Curve"]
-    obj.data.bevel_depth = 0
-    scene = bpy.context.scene
-    for frame, iterate in ((scene.frame_start, iterates[0]), (scene.frame_end, iterates[-1])):
-        np.testing.assert_allclose(evaluated(obj, frame), iterate.curve.vertices, atol=1e-6)
-    assert scene.camera
-    assert obj.data.materials
-
-
 FRESH = """
 import bpy, sys
 sys.modules["mobius_flow"] = None
@@ -71,8 +59,7 @@ bpy.ops.render.render(write_still=True)
 
 def test_a_scene_needs_no_add_on(tmp_path, iterates):
     export.write_blend(tmp_path / "a.blend", iterates)
-    command = [sys.executable, "-c", FRESH, str(tmp_path)]
-    done = finished(command)
+    done = finished([sys.executable, "-c", FRESH, str(tmp_path)])
     assert done.returncode == 0, done.stderr
     (line,) = [line for line in done.stdout.splitlines() if line.startswith("points")]
     points = np.array(line.split()[1:], dtype=float).reshape(-1, 3)
@@ -80,16 +67,18 @@ def test_a_scene_needs_no_add_on(tmp_path, iterates):
     assert (tmp_path / "a.png").stat().st_size > 100
 
 
-@pytest.mark.parametrize(("scale", "shift"), [(1e-9, 0.0), (1e6, 0.0), (1.0, 5000.0)])
-def test_places_and_sizes_stay(tmp_path, scale, shift):
-    curve = Curve(scale * (torus_trefoil(40).vertices + shift))
-    iterates = iterates_of(curve, max_iterations=2)
+@pytest.mark.parametrize(("scale", "shift"), [(1.0, 0.0), (1e-9, 0.0), (1e6, 0.0), (1.0, 5000.0)])
+def test_a_scene_plays_the_relaxation_in_its_place_and_size(tmp_path, scale, shift):
+    iterates = iterates_of(Curve(scale * (torus_trefoil(40).vertices + shift)), max_iterations=2)
     assert export.write_blend(tmp_path / "a.blend", iterates)
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "a.blend"))
-    obj = bpy.data.objects["Curve"]
+    obj, scene = bpy.data.objects["Curve"], bpy.context.scene
+    assert scene.camera
+    assert obj.data.materials
     obj.data.bevel_depth = 0
-    points = in_world(obj, evaluated(obj, bpy.context.scene.frame_end))
-    np.testing.assert_allclose(points, iterates[-1].curve.vertices, atol=scale * (1e-5 + 1e-7 * shift))
+    for frame, iterate in ((scene.frame_start, iterates[0]), (scene.frame_end, iterates[-1])):
+        points = in_world(obj, evaluated(obj, frame))
+        np.testing.assert_allclose(points, iterate.curve.vertices, atol=scale * (1e-5 + 1e-7 * shift))
 
 
 def test_a_link_has_a_colour_for_each_component(tmp_path):
@@ -97,6 +86,8 @@ def test_a_link_has_a_colour_for_each_component(tmp_path):
     data = bpy.data.objects["Curve"].data
     assert [spline.material_index for spline in data.splines] == [0, 1]
     assert len(data.materials) == 2
+    flat = Curve(regular_polygon(50).vertices[:, :2])
+    assert export.write_blend(tmp_path / "flat.blend", iterates_of(flat, max_iterations=0))
 
 
 def test_a_picture(tmp_path, tiny, iterates, capfd):
@@ -144,37 +135,19 @@ def test_a_film_is_as_long_as_the_way_of_the_fastest_vertex():
     assert Playing().timed(motion).timing.length == 1 + 6 + round(20 * motion.way) + 12
 
 
-def test_workbench_is_set_up():
-    rendering.use_workbench(bpy.context.scene, 32, 18)
-    assert bpy.context.scene.render.engine == "BLENDER_WORKBENCH"
-
-
-def test_a_plane_curve_and_a_run_of_no_steps(tmp_path):
-    flat = Curve(regular_polygon(50).vertices[:, :2])
-    assert export.write_blend(tmp_path / "a.blend", iterates_of(flat, max_iterations=0))
-
-
 @pytest.mark.parametrize("write", WRITERS)
-def test_a_curve_in_four_dimensions_is_refused(tmp_path, write):
-    with pytest.raises(MobiusFlowError, match="4 coordinates"):
-        write(tmp_path / "a.out", iterates_of(regular_polygon(30, dimension=4), max_iterations=1))
-    assert os.listdir(tmp_path) == []
-
-
-@pytest.mark.parametrize("write", WRITERS)
-def test_another_curve_is_refused(tmp_path, write):
-    iterates = iterates_of(torus_trefoil(40), max_iterations=1) + iterates_of(torus_trefoil(41), max_iterations=1)
-    with pytest.raises(MobiusFlowError, match="a change to another curve"):
-        write(tmp_path / "a.out", iterates)
-    assert os.listdir(tmp_path) == []
-
-
-@pytest.mark.parametrize("write", WRITERS)
-def test_a_missing_directory(tmp_path, tiny, iterates, write):
-    with pytest.raises(MobiusFlowError, match=r"cannot be written: No such file") as error:
-        write(tmp_path / "nowhere" / "a.blend", iterates)
-    assert "\n" not in str(error.value)
-    assert os.listdir(tmp_path) == []
+def test_what_cannot_be_written_is_said_in_one_line(tmp_path, tiny, iterates, write):
+    others = iterates_of(torus_trefoil(41), max_iterations=1)
+    thick = iterates_of(regular_polygon(30, dimension=4), max_iterations=1)
+    for made, place, said in (
+        (thick, "a.out", "4 coordinates"),
+        (iterates + others, "a.out", "a change to another curve"),
+        (iterates, "nowhere/a.blend", "cannot be written: No such file"),
+    ):
+        with pytest.raises(MobiusFlowError, match=said) as error:
+            write(tmp_path / place, made)
+        assert "\n" not in str(error.value)
+        assert os.listdir(tmp_path) == []
 
 
 @pytest.mark.parametrize(
@@ -222,13 +195,13 @@ def test_lines_of_drivers_are_kept_out(capfd):
     assert capfd.readouterr() == ("", "ours\n")
 
 
-@pytest.mark.parametrize(
-    ("error", "said"),
-    [
-        (ModuleNotFoundError, "pip install bpy,"),
-        (ImportError("libEGL.so.1: cannot open"), "cannot be loaded: libEGL.so.1"),
-    ],
-)
+MISSING = [
+    (ModuleNotFoundError, "pip install bpy,"),
+    (ImportError("libEGL.so.1: cannot open"), "cannot be loaded: libEGL.so.1"),
+]
+
+
+@pytest.mark.parametrize(("error", "said"), MISSING)
 def test_a_missing_module_and_a_missing_library_of_it(monkeypatch, error, said):
     def importing(name, *arguments):
         if name == "bpy":

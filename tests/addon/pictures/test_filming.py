@@ -30,22 +30,17 @@ def settings(scene):
     )
 
 
-def test_a_film_has_every_frame_and_leaves_the_scene_alone(scene, tmp_path):
+@pytest.mark.parametrize(("step", "count"), [(1, 3), (2, 2)])
+def test_a_film_has_every_frame_and_leaves_the_scene_alone(scene, tmp_path, step, count):
+    scene.frame_step = step
     before = settings(scene)
     film = Filming(scene, str(tmp_path / "film"))
     film.render()
     assert film.path == tmp_path / "film.mp4"
-    assert film.frames == length_of(film.path) == 3
+    assert film.frames == length_of(film.path) == count
     assert [path.name for path in tmp_path.iterdir()] == ["film.mp4"]
     assert settings(scene) == before
     assert list(bpy.data.scenes) == [scene]
-
-
-def test_steps_of_frames_count(scene, tmp_path):
-    scene.frame_step = 2
-    film = Filming(scene, str(tmp_path / "film.mp4"))
-    film.render()
-    assert film.frames == length_of(film.path) == 2
 
 
 @pytest.mark.parametrize("look", CHOICES)
@@ -78,29 +73,21 @@ def test_a_copy_that_was_saved_meanwhile_is_swept_away(scene, tmp_path):
     assert list(bpy.data.scenes) == [scene]
 
 
-def no_camera(scene):
-    scene.camera = None
+WRONG = [
+    ({"camera": None}, "film.mp4", "no camera; press Set Up Stage"),
+    ({"render.resolution_x": 63}, "film.mp4", "63 × 36 pixels"),
+    ({}, "there.mp4", "is there already"),
+    ({}, "nowhere/film.mp4", "is not a directory"),
+    ({}, "film.avi", r"does not end in \.mp4"),
+    ({}, "", "is a directory"),
+]
 
 
-def odd(scene):
-    scene.render.resolution_x = 63
-
-
-@pytest.mark.parametrize(
-    ("change", "name", "said"),
-    [
-        (no_camera, "film.mp4", "no camera; press Set Up Stage"),
-        (odd, "film.mp4", "63 × 36 pixels"),
-        (None, "there.mp4", "is there already"),
-        (None, "nowhere/film.mp4", "is not a directory"),
-        (None, "film.avi", r"does not end in \.mp4"),
-        (None, "", "is a directory"),
-    ],
-)
+@pytest.mark.parametrize(("change", "name", "said"), WRONG)
 def test_what_would_go_wrong_is_said_first(scene, tmp_path, change, name, said):
     (tmp_path / "there.mp4").touch()
-    if change is not None:
-        change(scene)
+    for path, value in change.items():
+        setattr(scene.render if "." in path else scene, path.rpartition(".")[2], value)
     with pytest.raises(MobiusFlowError, match=said) as error:
         Filming(scene, f"{tmp_path}/{name}")
     assert "\n" not in str(error.value)
@@ -113,21 +100,14 @@ def test_no_setting_of_a_scene_is_taken_for_the_mark(scene):
     assert not hasattr(bpy.types.Scene, movie._MARK)
 
 
-def test_beside_a_file_that_was_never_saved(scene):
-    with pytest.raises(MobiusFlowError, match="Save your file first"):
-        Filming(scene, "//film.mp4")
-    with pytest.raises(MobiusFlowError, match="no name"):
-        Filming(scene, " ")
-
-
-def test_beside_the_file(scene, tmp_path):
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "a.blend"))
-    assert movie.target("//film") == tmp_path / "film.mp4"
-
-
-def test_an_unknown_look(scene, tmp_path):
+def test_names_of_films_and_looks(scene, tmp_path):
+    for name, said in (("//film.mp4", "Save your file first"), (" ", "no name")):
+        with pytest.raises(MobiusFlowError, match=said):
+            Filming(scene, name)
     with pytest.raises(MobiusFlowError, match="did you mean QUICK"):
         Filming(scene, str(tmp_path / "film.mp4"), "quick")
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "a.blend"))
+    assert movie.target("//film") == tmp_path / "film.mp4"
 
 
 def test_a_quick_film(scene, tmp_path):

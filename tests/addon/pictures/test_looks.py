@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_curve, add_hopf_link, add_trefoil, contents
+from blender_scenes import add_hopf_link, add_trefoil, contents
 from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
 from mobius_flow.addon.pictures import export, film, rendering, staging
@@ -103,16 +103,6 @@ def test_materials_of_your_own_stay():
     assert list(obj.data.materials) == [mine]
     staging.strike(bpy.context.scene)
     assert list(obj.data.materials) == [mine]
-
-
-def test_a_shape_that_stands_upright_is_not_seen_from_its_edge():
-    t = np.linspace(0, 2 * np.pi, 60, endpoint=False)
-    obj = add_curve([np.stack([np.cos(t), 0 * t, np.sin(t)], axis=1)])
-    scene = bpy.context.scene
-    staging.set_up(scene, [obj])
-    bpy.context.view_layer.update()
-    backward = np.array(scene.camera.matrix_world.col[2][:3])
-    assert abs(backward[1]) > 0.7
 
 
 @pytest.mark.parametrize("look", ["PAPER", "STUDIO"])

@@ -77,7 +77,7 @@ def test_what_does_not_move_is_rendered_once(tmp_path, scene, rendered):
     movie.render_movie(scene, tmp_path / "a.mp4", lambda *counts: seen.append(counts))
     assert rendered == [1, 2, 3, 4, 5]
     assert seen == [(k, FRAMES) for k in range(1, FRAMES + 1)]
-    assert bpy.data.movieclips.load(str(tmp_path / "a.mp4")).frame_duration == FRAMES
+    assert movie.length_of(tmp_path / "a.mp4") == FRAMES
 
 
 @pytest.mark.parametrize("step", [1, 3])
@@ -102,26 +102,27 @@ def test_a_film_shows_the_whole_picture(tmp_path, scene, percentage):
     np.testing.assert_allclose(picture[:, 36:], 0, atol=0.05)
 
 
-@pytest.mark.parametrize("stop", [1, 3, FRAMES])
-def test_stopped_within_one_frame_without_a_trace(tmp_path, scene, rendered, stop):
+@pytest.mark.parametrize("stop", [1, 3, FRAMES, "while it is encoded"])
+def test_stopped_within_one_frame_without_a_trace(tmp_path, scene, rendered, monkeypatch, stop):
+    """By the keyboard, while so many frames are done."""
     (tmp_path / "a.mp4").write_text("old")
-    _film_until(stop, scene, tmp_path / "a.mp4")
-    assert rendered == list(range(1, min(stop, MOVING) + 1))
-    assert os.listdir(tmp_path) == ["a.mp4"]
-    assert (tmp_path / "a.mp4").read_text() == "old"
-
-
-def test_stopped_while_it_is_encoded(tmp_path, scene, monkeypatch):
     splice = movie._spliced
 
-    def stop(*arguments):
+    def watch(done, _total):
+        if done == stop:
+            signal.raise_signal(signal.SIGINT)
+
+    def stopped(*arguments):
         splice(*arguments)
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(movie, "_spliced", stop)
+    if stop not in range(FRAMES + 1):
+        monkeypatch.setattr(movie, "_spliced", stopped)
     with pytest.raises(KeyboardInterrupt):
-        movie.render_movie(scene, tmp_path / "a.mp4")
-    assert os.listdir(tmp_path) == []
+        movie.render_movie(scene, tmp_path / "a.mp4", watch)
+    assert rendered == list(range(1, min(stop if isinstance(stop, int) else FRAMES, MOVING) + 1))
+    assert os.listdir(tmp_path) == ["a.mp4"]
+    assert (tmp_path / "a.mp4").read_text() == "old"
     assert list(bpy.data.scenes) == [scene]
 
 
@@ -143,17 +144,6 @@ def test_a_full_disk_is_noticed(tmp_path, scene, monkeypatch, suffix):
     assert os.listdir(tmp_path) == []
     assert list(bpy.data.scenes) == [scene]
     assert not bpy.data.movieclips
-
-
-def _film_until(stop, scene, path):
-    """Interrupt a film, as the keyboard would, while so many frames are done."""
-
-    def watch(done, _total):
-        if done == stop:
-            signal.raise_signal(signal.SIGINT)
-
-    with pytest.raises(KeyboardInterrupt):
-        movie.render_movie(scene, path, watch)
 
 
 PROCESS = """
@@ -183,12 +173,3 @@ def test_a_signal_ends_it_tidily(tmp_path, number, status):
     assert [line for line in done.stdout.split("\n") if line.isdigit()] == ["1", "2", "3"], done.stderr
     assert done.returncode == status
     assert os.listdir(tmp_path) == []
-
-
-def test_termination_is_as_before_afterwards(tmp_path):
-    from mobius_flow.core.base.deadline import termination_raises
-
-    before = signal.getsignal(signal.SIGTERM)
-    with termination_raises(SystemExit(143)):
-        assert signal.getsignal(signal.SIGTERM) is not before
-    assert signal.getsignal(signal.SIGTERM) is before
