@@ -110,8 +110,8 @@ class RelaxOptions:
     barrier: str = option(
         "auto",
         "Barrier",
-        "whether pairs of near edges have their exact energy, infinite where they touch, not that of the quadrature "
-        "rule; auto, on but for the method paper",
+        "whether near pairs of edges have their exact energy, infinite at contact, instead of the quadrature rule's; "
+        "auto: on, except for the method paper",
         choices=BARRIERS,
         metavar="B",
     )
@@ -216,7 +216,7 @@ class RelaxOptions:
         "Untangle",
         "whether strands are moved over and under others to remove crossings, every motion proved: auto, where the "
         "flow comes to rest or makes no headway, though a diagram shows that crossings go; always, also before the "
-        "flow; such moves change the mesh, and are no iterations",
+        "flow; these moves change the mesh and do not count as iterations",
         choices=UNTANGLE,
         metavar="U",
         row=True,
