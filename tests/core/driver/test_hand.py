@@ -16,17 +16,16 @@ from mobius_flow.core import (
     RelaxOptions,
     Status,
     Task,
-    Trajectory,
     WithOutcome,
     relax,
 )
 from mobius_flow.core.energies.pull import REACH, Pull, share_of
 from mobius_flow.core.knots import knot, knot_type
-from mobius_flow.core.proof import verify
 from mobius_flow.core.solve.metrics import DenseInnerProduct, SparseInnerProduct
 from shapes import hopf_link, opened, regular_polygon, torus_trefoil
 from smooth_curves import random_polygon
 from solids import plate
+from tasks import check
 from taylor import derivative_slope, hessian_slope
 
 CURVES = {
@@ -43,15 +42,19 @@ def pulled(curve: Curve, away: float = 1.0, component: int = 0) -> Pull:
     return replace(pull, target=pull.target + away * np.arange(1.0, curve.dimension + 1.0))
 
 
-@pytest.mark.parametrize("away", [0.0, 0.1, 30.0])
 @pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)
-def test_taylor_slopes(curve: Curve, away: float) -> None:
-    pull = pulled(curve, away)
-    v = np.random.default_rng(5).normal(size=curve.vertices.shape)
-    assert derivative_slope(pull, curve, v, largest=0.3) == pytest.approx(2, abs=0.02)
-    assert hessian_slope(pull, curve, v, largest=0.3) >= 2.98  # it is even in the displacement where the force is 0
-    matrix = pull.sparse_hessian(curve)
-    np.testing.assert_allclose((matrix @ v.ravel()).reshape(v.shape), pull.hessian_product(curve, v), atol=1e-10)
+def test_derivatives_of_the_pull_and_a_stiffness_that_is_no_less(curve: Curve) -> None:
+    v, stiffness = np.random.default_rng(5).normal(size=curve.vertices.shape), pulled(curve).stiffness(curve).toarray()
+    for away in (0.0, 0.1, 30.0):
+        pull = pulled(curve, away)
+        assert derivative_slope(pull, curve, v, largest=0.3) == pytest.approx(2, abs=0.02)
+        assert hessian_slope(pull, curve, v, largest=0.3) >= 2.98  # even in the displacement where the force is 0
+        matrix = pull.sparse_hessian(curve)
+        np.testing.assert_allclose((matrix @ v.ravel()).reshape(v.shape), pull.hessian_product(curve, v), atol=1e-10)
+        np.testing.assert_array_equal(pull.stiffness(curve).toarray(), stiffness, "it knows no target")
+        more = np.kron(stiffness, np.eye(curve.dimension)) - matrix.toarray()
+        assert np.linalg.eigvalsh(more).min() > -1e-12 * stiffness.max()
+    assert stiffness.sum() == pytest.approx(40.0)
 
 
 def test_the_force_is_bounded_and_that_of_a_spring_nearby() -> None:
@@ -59,18 +62,6 @@ def test_the_force_is_bounded_and_that_of_a_spring_nearby() -> None:
     for away, force in ((1e-6, 1e-6 * np.sqrt(14.0) * 40.0), (1e9, REACH * 40.0)):
         _, derivative = pulled(curve, away).value_and_derivative(curve)
         assert np.linalg.norm(derivative.sum(axis=0)) == pytest.approx(force, rel=1e-6)
-
-
-@pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)
-def test_the_stiffness_is_no_less_than_the_second_derivative_and_knows_no_target(curve: Curve) -> None:
-    near, far = (pulled(curve, away) for away in (0.0, 5.0))
-    stiffness = near.stiffness(curve).toarray()
-    np.testing.assert_array_equal(stiffness, far.stiffness(curve).toarray())
-    for pull in (near, far):
-        more = np.kron(stiffness, np.eye(curve.dimension)) - pull.sparse_hessian(curve).toarray()
-        assert np.linalg.eigvalsh(more).min() > -1e-12 * stiffness.max()
-    together = np.ones(len(curve))
-    assert together @ stiffness @ together == pytest.approx(40.0)
 
 
 @pytest.mark.parametrize("solver", ["dense", "hierarchical"])
@@ -128,15 +119,6 @@ def drag(
     return iterates, run.outcome
 
 
-def verified(iterates: list[Iterate], tmp_path: object, obstacles: tuple = ()) -> None:
-    trajectory = Trajectory(obstacles=obstacles)
-    for iterate in iterates:
-        trajectory.add(iterate)
-    trajectory.save(tmp_path / "T.npz")
-    verdict = verify(tmp_path / "T.npz")
-    assert verdict.accepted, str(verdict)
-
-
 def held(hand: Hand, _iterate: Iterate) -> None:
     hand.grab(0, 0.25)
 
@@ -151,7 +133,7 @@ def place_outside(curve: Curve) -> np.ndarray:
 
 
 @pytest.mark.parametrize("settings", [{}, {"mesh": "adaptive"}, {"solver": "hierarchical"}], ids=str)
-def test_the_curve_follows_rests_and_relaxes_on(settings: dict[str, object], tmp_path: object) -> None:
+def test_the_curve_follows_rests_and_relaxes_on(settings: dict[str, object]) -> None:
     moves = {2: held, 3: pulled_out}
     rested, outcome = drag(knot("3_1"), Hand(), dict(moves), **settings)
     curve = rested[-1].curve
@@ -163,23 +145,17 @@ def test_the_curve_follows_rests_and_relaxes_on(settings: dict[str, object], tmp
     assert outcome.converged
     assert free[-1].energy == pytest.approx(rested[-1].energy, rel=1e-3)  # of a Möbius image, which hands may choose
     for iterates in (rested, free):
-        verified(iterates, tmp_path)
+        check(iterates)
 
 
-def test_energies_are_those_without_the_hand() -> None:
-    iterates, _ = drag(torus_trefoil(60), Hand(), {2: held, 3: pulled_out}, max_iterations=30)
+def test_what_is_held_does_not_end_and_its_energies_are_those_without_the_hand() -> None:
+    moves = {2: held, 3: pulled_out, 25: lambda hand, _: hand.release()}
+    iterates, outcome = drag(torus_trefoil(60), Hand(), moves, max_iterations=15)
+    assert len(iterates) > 25
+    assert "rose" not in outcome.message
     for iterate in iterates[3:40:7]:
         problem = point_on(iterate.curve).problem
         assert iterate.energy == pytest.approx(problem.at_curve(iterate.curve).energy, rel=1e-9)
-
-
-def test_a_held_curve_is_not_at_its_end_and_says_no_rises() -> None:
-    hand = Hand()
-    iterates, outcome = drag(
-        torus_trefoil(60), hand, {2: held, 3: pulled_out, 25: lambda *_: hand.release()}, max_iterations=15
-    )
-    assert len(iterates) > 25
-    assert "rose" not in outcome.message
 
 
 def test_at_rest_the_run_asks_once_more_and_then_ends() -> None:
@@ -199,7 +175,7 @@ def test_at_rest_the_run_asks_once_more_and_then_ends() -> None:
     assert rests == sorted(set(rests))
 
 
-def test_a_pin_is_left_where_the_hand_lets_go(tmp_path: object) -> None:
+def test_a_pin_is_left_where_the_hand_lets_go() -> None:
     iterates, outcome = drag(
         knot("4_1"), Hand(), {8: held, 9: pulled_out, 20: lambda hand, _: hand.release(pin=True)}, vertices=80
     )
@@ -209,10 +185,10 @@ def test_a_pin_is_left_where_the_hand_lets_go(tmp_path: object) -> None:
         assert iterate.pins == (pin,)
         np.testing.assert_array_equal(iterate.curve.vertices[pin], iterates[20].curve.vertices[pin])
     assert outcome.converged
-    verified(iterates, tmp_path)
+    check(iterates)
 
 
-def test_undo_takes_the_drag_back_with_its_pin(tmp_path: object) -> None:
+def test_undo_takes_the_drag_back_with_its_pin() -> None:
     plain, _ = drag(knot("4_1"), Hand(), {}, vertices=80)
 
     def undone(hand: Hand, _iterate: Iterate) -> None:
@@ -225,11 +201,11 @@ def test_undo_takes_the_drag_back_with_its_pin(tmp_path: object) -> None:
     assert again[-1].pins == ()
     np.testing.assert_array_equal(again[8].curve.vertices, plain[8].curve.vertices)
     assert again[-1].energy == pytest.approx(plain[-1].energy, rel=1e-5)
-    verified(again, tmp_path)
+    check(again)
 
 
 @pytest.mark.parametrize("mesh", ["adaptive", "finer"])
-def test_undo_goes_back_to_the_mesh_that_there_was(mesh: str, tmp_path: object) -> None:
+def test_undo_goes_back_to_the_mesh_that_there_was(mesh: str) -> None:
     """A curve that is pulled far is given other vertices; those from before are there again, and the run goes on."""
     hand, seen, undone = Hand(), [], False
     for iterate in relax(torus_trefoil(60), RelaxOptions(vertices=60, mesh=mesh, tolerance=1e-3), hand=hand):
@@ -245,7 +221,7 @@ def test_undo_goes_back_to_the_mesh_that_there_was(mesh: str, tmp_path: object) 
                 hand.undo()
                 undone = True
     assert undone, "the mesh has changed under the hand"
-    verified(seen, tmp_path)
+    check(seen)
 
 
 def test_what_a_hand_holds_survives_other_meshes() -> None:
@@ -267,33 +243,28 @@ def test_what_a_hand_holds_survives_other_meshes() -> None:
     assert share_of(top, 0, top.vertices[height.argmax()]) == pytest.approx(0.25, abs=0.05)
 
 
-@pytest.mark.parametrize("target", [[np.nan, 0.0, 0.0], [np.inf, 0, 0], [1e50, 0, 0], "x", None, [], 3.0, [[0, 0, 0]]])
-def test_targets_that_are_no_points_are_refused(target: object) -> None:
+def test_what_is_no_place_or_no_point_is_refused() -> None:
     hand = Hand()
-    hand.grab(0, 0.5)
-    with pytest.raises(MobiusFlowError, match="finite coordinates"):
-        hand.move(target)
+    for component, share in [(0, -0.1), (0, 1.1), (0, np.nan), ("x", 0.1), (0.5, 0.1)]:
+        with pytest.raises(MobiusFlowError):
+            hand.grab(component, share)
+    for target in ([np.nan, 0.0, 0.0], [np.inf, 0, 0], [1e50, 0, 0], "x", None, [], 3.0, [[0, 0, 0]]):
+        with pytest.raises(MobiusFlowError, match="finite coordinates"):
+            hand.move(target)
 
 
-@pytest.mark.parametrize(("component", "share"), [(0, -0.1), (0, 1.1), (0, np.nan), ("x", 0.1), (0.5, 0.1)])
-def test_places_that_are_none_are_refused(component: object, share: object) -> None:
-    with pytest.raises(MobiusFlowError):
-        Hand().grab(component, share)
+@pytest.mark.parametrize(
+    ("component", "target", "said"),
+    [(1, [], "component is 1"), (-1, [], "component is -1"), (0, [1.0, 2.0], "target has 2 coordinates; give 3")],
+)
+def test_what_does_not_fit_the_curve_ends_the_run_in_a_sentence(component: int, target: list[float], said: str) -> None:
+    def grab(hand: Hand, _iterate: Iterate) -> None:
+        hand.grab(component, 0.5)
+        if target:
+            hand.move(target)
 
-
-@pytest.mark.parametrize("nonsense", [lambda hand: hand.grab(1, 0.5), lambda hand: hand.grab(-1, 0.5)])
-def test_a_component_that_is_not_there_ends_the_run_in_a_sentence(nonsense: object) -> None:
-    with pytest.raises(MobiusFlowError, match="component"):
-        drag(torus_trefoil(60), Hand(), {1: lambda hand, _: nonsense(hand)})
-
-
-def test_a_target_in_another_dimension_ends_the_run_in_a_sentence() -> None:
-    def elsewhere(hand: Hand, _iterate: Iterate) -> None:
-        hand.grab(0, 0.5)
-        hand.move([1.0, 2.0])
-
-    with pytest.raises(MobiusFlowError, match="coordinates"):
-        drag(torus_trefoil(60), Hand(), {1: elsewhere})
+    with pytest.raises(MobiusFlowError, match=said):
+        drag(torus_trefoil(60), Hand(), {1: grab})
 
 
 def test_what_is_pinned_stays_and_a_hand_that_holds_nothing_does_nothing() -> None:
@@ -355,18 +326,18 @@ def violent(task: Task, options: RelaxOptions, drags: int, seed: int) -> list[It
 
 @pytest.mark.parametrize("drags", [12, pytest.param(130, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", TASKS)
-def test_violent_drags_go_through_nothing(name: str, drags: int, tmp_path: object) -> None:
+def test_violent_drags_go_through_nothing(name: str, drags: int) -> None:
     """With the slow ones they are a thousand."""
     task, settings = TASKS[name]
     iterates = violent(task, RelaxOptions(**{"mesh": "fixed"} | settings), drags, 7)
     assert all(iterate.certified for iterate in iterates)
-    verified(iterates, tmp_path, task.obstacles)
+    check(iterates, task)
     if task.curve.mesh.all_closed:
         assert knot_type(iterates[-1].curve).names == knot_type(task.curve).names
 
 
 @pytest.mark.parametrize("method", family(METHODS, every=4))
-def test_every_method_follows(method: str, tmp_path: object) -> None:
+def test_every_method_follows(method: str) -> None:
     iterates = violent(TASKS["trefoil"][0], RelaxOptions(vertices=60, mesh="fixed", method=method), 4, 3)
     assert all(iterate.certified for iterate in iterates)
-    verified(iterates, tmp_path)
+    check(iterates)

@@ -1,14 +1,14 @@
-"""Hops lead lower or nowhere, by proved ways that a seed determines, and an interrupt loses nothing."""
+"""Hops lead lower or nowhere, by proved motions that a seed determines, and an interrupt loses nothing."""
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import cache
 from itertools import cycle, islice, pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
 from families import family
-from mobius_flow.core import Curve, Iterate, Mesh, OptionError, RelaxOptions, Result, Status, Trajectory, minimize
+from mobius_flow.core import Curve, Iterate, Mesh, Obstacle, RelaxOptions, Result, Status, minimize
 from mobius_flow.core.collision import FreeMotion, Limit
 from mobius_flow.core.curve import refine
 from mobius_flow.core.descent import Point, Step
@@ -19,30 +19,34 @@ from mobius_flow.core.driver.moves.hops import (
     MOTIONS,
     Hops,
     RandomMotion,
+    Stir,
     is_circle,
+    radius,
+    root_mean_square,
     unknot_message,
 )
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.driver.relax import WithOutcome
 from mobius_flow.core.driver.run import Run, iterates
-from mobius_flow.core.knots import double, knot, torus_knot
-from mobius_flow.core.proof import verify
+from mobius_flow.core.knots import double, knot, overhand, torus_knot
+from mobius_flow.lab import starts
 from shapes import hopf_link, regular_polygon, torus_trefoil
-from tasks import wanted
+from solids import plate
+from tasks import check, proved, wanted
 
 VERTICES = 90
 OPTIONS = RelaxOptions(mesh="fixed", vertices=VERTICES, hops=1, seed=1)
+SADDLE = torus_knot(3, 4, VERTICES)  # in its most symmetric position, where plain descent ends though it is no minimum
 Recorded = tuple[list[Iterate], Result]
 
 
-def saddle() -> Curve:
-    """The torus knot T(3, 4) in its most symmetric position, where plain descent ends though it is no minimum."""
-    return torus_knot(3, 4, VERTICES)
+def run_of(options: RelaxOptions = OPTIONS, curve: Curve = SADDLE) -> Run:
+    return Run(start_problem(curve, options), curve, options)
 
 
 def recorded(**changes: object) -> Recorded:
     found: list[Iterate] = []
-    return found, minimize(saddle(), replace(OPTIONS, **changes), found.append)
+    return found, minimize(SADDLE, replace(OPTIONS, **changes), found.append)
 
 
 @pytest.fixture(scope="module")
@@ -64,45 +68,41 @@ def same(a: list[Iterate], b: list[Iterate]) -> bool:
     return all(np.array_equal(x.curve.vertices, y.curve.vertices) for x, y in zip(a, b, strict=True))
 
 
-def test_a_hop_leads_lower_and_is_told(hopped: Recorded, plain: Recorded) -> None:
+def test_a_hop_leads_lower_by_a_certified_way_and_is_told(hopped: Recorded, plain: Recorded) -> None:
     found, result = hopped
     assert result.status is Status.CONVERGED
+    assert result.certified
+    check(found)
     assert result.final_energy < 0.99 * plain[1].final_energy
+    assert all(b.energy <= a.energy for a, b in pairwise(found))
     assert "hops that lowered the energy: 1 of 1" in result.message
     assert "hop" not in plain[1].message
     assert len(hop_of(found).path) > 20
-
-
-def test_the_energy_never_rises(hopped: Recorded) -> None:
-    energies = [iterate.energy for iterate in hopped[0]]
-    assert all(b <= a for a, b in pairwise(energies))
+    assert hop_of(found).edge_length_error < 1e-6
 
 
 def test_without_hops_nothing_changes_and_with_them_nothing_before(hopped: Recorded, plain: Recorded) -> None:
-    bare = list(iterates(Run(start_problem(saddle(), OPTIONS), saddle(), OPTIONS), MOVES[:-1]))
+    bare = list(iterates(run_of(), MOVES[:-1]))
     assert same(plain[0], bare)
     assert same(hopped[0][: len(bare)], bare)
 
 
 def test_the_same_seed_gives_the_same_bits(hopped: Recorded) -> None:
-    run = Run(start_problem(saddle(), OPTIONS), saddle(), OPTIONS)
+    run = run_of()
     again = WithOutcome(iterates(run, MOVES))
     assert same(hopped[0], list(again))
     assert again.outcome is not None
     assert again.outcome.message == hopped[1].message
-    tried = len(hop_of(hopped[0]).path)  # one leg each, since lengths are what they should be
-    assert run.iterations == run.iterate.index + tried - 1, "the hop is one iterate, but all of its steps count"
-
-
-def test_another_seed_gives_another_way(hopped: Recorded) -> None:
     hop = hop_of(hopped[0])
-    start = Run(start_problem(saddle(), OPTIONS), hopped[0][hop.index - 1].curve, OPTIONS).point
+    tried = len(hop.path)  # one leg each, since lengths are what they should be
+    assert run.iterations == run.iterate.index + tried - 1, "the hop is one iterate, but all of its steps count"
+    start = run_of(curve=hopped[0][hop.index - 1].curve).point
     first, other = (next(MOTIONS[0](start, np.random.default_rng(seed))).point.placed for seed in (1, 2))
     np.testing.assert_allclose(first, hop.path[0], atol=1e-8)
     assert np.abs(other - hop.path[0]).max() > 1e-3
 
 
-def test_motions_take_turns(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_motions_take_turns_in_runs_and_in_starts_of_a_batch(monkeypatch: pytest.MonkeyPatch) -> None:
     turns: list[type] = []
 
     def still(motion: RandomMotion, *_: object) -> Iterator[Step]:
@@ -113,17 +113,10 @@ def test_motions_take_turns(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(type(each), "__call__", still)
     assert "hops that lowered the energy: 0 of 5" in recorded(hops=5)[1].message
     assert turns == list(islice(cycle(map(type, MOTIONS)), 5))
-
-
-def test_the_whole_way_is_certified(hopped: Recorded, tmp_path: Path) -> None:
-    found, result = hopped
-    trajectory = Trajectory()
-    for iterate in found:
-        trajectory.add(iterate)
-    trajectory.save(tmp_path / "T.npz")
-    assert result.certified
-    assert verify(tmp_path / "T.npz").accepted
-    assert hop_of(found).edge_length_error < 1e-6
+    turns.clear()
+    for number in range(5, 12):
+        starts.start("3_1", number, number)
+    assert turns == list(islice(cycle(map(type, MOTIONS)), 4))
 
 
 @pytest.mark.slow
@@ -133,24 +126,20 @@ def test_more_hops_begin_with_the_same_ones_and_never_end_higher(hopped: Recorde
     assert plain[1].energies[-1] > hopped[1].energies[-1] >= result.energies[-1]
 
 
-def test_an_interrupt_during_a_trial_keeps_the_lowest_curve(plain: Recorded, monkeypatch: pytest.MonkeyPatch) -> None:
-    def interrupted(*_: object) -> None:
-        raise KeyboardInterrupt
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [(KeyboardInterrupt, "interrupted: "), (np.linalg.LinAlgError, "; hops that lowered the energy: 0 of 1")],
+)
+def test_a_trial_that_fails_keeps_the_lowest_curve(
+    error: type, said: str, plain: Recorded, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(*_: object) -> None:
+        raise error
 
-    monkeypatch.setattr(type(MOTIONS[0]), "__call__", interrupted)
-    result = recorded()[1]
-    assert result.status is Status.INTERRUPTED
-    assert np.array_equal(result.curve.vertices, plain[1].curve.vertices)
-
-
-def test_a_degenerate_trial_is_one_that_leads_nowhere(plain: Recorded, monkeypatch: pytest.MonkeyPatch) -> None:
-    def degenerate(*_: object) -> None:
-        raise np.linalg.LinAlgError
-
-    monkeypatch.setattr(type(MOTIONS[0]), "__call__", degenerate)
+    monkeypatch.setattr(type(MOTIONS[0]), "__call__", fails)
     found, result = recorded()
     assert same(found, plain[0])
-    assert result.message.endswith("; hops that lowered the energy: 0 of 1")
+    assert said in result.message
 
 
 def test_a_way_is_certified_only_if_all_its_steps_are() -> None:
@@ -158,9 +147,8 @@ def test_a_way_is_certified_only_if_all_its_steps_are() -> None:
         step = next(MOTIONS[0](point, rng))
         yield replace(step, legs=tuple(leg._replace(proof=FreeMotion(1.0, limit=Limit.UNTESTED)) for leg in step.legs))
 
-    options = replace(OPTIONS, max_iterations=2)
     for motion, certified in ((MOTIONS[0], True), (unproved, False)):
-        run = Run(start_problem(saddle(), options), saddle(), options)
+        run = run_of(replace(OPTIONS, max_iterations=2))
         Hops(run).hop(motion, np.inf)
         assert run.iterate.certified == certified
 
@@ -176,24 +164,38 @@ def test_iterations_of_trials_count(plain: Recorded, left: int) -> None:
 
 def test_a_trial_takes_no_more_iterations_than_are_left(plain: Recorded) -> None:
     """Its motion and its relaxation together."""
-    options = replace(OPTIONS, max_iterations=plain[1].last.index + 10)
-    run = Run(start_problem(saddle(), options), saddle(), options)
+    run = run_of(replace(OPTIONS, max_iterations=plain[1].last.index + 10))
     list(WithOutcome(iterates(run, MOVES)))
-    assert plain[1].last.index < run.iterations <= options.max_iterations
+    assert plain[1].last.index < run.iterations <= run.max_iterations
 
 
 @pytest.mark.slow
-def test_the_mesh_becomes_finer_before_and_after(tmp_path: Path) -> None:
-    trajectory = Trajectory()
-    result = minimize(saddle(), RelaxOptions(mesh="finer", vertices=VERTICES, hops=1, seed=1), trajectory.add)
-    trajectory.save(tmp_path / "T.npz")
+def test_the_mesh_becomes_finer_before_and_after() -> None:
+    result, _ = proved(SADDLE, mesh="finer", vertices=VERTICES, hops=1, seed=1)
     assert "hops that lowered the energy: 1 of 1" in result.message
-    assert verify(tmp_path / "T.npz").accepted
 
 
-def test_at_the_circle_there_is_nothing_to_look_for() -> None:
-    result = minimize(regular_polygon(40), RelaxOptions(hops=3))
-    assert "hop" not in result.message
+# -- where hops are pointless ----------------------------------------------------------------------------------------
+
+STRAIGHT = Curve(np.linspace(0.0, 1.0, 13)[:, None] * [1.0, 2.0, 2.0], Mesh((13,), (False,)))
+
+
+@pytest.mark.parametrize(
+    ("curve", "options"),
+    [
+        (regular_polygon(40), {}),
+        (STRAIGHT, {"vertices": 13, "mesh": "fixed"}),  # below which there is nothing
+        (overhand(60), {}),  # straight in the end: a share of its energy is rounding
+        (torus_trefoil(20), {"pins": tuple(range(20)), "vertices": 20, "mesh": "fixed"}),
+        (torus_trefoil(60), {"method": "penalty-lbfgs", "tolerance": 1e-2}),
+        (knot("3_1#3_1"), {"tolerance": 1e-2}),  # composite
+    ],
+    ids=["circle", "straight arc", "slack arc", "all pinned", "penalised lengths", "composite"],
+)
+def test_where_there_is_nothing_to_look_for_nothing_hops(curve: Curve, options: dict[str, object]) -> None:
+    message = minimize(*wanted(curve, hops=2, **options)).message
+    assert "hop" not in message
+    assert ("composite" in message) == (curve.mesh.size > 60 and "tolerance" in options)
 
 
 def test_a_circle_that_is_held_may_be_left() -> None:
@@ -202,26 +204,68 @@ def test_a_circle_that_is_held_may_be_left() -> None:
     assert "of 1" in minimize(task, options).message
 
 
-def test_below_a_straight_arc_there_is_nothing() -> None:
-    arc = Curve(np.linspace(0.0, 1.0, 13)[:, None] * [1.0, 2.0, 2.0], Mesh((13,), (False,)))
-    assert "hop" not in minimize(arc, RelaxOptions(hops=1, vertices=13, mesh="fixed")).message
+def test_hops_keep_pins_and_move_nothing_that_lengths_hold() -> None:
+    """A vertex in the plane between two pins, at given distances from both, moves neither way."""
+    arc = overhand(60)
+    result = minimize(*wanted(arc, pins=(0, 59), hops=1, max_iterations=90))
+    assert "hops that lowered" in result.message or result.status is Status.ITERATION_LIMIT
+    np.testing.assert_array_equal(result.curve.vertices[list(result.last.pins)], arc.vertices[[0, 59]])
+    corner = Curve.from_components([[[0.0, 0.0], [1.0, 1.0], [2.0, 0.0]]], [False])
+    result = minimize(*wanted(corner, pins=(0, 2), vertices=3, hops=1, max_iterations=5))
+    np.testing.assert_array_equal(result.curve.vertices, corner.vertices)
 
 
-def test_where_all_is_pinned_there_is_nowhere_to_go() -> None:
-    task, options = wanted(torus_trefoil(20), pins=tuple(range(20)), vertices=20, mesh="fixed", hops=1)
-    assert "hop" not in minimize(task, options).message
+# -- motions ---------------------------------------------------------------------------------------------------------
 
 
-def test_methods_that_penalise_lengths_make_no_hops() -> None:
-    result = minimize(torus_trefoil(60), RelaxOptions(method="penalty-lbfgs", hops=1, tolerance=1e-2))
-    assert "hop" not in result.message
+@cache
+def saddle(**options: object) -> Point:
+    return run_of(RelaxOptions(mesh="fixed", vertices=VERTICES, **options)).point
 
 
-def test_composite_knots_make_no_hops() -> None:
-    options = RelaxOptions(hops=1, tolerance=1e-2)
-    result = minimize(knot("3_1#3_1"), options)
-    assert "composite" in result.message
-    assert "hop" not in result.message
+@pytest.mark.parametrize("motion", MOTIONS, ids=lambda motion: type(motion).__name__)
+def test_motions_stay_on_the_constraints_below_their_ceilings_and_go_far(motion: RandomMotion) -> None:
+    start = saddle()
+    steps = list(motion(start, np.random.default_rng(0)))
+    assert len(steps) > 20
+    assert all(step.certified and step.point.infeasibility < 1e-9 for step in steps)
+    assert max(step.point.energy for step in steps) < 16.0 * start.energy
+    assert root_mean_square(steps[-1].point.vertices - start.vertices) > 0.5 * radius(start.vertices)
+    low = list(type(motion)(ceilings=(1.02, 1.02))(start, np.random.default_rng(0)))
+    assert 1.0 < max(step.point.energy for step in low) / start.energy < 1.02
+
+
+def test_motions_fit_where_lengths_are_prescribed() -> None:
+    assert all(motion.fits(saddle(energy=energy)) for motion in MOTIONS for energy in ("moebius", "edge"))
+    assert not any(motion.fits(saddle(method="penalty-lbfgs")) for motion in MOTIONS)
+
+
+def test_flows_have_no_divergence() -> None:
+    flow = Stir().field(saddle(), np.random.default_rng(0))
+    x, h = np.array([[0.3, -0.2, 0.1]]), 1e-5
+    divergence = sum((flow(x + h * e)[0] - flow(x - h * e)[0]) @ e for e in np.eye(3)) / (2.0 * h)
+    assert abs(divergence) < 1e-8
+
+
+def test_a_way_is_as_long_as_asked_and_steps_grow_again_where_there_is_room() -> None:
+    """From a start with little room below the ceiling, and then turning about an axis, which costs nothing."""
+    start, stride = saddle(), 0.2
+    rough = np.random.default_rng(4).normal(size=start.vertices.shape)
+
+    def field(x: np.ndarray) -> np.ndarray:
+        return rough if np.array_equal(x, start.vertices) else np.cross([0.0, 0.0, 1.0], x)
+
+    steps = list(Stir(stride=stride, shortest=1e-3).along(start, field, 1.02 * start.energy))
+    places = [start.vertices, *(step.point.vertices for step in steps)]
+    ways = [root_mean_square(b - a) / radius(a) for a, b in pairwise(places)]
+    assert ways[0] < 0.6 * stride
+    assert max(ways) == pytest.approx(stride, rel=0.1)
+    assert 1.0 - stride < sum(ways) < 1.0 + stride
+
+
+def test_a_field_that_constraints_hold_back_moves_nothing() -> None:
+    """What is left of a translation, with the barycenter held, is rounding errors."""
+    assert not list(Stir().along(saddle(), np.ones_like, np.inf))
 
 
 # -- unknots that are no circles -------------------------------------------------------------------------------------
@@ -235,26 +279,35 @@ def test_an_unknot_above_the_circle_is_never_called_done(hops: int, advice: str)
     assert result.message.endswith(f"; {IS_UNKNOT}: {advice}")
 
 
-def test_a_knot_that_polynomials_do_not_tell_from_the_unknot_may_be_one() -> None:
-    """The untwisted double of the trefoil is knotted, with Δ = 1, and of too many crossings for the table."""
-    assert unknot_message(double(knot("3_1"), 0)) == MAY_BE_UNKNOT
+def test_no_hop_is_recommended_to_what_is_confined() -> None:
+    """A circle pressed flat between walls is an unknot and no circle, and can become none."""
+    ellipse = regular_polygon(60).with_vertices(regular_polygon(60).vertices * [2.0, 0.4, 1.0])
+    walls = [Obstacle(wall.vertices[:, [0, 2, 1]], wall.faces) for wall in (plate(0.5), plate(-0.5))]
+    result = minimize(*wanted(ellipse, avoid=walls))
+    assert result.status is Status.CONVERGED
+    assert "unknot" not in result.message
 
 
-def test_strands_that_no_view_tells_apart_leave_the_type_open() -> None:
-    """A figure eight whose strands pass at 10⁻¹² of its size, as they may where a curve is stuck."""
-    eight = np.array([[-1, -1, 0], [1, 1, 1e-12], [2, 0, 0], [1, -1, 0], [-1, 1, 0], [-2, 0, 0]])
-    assert unknot_message(Curve(eight)) == MAY_BE_UNKNOT
+@pytest.mark.parametrize(
+    ("curve", "said"),
+    [
+        (double(knot("3_1"), 0), MAY_BE_UNKNOT),  # knotted, with Δ = 1, and of too many crossings for the table
+        # strands pass at 10⁻¹² of its size, as they may where a curve is stuck: no view tells which is in front
+        (Curve([[-1, -1, 0], [1, 1, 1e-12], [2, 0, 0], [1, -1, 0], [-1, 1, 0], [-2, 0, 0]]), MAY_BE_UNKNOT),
+        (refine(knot("culprit"), 10_000), IS_UNKNOT),
+        (knot("8_19"), None),
+        (hopf_link(40), None),
+        (regular_polygon(40), None),
+        (regular_polygon(40, dimension=2), None),
+    ],
+    ids=["double", "eight", "culprit", "8_19", "link", "circle", "plane"],
+)
+def test_unknots_are_told_from_what_may_be_one(curve: Curve, said: str | None) -> None:
+    assert unknot_message(curve) == said
 
 
 def test_the_type_of_a_curve_of_very_many_vertices_is_not_looked_at() -> None:
-    culprit = knot("culprit")
-    assert unknot_message(refine(culprit, 10_000)) == IS_UNKNOT
-    assert unknot_message(refine(culprit, 10_000 + 1)) is None
-
-
-def test_knots_links_circles_and_what_is_not_in_space_are_no_case_for_it() -> None:
-    for curve in (knot("8_19"), hopf_link(40), regular_polygon(40), Curve(regular_polygon(40).vertices[:, :2])):
-        assert unknot_message(curve) is None
+    assert unknot_message(refine(knot("culprit"), 10_000 + 1)) is None
 
 
 def test_a_circle_is_told_from_what_is_wound_like_one() -> None:
@@ -262,15 +315,4 @@ def test_a_circle_is_told_from_what_is_wound_like_one() -> None:
     uneven = np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], axis=1)
     assert is_circle(Curve(uneven))
     assert is_circle(Curve(100.0 + uneven @ np.linalg.qr(np.arange(9.0).reshape(3, 3) ** 2)[0]))
-    assert not is_circle(Curve(uneven * [1.0, 0.5, 1.0]))
-    assert not is_circle(torus_knot(9, 2, 400))
-    assert not is_circle(hopf_link(40))
-
-
-# -- options ---------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("change", [{"hops": -1}, {"hops": 1.5}, {"seed": -1}, {"seed": None}])
-def test_bad_values_are_refused(change: dict[str, object]) -> None:
-    with pytest.raises(OptionError, match=next(iter(change))):
-        RelaxOptions(**change)
+    assert not any(map(is_circle, (Curve(uneven * [1.0, 0.5, 1.0]), torus_knot(9, 2, 400), hopf_link(40))))

@@ -11,12 +11,10 @@ from mobius_flow.core import (
     CurveError,
     Iterate,
     Objective,
-    OptionError,
+    Obstacle,
     RelaxOptions,
-    Result,
     Status,
     Task,
-    Trajectory,
     minimize,
     relax,
 )
@@ -28,32 +26,20 @@ from mobius_flow.core.driver.moves import untangling
 from mobius_flow.core.driver.outcome import converged
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.driver.run import Run
-from mobius_flow.core.knots import knot, scramble
-from mobius_flow.core.proof import verify
+from mobius_flow.core.knots import knot, overhand, scramble
 from mobius_flow.core.untangle import Stage
-from mobius_flow.lab.compare.comparison import compare
+from shapes import regular_polygon
 from solids import plate
+from tasks import proved
 
-ALWAYS = RelaxOptions(untangle="always", max_iterations=40)
-
-
-def relaxed(task: Task | Curve, options: RelaxOptions, folder) -> tuple[Result, list[Iterate]]:
-    """The result and all iterates of a run that the independent check accepts."""
-    iterates: list[Iterate] = []
-    trajectory = Trajectory(obstacles=Task.of(task).obstacles)
-    result = minimize(task, options, iterates.append)
-    for iterate in iterates:
-        trajectory.add(iterate)
-    trajectory.save(folder / "T.npz")
-    assert verify(folder / "T.npz").accepted
-    return result, iterates
+ALWAYS = {"untangle": "always", "max_iterations": 40}
 
 
-def squeezed(curve: Curve, part: float) -> Task:
-    """A curve between two plates that leave it so much more room, as a part of its size."""
+def plates(curve: Curve, part: float) -> tuple[Obstacle, Obstacle]:
+    """Two plates that leave a curve between them so much more room, as a part of its size."""
     low, high = curve.vertices[:, 2].min(), curve.vertices[:, 2].max()
     gap = part * np.ptp(curve.vertices, axis=0).max()
-    return Task(curve=curve, obstacles=(plate(low - gap, name="below"), plate(high + gap, name="above")))
+    return plate(low - gap, name="below"), plate(high + gap, name="above")
 
 
 def test_by_default_the_flow_comes_first_and_is_all_that_is_needed() -> None:
@@ -62,9 +48,9 @@ def test_by_default_the_flow_comes_first_and_is_all_that_is_needed() -> None:
     assert result.final_energy == pytest.approx(4.0, abs=1e-4)
 
 
-def test_where_the_flow_makes_no_headway_strands_are_moved_and_the_flow_ends_it(monkeypatch, tmp_path) -> None:
+def test_where_the_flow_makes_no_headway_strands_are_moved_and_the_flow_ends_it(monkeypatch) -> None:
     monkeypatch.setattr(running, "LOOKING_BACK", 0)
-    result, iterates = relaxed(knot("tuzun-sikora"), RelaxOptions(), tmp_path)
+    result, iterates = proved(knot("tuzun-sikora"))
     assert result.status is Status.CONVERGED
     assert result.final_energy == pytest.approx(4.0, abs=1e-4)
     assert "strand moves: no crossing is left" in result.message
@@ -89,14 +75,14 @@ def test_headway_is_a_hundredth_of_the_energy_in_a_hundred_iterations() -> None:
 
 
 @pytest.mark.slow
-def test_the_flow_alone_is_stuck_on_hakens_unknot_but_not_with_strand_moves(tmp_path) -> None:
-    result, iterates = relaxed(knot("haken"), RelaxOptions(), tmp_path)
+def test_the_flow_alone_is_stuck_on_hakens_unknot_but_not_with_strand_moves() -> None:
+    result, iterates = proved(knot("haken"))
     assert result.final_energy == pytest.approx(4.0, abs=1e-4)
     assert next(each.index for each in iterates if each.strand_moves) > running.LOOKING_BACK
 
 
-def test_energies_within_a_move_are_those_of_its_end(tmp_path) -> None:
-    _, iterates = relaxed(knot("goeritz"), RelaxOptions(untangle="always", max_iterations=1), tmp_path)
+def test_energies_within_a_move_are_those_of_its_end() -> None:
+    _, iterates = proved(knot("goeritz"), untangle="always", max_iterations=1)
     moves: dict[object, list[Iterate]] = {}
     for each in iterates[1:-1]:
         moves.setdefault(each.strand_moves and each.strand_moves._replace(iterates=0), []).append(each)
@@ -109,17 +95,11 @@ def test_energies_within_a_move_are_those_of_its_end(tmp_path) -> None:
 
 
 @pytest.mark.parametrize("limit", [1, 4])
-def test_strand_moves_are_no_iterations(limit: int, tmp_path) -> None:
-    result, _ = relaxed(knot("tuzun-sikora"), replace(ALWAYS, max_iterations=limit, tolerance=1e-9), tmp_path)
+def test_strand_moves_are_no_iterations(limit: int) -> None:
+    result, _ = proved(knot("tuzun-sikora"), untangle="always", max_iterations=limit, tolerance=1e-9)
     assert (result.status, result.iterations) == (Status.ITERATION_LIMIT, limit)
     assert result.message.startswith(f"stopped at the iteration limit ({limit})")
     assert result.last.strand_moves.left == 0
-
-
-def test_without_iterations_nothing_moves() -> None:
-    asked = minimize(knot("tuzun-sikora"), RelaxOptions(max_iterations=0, untangle="always"))
-    assert asked.message.endswith("strand moves: none, as there are to be no iterations")
-    assert asked.report()["strand_moves"] is None
 
 
 def _cut(monkeypatch: pytest.MonkeyPatch, crossings: int, stop: Callable[[], None]) -> None:
@@ -140,7 +120,7 @@ def _cut(monkeypatch: pytest.MonkeyPatch, crossings: int, stop: Callable[[], Non
 
 @pytest.mark.parametrize("ending", ["time limit", "interrupt"])
 @pytest.mark.parametrize(("crossings", "kept"), [(15, False), (9, True)])
-def test_what_is_cut_short_within_a_move_says_where_it_stands(ending, crossings, kept, monkeypatch, tmp_path) -> None:
+def test_what_is_cut_short_within_a_move_says_where_it_stands(ending, crossings, kept, monkeypatch) -> None:
     def stop() -> None:
         monkeypatch.setattr(TimeLimit, "is_reached", True)
         check_time()
@@ -148,9 +128,9 @@ def test_what_is_cut_short_within_a_move_says_where_it_stands(ending, crossings,
 
     _cut(monkeypatch, crossings, stop)
     monkeypatch.setattr(running, "LOOKING_BACK", 0)
-    options = RelaxOptions(time_limit=1e6 if ending == "time limit" else None)
-    result, iterates = relaxed(knot("tuzun-sikora"), options, tmp_path)
-    assert result.status is (Status.TIME_LIMIT if options.time_limit else Status.INTERRUPTED)
+    limit = 1e6 if ending == "time limit" else None
+    result, iterates = proved(knot("tuzun-sikora"), time_limit=limit)
+    assert result.status is (Status.TIME_LIMIT if limit else Status.INTERRUPTED)
     assert (result.last.strand_moves is not None) is kept
     said = "and {} of 21 crossings are left" if kept else "but with {} of 21 crossings left nothing is kept of that"
     left = [result.last.strand_moves.left] if kept else range(11, crossings + 1)
@@ -159,9 +139,9 @@ def test_what_is_cut_short_within_a_move_says_where_it_stands(ending, crossings,
     assert kept or len(iterates) == 2
 
 
-def test_seconds_of_all_moves_are_counted(monkeypatch: pytest.MonkeyPatch, tmp_path) -> None:
+def test_seconds_of_all_moves_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(untangling.time, "perf_counter", count().__next__)
-    _, iterates = relaxed(knot("tuzun-sikora"), replace(ALWAYS, max_iterations=1), tmp_path)
+    _, iterates = proved(knot("tuzun-sikora"), untangle="always", max_iterations=1)
     seconds = sorted({each.strand_moves.seconds for each in iterates if each.strand_moves})
     assert seconds == list(range(1, len(seconds) + 1))
     assert len(seconds) > 1
@@ -181,16 +161,16 @@ def test_interrupted_runs_say_where_they_stand() -> None:
     assert (result.iterations, [phase.iterations for phase in result.phases]) == (0, [0])
 
 
-def test_components_have_their_own_lengths_again(tmp_path) -> None:
+def test_components_have_their_own_lengths_again() -> None:
     curve = scramble(knot("L2a1", 40), 1, moves=800)
-    result, _ = relaxed(curve, ALWAYS, tmp_path)
+    result, _ = proved(curve, **ALWAYS)
     assert result.last.strand_moves.left == 2
     np.testing.assert_allclose(result.curve.component_lengths, curve.component_lengths, rtol=1e-6)
 
 
-def test_arcs_between_pins_have_their_lengths_again(tmp_path) -> None:
+def test_arcs_between_pins_have_their_lengths_again() -> None:
     curve = scramble(knot("3_1", 30), 1, moves=600)
-    result, iterates = relaxed(Task(curve=curve, pins=(0, 12)), ALWAYS, tmp_path)
+    result, iterates = proved(curve, pins=(0, 12), **ALWAYS)
     shortest = min(each.curve.length for each in iterates)
     assert shortest < 0.8 * curve.length
     assert result.last.strand_moves.left <= 4
@@ -201,81 +181,79 @@ def test_arcs_between_pins_have_their_lengths_again(tmp_path) -> None:
     assert result.curve.edge_lengths[edges].sum() == pytest.approx(curve.edge_lengths[:12].sum())
 
 
-def test_arcs_between_many_pins_do_not_wind_round_others(tmp_path) -> None:
+def test_arcs_between_many_pins_do_not_wind_round_others() -> None:
     curve = knot("goeritz")
-    task = Task(curve=curve, pins=tuple(range(0, len(curve), 2)))
-    result, _ = relaxed(task, RelaxOptions(untangle="always", max_iterations=2), tmp_path)
+    result, _ = proved(curve, pins=tuple(range(0, len(curve), 2)), untangle="always", max_iterations=2)
     assert "strand moves: none are made: others would stretch the curve between pins" in result.message
 
 
-def test_curves_grow_after_strand_moves(tmp_path) -> None:
+def test_curves_grow_after_strand_moves() -> None:
     curve = knot("goeritz")
-    result, _ = relaxed(curve, RelaxOptions(untangle="always", grow=1.5, max_iterations=30), tmp_path)
+    result, _ = proved(curve, untangle="always", grow=1.5, max_iterations=30)
     assert result.last.strand_moves.left == 0
     assert result.curve.length == pytest.approx(1.5 * curve.length)
 
 
-def test_what_grows_in_confinement_is_left_to_the_flow() -> None:
-    options = RelaxOptions(untangle="always", grow=1.2, max_iterations=1)
-    result = minimize(squeezed(knot("goeritz"), 0.5), options)
-    assert "strand moves: none, as what grows between pins or among obstacles is left to the flow" in result.message
+GOERITZ = knot("goeritz")
 
 
-def test_a_knot_between_pinned_ends_stays(tmp_path) -> None:
-    arc = knot("overhand", 60)
-    task = Task(curve=arc, pins=(0, 59))
-    result, _ = relaxed(task, RelaxOptions(), tmp_path)
+@pytest.mark.parametrize(
+    ("curve", "options", "said"),
+    [
+        (knot("tuzun-sikora"), {"max_iterations": 0}, "strand moves: none, as there are to be no iterations"),
+        (
+            GOERITZ,
+            {"avoid": plates(GOERITZ, 0.5), "grow": 1.2},
+            "strand moves: none, as what grows between pins or among obstacles is left to the flow",
+        ),
+        (GOERITZ, {"pins": tuple(range(len(GOERITZ)))}, "strand moves: none are made"),
+        (Curve(regular_polygon(12, 2).vertices * [1.0, 2.0]), {"max_iterations": 3}, "only curves in space"),
+        (overhand(60), {"pins": (0, 59)}, "others would undo a knot between pinned ends"),
+    ],
+    ids=["no iterations", "confined", "all pinned", "plane", "pinned ends"],
+)
+def test_where_strands_are_not_moved_it_is_told(curve: Curve, options: dict[str, object], said: str) -> None:
+    result, _ = proved(curve, **{"untangle": "always", "max_iterations": 1} | options)
+    assert said in result.message
+    assert result.report()["strand_moves"] is None
+
+
+def test_a_knot_between_pinned_ends_stays() -> None:
+    result, _ = proved(overhand(60), pins=(0, 59))
     assert result.final_energy > 50.0
     assert "strand moves" not in result.message
-    result, _ = relaxed(task, RelaxOptions(untangle="always", max_iterations=1), tmp_path)
-    assert "others would undo a knot between pinned ends" in result.message
-    assert result.final_energy > 50.0
 
 
-def test_where_obstacles_leave_no_room_the_curve_is_left_to_the_flow(tmp_path) -> None:
-    result, _ = relaxed(squeezed(knot("tuzun-sikora"), 0.003), replace(ALWAYS, max_iterations=2), tmp_path)
+def test_where_obstacles_leave_no_room_the_curve_is_left_to_the_flow() -> None:
+    curve = knot("tuzun-sikora")
+    result, _ = proved(curve, avoid=plates(curve, 0.003), untangle="always", max_iterations=2)
     assert "as no way for a strand is free" in result.message  # some kernels find a way for a strand or two
 
 
 def test_moves_that_leave_more_crossings_than_go_are_in_vain(monkeypatch) -> None:
     monkeypatch.setattr(running, "LOOKING_BACK", 0)
-    start, stuck, after = islice(relax(squeezed(knot("tuzun-sikora"), 0.003)), 3)
+    curve = knot("tuzun-sikora")
+    start, stuck, after = islice(relax(Task(curve=curve, obstacles=plates(curve, 0.003))), 3)
     assert start.curve.mesh == stuck.curve.mesh == after.curve.mesh
     assert after.strand_moves is None
 
 
-def test_pinned_everywhere_nothing_moves(tmp_path) -> None:
-    curve = knot("goeritz")
-    task = Task(curve=curve, pins=tuple(range(len(curve))))
-    result, _ = relaxed(task, RelaxOptions(untangle="always"), tmp_path)
-    assert result.report()["strand_moves"] is None
-    assert "strand moves: none are made" in result.message
-
-
-def test_curves_in_the_plane_are_left_alone() -> None:
-    turn = 2 * np.pi * np.arange(12) / 12
-    ellipse = Curve(np.column_stack([np.cos(turn), 2 * np.sin(turn)]))
-    result = minimize(ellipse, RelaxOptions(untangle="always", max_iterations=3))
-    assert "only curves in space" in result.message
-
-
-def _none(curve: Curve, *_: object) -> Iterator[object]:
-    raise np.linalg.LinAlgError("singular")
-    yield
-
-
 def test_what_fails_within_moves_loses_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(untangling, "untangled", _none)
-    result = minimize(knot("goeritz"), RelaxOptions(untangle="always", max_iterations=2))
+    def fails(*_: object) -> Iterator[object]:
+        raise np.linalg.LinAlgError("singular")
+        yield
+
+    monkeypatch.setattr(untangling, "untangled", fails)
+    result = minimize(GOERITZ, RelaxOptions(untangle="always", max_iterations=2))
     assert "strand moves: none are made: stopped where the curve is too degenerate: singular" in result.message
 
 
-def test_a_mesh_that_cannot_be_computed_with_gives_way_to_the_coarse_one(monkeypatch, tmp_path) -> None:
+def test_a_mesh_that_cannot_be_computed_with_gives_way_to_the_coarse_one(monkeypatch) -> None:
     def refuse(*_: object) -> None:
         raise CurveError("too near")
 
     monkeypatch.setattr(untangling, "check_refined", refuse)
-    result, iterates = relaxed(knot("goeritz"), RelaxOptions(untangle="always", max_iterations=20), tmp_path)
+    result, iterates = proved(GOERITZ, untangle="always", max_iterations=20)
     assert len(result.curve) < len(iterates[0].curve)
     assert result.final_energy < 10.0
 
@@ -285,17 +263,6 @@ def test_at_rest_no_more_crossings_may_stay_than_go(gone, left, made, monkeypatc
     monkeypatch.setattr(untangling, "worth", lambda *_: (gone, left))
     result = minimize(knot("goeritz"))
     assert (result.last.strand_moves is not None or "strand moves" in result.message) is made
-
-
-def test_what_cannot_be_asked_for_together_is_refused() -> None:
-    for options in ({"mesh": "fixed"}, {"edge_lengths": "keep"}, {"edge_lengths": (1.0,) * 9}):
-        with pytest.raises(OptionError, match="untangle='always' changes the mesh"):
-            RelaxOptions(untangle="always", **options)
-        assert not RelaxOptions(**options).may_untangle
-    with pytest.raises(OptionError, match="untangle='always' has no part in a comparison"):
-        compare(knot("3_1"), ["lbfgs"], RelaxOptions(untangle="always"), 1.0)
-    (history,) = compare(knot("tuzun-sikora"), ["lbfgs"], RelaxOptions(max_iterations=2), 60.0)
-    assert history.iterations == 2
 
 
 def test_curves_at_rest_know_of_no_strand_moves() -> None:
