@@ -8,26 +8,14 @@ import numpy as np
 import pytest
 from changed_moves import change
 from families import family
-from mobius_flow.core import (
-    METHODS,
-    Curve,
-    Iterate,
-    Objective,
-    RelaxOptions,
-    Result,
-    Status,
-    Task,
-    Trajectory,
-    minimize,
-    relax,
-)
+from mobius_flow.core import METHODS, Curve, Iterate, Objective, RelaxOptions, Result, Status, Task, minimize, relax
 from mobius_flow.core.curve import Mesh
 from mobius_flow.core.curve.refine import Resolution, subdivide, target_spacing
 from mobius_flow.core.driver.moves import FinerMesh
 from mobius_flow.core.energies import ENERGIES
 from mobius_flow.core.knots import knot
-from mobius_flow.core.proof import verify
 from shapes import hopf_link, lattice_knot, regular_polygon, torus_trefoil
+from tasks import proved
 from torus_energies import torus_knot_minimum
 
 SMOOTH = {"5_1": torus_knot_minimum(2, 5), "6_2": 172.0607, "7_6": 207.2577}
@@ -58,18 +46,19 @@ def test_default_options_end_near_the_smooth_minimum(name):
     assert len(curves[0]) < len(curves[-1]) < 2 * len(curves[0])
 
 
-def test_changes_of_mesh_are_in_the_certificate(tmp_path):
+def test_changes_of_mesh_are_in_the_certificate_and_told():
     """Vertices are put on edges and do not move, and with fewer asked for they are not enough."""
-    trajectory = Trajectory()
-    result = minimize(lattice_knot("3_1"), RelaxOptions(vertices=40, mesh="finer"), trajectory.add)
-    arrays = trajectory.arrays()
-    before, after = arrays["stage_000"][-1], arrays["stage_001"][0]
+    result, iterates = proved(lattice_knot("3_1"), vertices=40, mesh="finer")
+    k = next(k for k, each in enumerate(iterates) if k and not each.path)
+    before, after = (each.curve.vertices for each in iterates[k - 1 : k + 1])
     assert len(before) == 40
     assert {tuple(vertex) for vertex in before} < {tuple(vertex) for vertex in after}
     assert result.last.edge_length_error < 1e-6
     assert result.final_energy == pytest.approx(torus_knot_minimum(2, 3), rel=1e-2)
-    trajectory.save(tmp_path / "T.npz")
-    assert verify(tmp_path / "T.npz").accepted
+    assert [phase.vertices for phase in result.phases] == [len(each.curve) for each in iterates if not each.path]
+    assert sum(phase.iterations for phase in result.phases) == len(result.energies) - 1
+    assert sum(phase.seconds for phase in result.phases) == pytest.approx(result.seconds)
+    assert result.report()["phases"] == [vars(phase) for phase in result.phases]
 
 
 def test_the_bends_of_a_resolved_curve_get_more_vertices_until_its_energy_is_exact(monkeypatch):
@@ -125,15 +114,6 @@ def test_a_saddle_on_the_way_is_no_end():
     """For a hundred steps on 497 vertices it gains less than its mesh, of which 1,300 would be made, is off."""
     _, curves = recorded(knot("ochiai-4"))
     assert len(curves) == 1
-
-
-def test_phases_are_told():
-    result, curves = recorded(lattice_knot("3_1"), vertices=40, mesh="finer", tolerance=1e-2)
-    assert [phase.vertices for phase in result.phases] == [len(curve) for curve in curves]
-    assert len(curves) > 1
-    assert sum(phase.iterations for phase in result.phases) == len(result.energies) - 1
-    assert sum(phase.seconds for phase in result.phases) == pytest.approx(result.seconds)
-    assert result.report()["phases"] == [vars(phase) for phase in result.phases]
 
 
 @pytest.mark.parametrize("curve", [regular_polygon(60), torus_trefoil(200), hopf_link(100)])

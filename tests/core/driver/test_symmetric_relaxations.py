@@ -1,18 +1,15 @@
 """Relaxations among symmetric curves: exact all along and proved, with their own minima, and what cannot be."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, CurveError, Iterate, OptionError, RelaxOptions, Task, Trajectory, minimize
+from mobius_flow.core import Curve, CurveError, Iterate, OptionError, RelaxOptions, Task, minimize
 from mobius_flow.core.curve.measures import bending
-from mobius_flow.core.curve.symmetry import NO_SYMMETRY, Symmetry, standing, symmetries
-from mobius_flow.core.descent import METHODS
+from mobius_flow.core.curve.symmetry import Symmetry, standing, symmetries
 from mobius_flow.core.driver.moves.balance import moebius_image
 from mobius_flow.core.knots import knot, smooth_knot, torus_knot
-from mobius_flow.core.proof import verify
 from mobius_flow.lab.extrapolation import extrapolated
 from shapes import half_circle, regular_polygon
+from tasks import proved
 from torus_energies import torus_knot_minimum
 
 EXACT = 1e-10  # shortest edges, of rounded coordinates
@@ -26,23 +23,15 @@ def error(last: Iterate, *others: Iterate) -> float:
     return max(kept.on(each.curve).error(each.curve) for each in (last, *others))
 
 
-@pytest.mark.parametrize("method", [name for name, method in METHODS.items() if not method.comparison] + ["penalty-cg"])
-def test_every_iterate_is_exactly_symmetric_and_proved(method: str, tmp_path: Path) -> None:
-    iterates, trajectory = [], Trajectory()
-    options = RelaxOptions(method=method, symmetry="D3", vertices=70, max_iterations=9)
+def test_a_motion_to_a_symmetric_curve_comes_first() -> None:
     start = smooth_knot("3_1")
-    result = minimize(start, options, lambda each: (iterates.append(each), trajectory.add(each)))
-    given, moved, meshed, *others = iterates
+    result, (given, moved, meshed, *others) = proved(start, symmetry="D3", vertices=70, max_iterations=9)
     assert given.symmetry == moved.symmetry == ""
     assert given.curve.length == pytest.approx(start.length)  # the same polygon, with more vertices
+    assert symmetries(moved.curve, 1e-6).name == "D3"
     assert len(meshed.curve) == 72
     assert all(each.symmetry == "D3" for each in [meshed, *others])
     assert error(result.last, meshed, *others) < EXACT
-    assert symmetries(moved.curve, 1e-6).name == "D3"
-    assert result.certified
-    assert result.energies[-1] < result.energies[0]
-    trajectory.save(tmp_path / "T.npz")
-    assert verify(tmp_path / "T.npz").accepted
     assert result.report()["symmetry"] == "D3"
 
 
@@ -115,17 +104,16 @@ def test_lengths_reach_their_targets_where_the_barycenter_moves() -> None:
     assert result.last.edge_length_error < 1e-9
 
 
-def test_a_curve_without_symmetry_is_relaxed_and_told_so() -> None:
+def test_without_symmetry_or_iterations_none_is_kept() -> None:
     result = minimize(smooth_knot("6_3"), RelaxOptions(symmetry="auto", max_iterations=2))
     assert result.message.endswith("; symmetry C1, so that there was none to keep")
     assert result.report()["symmetry"] is None
     assert len(result.energies) == 3
-
-
-def test_no_iterations_leave_the_start() -> None:
     result = minimize(torus_knot(2, 3), RelaxOptions(symmetry="D3", vertices=100, max_iterations=1))
+    assert (result.last.symmetry, len(result.energies)) == ("", 2)
+    result = minimize(torus_knot(2, 3), RelaxOptions(max_iterations=1, untangle="never"))
     assert result.last.symmetry == ""
-    assert len(result.energies) == 2
+    assert "symmetry" not in result.message
 
 
 def test_strands_that_meet_on_the_axis_are_refused() -> None:
@@ -151,27 +139,3 @@ def test_what_has_or_allows_no_symmetry_is_refused(given: Curve | Task, more: di
     with pytest.raises((CurveError, OptionError)) as caught:
         minimize(given, RelaxOptions(**{"symmetry": "C3", **more}))
     assert str(caught.value).startswith(said)
-
-
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        ({"symmetry": "C0"}, "symmetry is 'C0'; give auto, or a group such as C3, D2, S4 or Th"),
-        ({"symmetry": "d3"}, "symmetry is 'd3'; give auto"),
-        ({"symmetry": 3}, "symmetry is 3; it must be a name"),
-        ({"symmetry": "C3", "mesh": "adaptive"}, "symmetry keeps orbits of vertices, which mesh='adaptive' does not"),
-        ({"symmetry": "C3", "untangle": "always"}, "untangle='always' changes the mesh; leave it or symmetry out"),
-        ({"symmetry": "C3", "edge_lengths": (1.0, 1.0)}, "symmetry makes its own vertices, to which edge_lengths do"),
-    ],
-)
-def test_options_that_break_it_are_refused(options: dict[str, object], said: str) -> None:
-    with pytest.raises(OptionError) as caught:
-        RelaxOptions(**options)
-    assert str(caught.value).startswith(said)
-
-
-def test_there_is_none_by_default() -> None:
-    result = minimize(torus_knot(2, 3), RelaxOptions(max_iterations=1, untangle="never"))
-    assert result.last.symmetry == ""
-    assert isinstance(NO_SYMMETRY, Symmetry)
-    assert "symmetry" not in result.message
