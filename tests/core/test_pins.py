@@ -16,6 +16,7 @@ from mobius_flow.core.descent.hessian import lagrangian_hessian
 from mobius_flow.core.driver.moves.rest import stability
 from mobius_flow.core.knots import knot, torus_knot
 from shapes import regular_polygon, torus_trefoil
+from solids import plate
 from tasks import proved, wanted
 from taylor import taylor_slope
 
@@ -201,9 +202,10 @@ def test_little_slack_is_no_obstacle() -> None:
         ({"pins": (0.5,)}, "pins is (0.5,); give a tuple, each a whole number"),
         ({"pins": "12"}, "pins is '12'; give a tuple, each a whole number"),
         ({"pins": 12}, "pins is 12; give a tuple, each a whole number"),
+        ({"pins": (1,), "balance": True}, "balance would move pins, as Möbius maps do; leave one of the two out"),
         (
-            {"pins": (1,), "balance": True},
-            "balance would move pins, as Möbius maps do; leave one of the two out",
+            {"avoid": (plate(9.0),), "balance": True},
+            "balance takes Möbius images, which have another repulsion than the curve; leave it out",
         ),
     ],
 )

@@ -23,25 +23,24 @@ class Watched:
             self.left.add(SimpleNamespace(index=k, curve=curve, energy=1.0, gradient_norm=gradient, strand_moves=moves))
 
 
+def halving(count):
+    """A gradient that halves every ten seconds reaches its bound at 60 s."""
+    return 64 * 0.5 ** (np.arange(count) / 10)
+
+
 def test_a_slow_motion_alone_is_forecast():
-    """A gradient that halves every ten seconds reaches its bound at 60 s: 11 s are left, told up to a factor of two."""
-    assert 5.5 < Watched(64 * 0.5 ** (np.arange(50) / 10)).left.seconds < 22
+    assert 5.5 < Watched(halving(50)).left.seconds < 22, "of 11 s, told up to a factor of two"
+    assert Watched(halving(50), max_iterations=55).left.seconds == pytest.approx(6, rel=0.01), "the limit comes first"
 
 
 def test_it_is_silent_before_there_is_much_to_go_by():
-    assert Watched(64 * 0.5 ** (np.arange(9) / 10)).left.seconds is None
-    assert Watched(64 * 0.5 ** (np.arange(25) / 10)).left.seconds is None, "the forecasts differ"
-    assert Watched([]).left.seconds is None
-
-
-def test_the_limit_of_iterations_may_come_first():
-    falling = 64 * 0.5 ** (np.arange(50) / 10)
-    assert Watched(falling, max_iterations=55).left.seconds == pytest.approx(6, rel=0.01)
+    for gradients in (halving(9), halving(25), []):  # of 25 the forecasts differ
+        assert Watched(gradients).left.seconds is None
     assert Watched(np.full(50, 64.0), max_iterations=79).left.seconds is None, "the limit alone tells no end"
 
 
 def test_other_meshes_pauses_and_strand_moves_begin_anew():
-    watched = Watched(64 * 0.5 ** (np.arange(50) / 10))
+    watched = Watched(halving(50))
     watched.left.restart()
     assert watched.left.seconds is None
     finer = SimpleNamespace(
