@@ -6,56 +6,30 @@ import pickle
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError, Mesh
-from shapes import hopf_link, regular_polygon
+from shapes import hopf_link
 
 
-def test_links_index_edges_by_tail_and_head():
-    mesh = Mesh((3, 4))
-    assert list(mesh.tails) == [0, 1, 2, 3, 4, 5, 6]
-    assert list(mesh.heads) == [1, 2, 0, 4, 5, 6, 3]
-    assert list(mesh.previous) == [2, 0, 1, 6, 3, 4, 5]
-    assert list(mesh.component) == [0, 0, 0, 1, 1, 1, 1]
-
-
-def test_index_distance_goes_the_short_way():
-    mesh = Mesh((6, 5))
-    i, j = np.array([0, 0, 0, 0, 6]), np.array([5, 3, 4, 7, 10])
-    assert list(mesh.index_distance(i, j)) == [1, 3, 2, 11, 1]
-    assert list(mesh.disjoint(i, j)) == [False, True, True, True, False]
-
-
-def test_values_are_read_only():
-    curve = regular_polygon(5)
-    for array in (curve.vertices, curve.edge_lengths, curve.midpoints, curve.mesh.heads):
-        with pytest.raises(ValueError, match="read-only"):
-            array[0] = 1
-
-
-@pytest.mark.parametrize("again", [copy.copy, copy.deepcopy, lambda value: pickle.loads(pickle.dumps(value))])
-def test_copies_are_read_only_too(again):
+@pytest.mark.parametrize(
+    "again", [lambda value: value, copy.copy, copy.deepcopy, lambda value: pickle.loads(pickle.dumps(value))]
+)
+def test_values_and_their_copies_are_read_only(again):
     link = hopf_link(10)
     assert link.mesh.heads[0] == 1
     assert link.edge_lengths[0] > 0
     same = again(link)
     np.testing.assert_array_equal(same.vertices, link.vertices)
     assert same.mesh == link.mesh
-    for array in (same.vertices, same.edge_lengths, same.mesh.heads, again(link.mesh).heads):
+    for array in (same.vertices, same.edge_lengths, same.midpoints, same.mesh.heads, again(link.mesh).heads):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 1
 
 
-def test_the_input_is_copied():
-    points = np.array(regular_polygon(5).vertices)
-    curve = Curve(points)
+def test_the_input_is_copied_and_comes_back():
+    points = np.array(hopf_link(10).vertices)
+    curve = Curve.from_components(np.split(points, 2))
     points[0] = 9
-    assert curve.vertices[0, 0] == 1
-
-
-def test_components_round_trip():
-    link = hopf_link(10)
-    again = Curve.from_components(link.components)
-    np.testing.assert_array_equal(again.vertices, link.vertices)
-    assert again.mesh.component_sizes == (10, 10)
+    np.testing.assert_array_equal(np.concatenate(curve.components), hopf_link(10).vertices)
+    assert curve.mesh.component_sizes == (10, 10)
 
 
 @pytest.mark.parametrize(
@@ -92,8 +66,4 @@ def test_bad_components():
 def test_component_sizes_that_are_none(sizes):
     with pytest.raises(CurveError, match="it must be a tuple of whole numbers"):
         Mesh(sizes)
-
-
-def test_component_sizes_become_a_tuple_of_python_numbers():
-    assert Mesh(list(np.array([3, 4]))).component_sizes == (3, 4)
-    assert type(Mesh(list(np.array([3, 4]))).component_sizes[0]) is int
+    assert list(map(type, Mesh(list(np.array([3, 4]))).component_sizes)) == [int, int]

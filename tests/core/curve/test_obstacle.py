@@ -16,11 +16,8 @@ def test_values_are_copied_and_cannot_be_changed():
     np.testing.assert_array_equal(obstacle.corners, [SQUARE[:3]])
     assert not any(array.flags.writeable for array in (obstacle.vertices, obstacle.faces, obstacle.corners))
     assert obstacle.size == 1.0
-
-
-@pytest.mark.parametrize("faces", [[[0, 1, 1]], [[2, 2, 2]], [[0, 1]], [[3, 3]]])
-def test_triangles_without_area_are_welcome(faces):
-    assert len(Obstacle(SQUARE, faces).faces) == 1
+    for faces in ([[0, 1, 1]], [[2, 2, 2]], [[0, 1]], [[3, 3]]):  # without area
+        assert len(Obstacle(SQUARE, faces).faces) == 1
 
 
 @pytest.mark.parametrize(
@@ -74,21 +71,20 @@ def test_faces_of_every_spelling_are_read(tmp_path, text):
     assert area(obstacle) == pytest.approx(1.0)
 
 
-def test_negative_indices_count_back_from_where_they_stand(tmp_path):
-    obstacle = read_obstacle(obj(tmp_path, "f -3 -2 -1\nv 5 5 5\n"))
-    np.testing.assert_array_equal(obstacle.faces, [[1, 2, 3]])
-
-
-def test_polylines_are_segments_open_or_closed(tmp_path):
-    obstacle = read_obstacle(obj(tmp_path, "l 1 2 3\nl 3 4\n"))
-    np.testing.assert_array_equal(obstacle.faces, [[0, 1], [1, 2], [2, 3]])
-
-
-def test_polylines_beside_faces_name_a_vertex_twice(tmp_path):
-    obstacle = read_obstacle(obj(tmp_path, "l 3 4\nf 1 2 3\n"))
-    np.testing.assert_array_equal(obstacle.faces, [[0, 1, 2], [2, 3, 3]])
-    np.testing.assert_array_equal(obstacle.triangles, [SQUARE[:3]])
-    np.testing.assert_array_equal(obstacle.segments, [SQUARE[2:]])
+@pytest.mark.parametrize(
+    ("text", "faces"),
+    [
+        ("f -3 -2 -1\nv 5 5 5\n", [[1, 2, 3]]),  # which count back from where they stand
+        ("l 1 2 3\nl 3 4\n", [[0, 1], [1, 2], [2, 3]]),  # segments
+        ("l 3 4\nf 1 2 3\n", [[0, 1, 2], [2, 3, 3]]),  # beside faces they name a vertex twice
+    ],
+)
+def test_faces_and_polylines(tmp_path, text, faces):
+    obstacle = read_obstacle(obj(tmp_path, text))
+    np.testing.assert_array_equal(obstacle.faces, faces)
+    if text.startswith("l 3"):
+        np.testing.assert_array_equal(obstacle.triangles, [SQUARE[:3]])
+        np.testing.assert_array_equal(obstacle.segments, [SQUARE[2:]])
 
 
 @pytest.mark.parametrize("suffix", [".txt", ".xyz", ".vect", ".json", ".obj"])
@@ -153,6 +149,9 @@ def test_vertices_within_straight_edges_are_corners_of_triangles_with_area():
         areas = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
         assert areas.min() > 0.1
         assert areas.sum() == pytest.approx(4.0)
+    triangles = triangulated([[0.0, 0.0, float(k % 3)] for k in range(6)])  # without any area
+    assert len(triangles) == 4
+    assert set(np.ravel(triangles)) == set(range(6))
 
 
 def test_a_hole_that_a_slit_joins_to_the_outline_stays_open():
@@ -176,9 +175,3 @@ def test_faces_with_thousands_of_corners(tmp_path):
         (tmp_path / name).write_text(vertices + faces)
         with pytest.raises(CurveFileError, match=r"corners takes too long to cut .* triangulate the mesh"):
             read_obstacle(tmp_path / name)
-
-
-def test_polygons_without_area_keep_all_vertices():
-    triangles = triangulated([[0.0, 0.0, float(k % 3)] for k in range(6)])
-    assert len(triangles) == 4
-    assert set(np.ravel(triangles)) == set(range(6))

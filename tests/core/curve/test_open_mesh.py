@@ -8,7 +8,7 @@ import pytest
 from mobius_flow.core import Curve, CurveError, Mesh
 from mobius_flow.core.curve import check_closed
 from mobius_flow.core.curve.distances import arc_distance_of_pairs, arc_distance_of_vertices, points_along
-from mobius_flow.core.curve.refine import refine, subdivide
+from mobius_flow.core.curve.refine import refine
 from shapes import half_circle, opened, torus_trefoil
 
 SIZES, CLOSED = (5, 2, 3, 4, 6, 3), (True, False, False, True, False, True)
@@ -30,7 +30,9 @@ def test_edges() -> None:
     assert (MESH.edges, MESH.size) == (20, 23)
     assert MESH.edge_counts.tolist() == [5, 1, 2, 4, 5, 3]
     assert MESH.ends.tolist() == [[5, 6], [7, 9], [14, 19]]
-    assert Mesh.of_edges(MESH.edge_counts, CLOSED) == MESH
+    assert Mesh.of_edges(MESH.edge_counts, CLOSED) == MESH == pickle.loads(pickle.dumps(MESH))
+    assert Mesh((4, 5)) == Mesh((4, 5), (True, True)) != Mesh((4, 5), (True, False))
+    assert (Mesh((4, 5)).all_closed, MESH.all_closed) == (True, False)
 
 
 def test_neighbours_are_themselves_where_there_are_none() -> None:
@@ -72,13 +74,6 @@ def test_scatter_is_the_transposed_incidence() -> None:
     np.testing.assert_array_equal(tails.nonzero(), (np.arange(MESH.edges), MESH.tails))
 
 
-def test_copies_are_the_same_and_closed_is_the_default() -> None:
-    assert pickle.loads(pickle.dumps(MESH)) == MESH
-    assert Mesh((4, 5)) == Mesh((4, 5), (True, True)) != Mesh((4, 5), (True, False))
-    assert Mesh((4, 5)).all_closed
-    assert not MESH.all_closed
-
-
 @pytest.mark.parametrize(
     ("sizes", "closed", "reason"),
     [
@@ -112,17 +107,6 @@ def test_there_is_one_way_along_an_arc() -> None:
     np.testing.assert_allclose(arc_distance_of_pairs(curve, i, j, 0.5), [5 * edge, 4 * edge, np.inf])
     along = points_along(curve, np.zeros(3, dtype=np.intp), np.array([0.0, 2.5 * edge, 6 * edge]))
     np.testing.assert_allclose(along, [curve.vertices[0], curve.midpoints[2], curve.vertices[6]], atol=1e-15)
-
-
-def test_new_vertices_leave_the_ends_alone() -> None:
-    rng = np.random.default_rng(7)
-    curve = opened(Curve.from_components([rng.normal(size=(5, 3)), rng.normal(size=(4, 3)) + 9]), 0)
-    pieces = np.array([2, 1, 3, 2, 4, 1, 1, 2])
-    fine = subdivide(curve, pieces)
-    assert fine.mesh == Mesh((9, 8), (False, True))
-    ends = [0, 8]
-    assert np.array_equal(fine.vertices[ends], curve.vertices[[0, 4]])
-    assert fine.length == pytest.approx(curve.length)
 
 
 @pytest.mark.parametrize("vertices", [None, 40, 41])

@@ -31,18 +31,11 @@ def test_unequal_edges_do_not_matter() -> None:
     assert nearest_strands(curve, RATIO) == of_all_pairs(curve)
 
 
-def test_a_circle_has_no_other_strand() -> None:
+def test_circles_vertices_that_coincide_and_arcs() -> None:
+    """A circle has no other strand, most edges may have no length, and arcs have a vertex more than edges."""
     assert nearest_strands(regular_polygon(100), RATIO) == np.inf
-
-
-def test_vertices_that_coincide_are_no_hindrance() -> None:
-    """Most edges may have no length."""
     doubled = np.repeat(np.array([[0.0, 0.0, 0.0], [9.0, 0.0, 0.0], [9.0, 9.0, 0.0], [0.0, 9.0, 0.0]]), 3, axis=0)
     curve = Curve.from_components([doubled, doubled + np.array([0.0, 0.0, 1.0])])
     assert nearest_strands(curve, RATIO) == 1.0
-
-
-def test_arcs_have_a_vertex_more_than_edges() -> None:
     link = Curve.from_components([hopf_link(30).components[0] + 2.0, overhand(90).vertices], (True, False))
     assert nearest_strands(link, RATIO) == of_all_pairs(link)
-    assert nearest_strands(overhand(90), RATIO) == of_all_pairs(overhand(90))
