@@ -20,7 +20,6 @@ import bpy
 from ..core import Curve, Hand, Iterate, MobiusFlowError
 from ..core.keys.key_options import Pace
 from .curves import bake, bevel, sizes
-from .curves.pins import Held
 from .curves.recorded import BakedKeys
 from .curves.session import Report, Session
 from .curves.surroundings import Surroundings
@@ -172,7 +171,8 @@ def begin(
     if wrong := [each for each in avoid if not isinstance(each, bpy.types.Object)]:
         raise MobiusFlowError(f"avoid has {wrong[0]!r:.40}, which is not an object")
     surroundings = Surroundings.of(avoid, [*objects, *goals])
-    return Session(objects, relax_options(values), options, continues, surroundings, Held.of(values), goals)
+    pins, tangents = values.get("pins", ()), values["pin_tangents"]
+    return Session(objects, relax_options(values), options, continues, surroundings, pins, tangents, goals)
 
 
 def implied(given: Collection[str]) -> dict[str, Any]:

@@ -160,12 +160,8 @@ def clear(obj: bpy.types.Object) -> None:
     A bevel that was changed since the keys were written stays, and so do the materials that splines were given, but
     for those of goals.
     """
-    data = obj.data
-    before, bevel_depth, (first, last) = (
-        original(data),
-        data[_RECORD]["bevel_depth"],
-        data[_RECORD].get("slots", (0, 0)),
-    )
+    data, record = obj.data, obj.data[_RECORD]
+    before, bevel_depth, (first, last) = record["original"], record["bevel_depth"], record.get("slots", (0, 0))
     keyed = {curve.data_path for curve in (fcurves_of(data) if data in animated(data) else ())}
     slots = [spline.material_index for spline in data.splines]
     forget(obj)
@@ -192,19 +188,17 @@ def forget(obj: bpy.types.Object) -> None:
 
 def _fingerprint(data: bpy.types.Curve) -> list[int]:
     """Counts of keys, F-curves and points, and which splines are open; -1 for animation that is not ours."""
-    keys = data.shape_keys
-    owner, moved = keys or data, data.animation_data
+    keys, moved, splines = data.shape_keys, data.animation_data, shape(data)
+    owner = keys or data
     blocks = 0 if keys is None else -1 if keys.use_relative else len(keys.key_blocks)
-    other = (
-        keys is not None and moved is not None and bool(moved.nla_tracks or (moved.action and count_own(data) is None))
-    )
     driven = owner.animation_data.drivers if owner.animation_data is not None else ()
     moving = "splines", "eval_time", "key_blocks"  # beginnings of paths of drivers that move points
-    other = other or any(driver.data_path.startswith(moving) for driver in driven)
+    other = any(driver.data_path.startswith(moving) for driver in driven)
+    if keys is not None and moved is not None:
+        other = other or bool(moved.nla_tracks or (moved.action and count_own(data) is None))
     own = None if other else count_own(owner)
-    splines = shape(data)
-    points, open_ones = sum(each.count for each in splines), [k for k, each in enumerate(splines) if not each.closed]
-    return [blocks, -1 if own is None else own, points, *open_ones]
+    open_ones = [k for k, (*_, closed) in enumerate(splines) if not closed]
+    return [blocks, -1 if own is None else own, sum(count for count, *_ in splines), *open_ones]
 
 
 def _digest(data: bpy.types.Curve) -> str:

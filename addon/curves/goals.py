@@ -10,7 +10,7 @@ from ...core.base.types import FloatArray
 from ...core.keys.key_options import Timing
 from ...core.keys.motion import Keys
 from .fcurves import CONSTANT
-from .keyframes import FCurves, there_and_back
+from .keyframes import add_keys, there_and_back
 from .splines import Reference, read_link
 
 
@@ -80,9 +80,8 @@ class Goals:
             if len(frames) == 1:
                 spline.material_index = slots[-1]
             elif len(set(slots)) > 1:
-                curves = FCurves(obj.data, f"{obj.name} Materials")
-                values = np.array(slots, dtype=np.float64)
-                curves.add(f"splines[{k}].material_index", 0, *there_and_back(times, values, timing), CONSTANT)
+                keyed = there_and_back(times, np.array(slots, dtype=np.float64), timing)
+                add_keys(obj.data, f"{obj.name} Materials", f"splines[{k}].material_index", 0, *keyed, CONSTANT)
 
     def hide(self, objects: Sequence[bpy.types.Object]) -> None:
         """Hide the goals that objects have reached, since both would flicker in one place, and leave those selected."""

@@ -57,14 +57,13 @@ def writing(
             yield
         data.shape_keys.use_relative = False
         data.shape_keys.eval_time = 0
-        curves = FCurves(data.shape_keys, f"{obj.name} Relaxation")
-        curves.add("eval_time", 0, *there_and_back(frames, there - skipped + np.arange(float(len(frames))), timing))
+        values = there - skipped + np.arange(float(len(frames)))
+        add_keys(data.shape_keys, f"{obj.name} Relaxation", "eval_time", 0, *there_and_back(frames, values, timing))
     elif output is Output.FCURVES:  # one for every coordinate of every point
-        curves = FCurves(data, f"{obj.name} Relaxation")
         values = np.stack([key.points for key in keys.keys], axis=-1).astype(np.float64)
         for path, point in zip(point_paths(data), values, strict=True):
             for axis in range(3):
-                curves.add(path, axis, frames, point[axis])
+                add_keys(data, f"{obj.name} Relaxation", path, axis, frames, point[axis])
             yield
 
 
@@ -208,32 +207,28 @@ def mirror(curve: bpy.types.FCurve, middle: float) -> None:
     curve.update()
 
 
-class FCurves:
-    """The F-curves of the action on a datablock, which gets a new one if it has none."""
+def add_keys(
+    block: bpy.types.ID, name: str, path: str, axis: int, frames: FloatArray, values: FloatArray, kind: int = LINEAR
+) -> None:
+    """Add keys to an F-curve of a datablock's action; keys not after its last one are left out.
 
-    def __init__(self, block: bpy.types.ID, name: str) -> None:
-        if not (block.animation_data and block.animation_data.action):
-            animation = block.animation_data_create()
-            animation.action = action = new_action(name, block.id_type, block.name)
-            action[_MARK] = True
-            if hasattr(animation, "action_slot"):
-                animation.action_slot = action.slots[0]
-        (self._fcurves,) = _own_collections(block)
-
-    def add(self, path: str, axis: int, frames: FloatArray, values: FloatArray, kind: int = LINEAR) -> None:
-        """Add keys to an F-curve, made if there is none; keys not after its last one are left out."""
-        curve = self._fcurves.find(path, index=axis) or self._fcurves.new(path, index=axis)
-        points = curve.keyframe_points
-        if len(points):
-            later = frames > points[-1].co[0]
-            frames, values = frames[later], values[later]
-        first = len(points)
-        points.add(len(frames))
-        places = np.empty((len(points), 2), dtype=np.float32)
-        kinds = np.empty(len(points), dtype=np.int32)
-        points.foreach_get("co", places.ravel())
-        points.foreach_get("interpolation", kinds)
-        places[first:], kinds[first:] = np.column_stack([frames, values]), kind
-        points.foreach_set("co", places.ravel())
-        points.foreach_set("interpolation", kinds)
-        curve.update()
+    What is not there is made: the F-curve, and an action of this name.
+    """
+    if not (block.animation_data and block.animation_data.action):
+        animation = block.animation_data_create()
+        animation.action = action = new_action(name, block.id_type, block.name)
+        action[_MARK] = True
+        if hasattr(animation, "action_slot"):
+            animation.action_slot = action.slots[0]
+    (fcurves,) = _own_collections(block)
+    curve = fcurves.find(path, index=axis) or fcurves.new(path, index=axis)
+    points, first = curve.keyframe_points, len(curve.keyframe_points)
+    if first:
+        later = frames > points[-1].co[0]
+        frames, values = frames[later], values[later]
+    points.add(len(frames))
+    places, kinds = read(points, "co", 2), read(points, "interpolation", dtype=np.int32)
+    places[first:], kinds[first:] = np.column_stack([frames, values]), kind
+    points.foreach_set("co", places.ravel())
+    points.foreach_set("interpolation", kinds)
+    curve.update()

@@ -97,7 +97,7 @@ class Member:
         if obj.mode != "OBJECT":
             return Message("'{name}' is being edited", name=self.name)
         if shape(data) != self._shape:
-            counts = [each.count for each in shape(data)] != [each.count for each in self._shape]
+            counts = [count for count, *_ in shape(data)] != [count for count, *_ in self._shape]
             changed = "Points of '{name}' were added or removed" if counts else "Splines of '{name}' were changed"
             return Message(changed, name=self.name)
         if data.shape_keys is not None and not self.keyed:  # they fit the points it has now

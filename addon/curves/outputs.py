@@ -11,7 +11,7 @@ from ...core.base.types import FloatArray
 from ...core.curve.tube import caps, quads, rings
 from ...core.keys.smooth_fit import SmoothFit, bezier_points, fitted
 from . import bevel
-from .keyframes import FCurves
+from .keyframes import add_keys
 from .recorded import Recorded
 from .sizes import placement
 from .splines import read
@@ -62,17 +62,8 @@ def tube_object(obj: bpy.types.Object, recorded: Recorded, radii: FloatArray, si
     curve, surface = recorded.mesh, rings(recorded.points, radii, recorded.mesh, sides)
     mesh = bpy.data.meshes.new(f"{obj.name} Tube")
     ends = caps(curve, sides)[: None if obj.data.use_fill_caps else 0]
-    faces = [quads(curve, sides), ends]
-    round_ = np.concatenate([each.ravel() for each in faces])  # the corners of faces, one after the other
-    sizes = np.concatenate([np.full(len(each), each.shape[1]) for each in faces])
-    mesh.vertices.add(len(surface[0]))
-    mesh.vertices.foreach_set("co", surface[0].astype(np.float32).ravel())
-    mesh.loops.add(len(round_))
-    mesh.loops.foreach_set("vertex_index", round_.astype(np.int32))
-    mesh.polygons.add(len(sizes))
-    mesh.polygons.foreach_set("loop_start", (np.cumsum(sizes) - sizes).astype(np.int32))
-    mesh.polygons.foreach_set("use_smooth", np.arange(len(sizes)) < len(faces[0]))
-    mesh.update(calc_edges=True)
+    mesh.from_pydata(surface[0].tolist(), [], [*quads(curve, sides).tolist(), *ends.tolist()])
+    mesh.polygons.foreach_set("use_smooth", np.arange(len(mesh.polygons)) < len(mesh.polygons) - len(ends))
     made = _object_like(obj, mesh)
     made[TUBE_OF] = obj
     corners = np.concatenate([curve.tails.repeat(sides), curve.ends.ravel()])  # a curve vertex of each face
@@ -85,10 +76,9 @@ def tube_object(obj: bpy.types.Object, recorded: Recorded, radii: FloatArray, si
         for frame, shape in zip(frames, surface, strict=True):
             block = made.shape_key_add(name=f"Frame {frame:g}", from_mix=False)
             block.data.foreach_set("co", shape.astype(np.float32).ravel())
-        curves = FCurves(mesh.shape_keys, f"{made.name} Motion")
         for k, block in enumerate(mesh.shape_keys.key_blocks[1:], 1):
-            near = frames[k - 1 : k + 2]
-            curves.add(f'key_blocks["{block.name}"].value', 0, near, np.array([0.0, 1.0, 0.0])[: len(near)])
+            near, path = frames[k - 1 : k + 2], f'key_blocks["{block.name}"].value'
+            add_keys(mesh.shape_keys, f"{made.name} Motion", path, 0, near, np.array([0.0, 1.0, 0.0])[: len(near)])
     return made
 
 

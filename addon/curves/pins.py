@@ -6,9 +6,7 @@ knows of no custom properties), copies, joined objects. Where edges are refined,
 pinned too, and no others.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Sequence
 
 import bpy
 import numpy as np
@@ -19,22 +17,7 @@ from ...core.base.types import BoolArray, IntArray
 from ...core.keys.placement import Frame
 from .splines import control_points, coordinates, kind, read
 
-
-@dataclass(frozen=True)
-class Held:
-    """What is pinned besides the marked points."""
-
-    points: tuple[int, ...] = ()  # indices of points, counted from 0 through all splines of all objects
-    tangents: bool = False  # whether the neighbours of pinned points in the refined curve are pinned too
-
-    @classmethod
-    def of(cls, values: Mapping[str, Any]) -> "Held":
-        return cls(values.get("pins", ()), values["pin_tangents"])
-
-
-FREE = Held()
-_MARK = "weight_softbody"
-_PINNED, _FREE = 100.0, 1.0
+_MARK, _PINNED = "weight_softbody", 100.0
 
 
 def marked(spline: bpy.types.Spline) -> BoolArray:
@@ -48,7 +31,7 @@ def pin(spline: bpy.types.Spline, chosen: BoolArray) -> None:
 
 def unpin(spline: bpy.types.Spline, chosen: BoolArray) -> None:
     """Let pinned points of a spline, (points,), move again; others keep the weights that they have."""
-    _mark(spline, chosen & marked(spline), _FREE)
+    _mark(spline, chosen & marked(spline), 1.0)
 
 
 def ends(spline: bpy.types.Spline) -> BoolArray:

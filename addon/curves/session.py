@@ -28,7 +28,7 @@ from ..engine.worker import begun, in_common_space
 from . import bake, bevel
 from .goals import Goals
 from .member import Member
-from .pins import FREE, Held, pin, pinned_vertices, unpin
+from .pins import pin, pinned_vertices, unpin
 from .sizes import placement
 from .splines import coordinates, read_link, stretch
 from .surroundings import NOTHING, Surroundings
@@ -97,8 +97,9 @@ class Session:
 
     `requirements` accept the objects, and their transforms are evaluated. They show stand-ins until all is written, or
     until `discard`. Where the run ``continues``, baked curves are relaxed on from the ends of their animations, and
-    keys are added to theirs. ``goals``: curve objects that the link is to become, one after the other; by default it is
-    relaxed alone.
+    keys are added to theirs. ``pins``: points that are pinned besides the marked ones, counted from 0 through all
+    splines of all objects; ``pin_tangents``: whether the neighbours of pinned points in the refined curve are, too.
+    ``goals``: curve objects that the link is to become, one after the other; by default it is relaxed alone.
 
     ``curve``: all splines as polygons in world space; ``link``: where their vertices are stored; ``outcome``: how the
     relaxation ended, once it has.  Raises MobiusFlowError if the curves cannot be relaxed, or there is no room for
@@ -112,7 +113,8 @@ class Session:
         key_options: KeyOptions,
         continues: bool = False,
         surroundings: Surroundings = NOTHING,
-        held: Held = FREE,
+        pins: Sequence[int] = (),
+        pin_tangents: bool = False,
         goals: Sequence["bpy.types.Object"] = (),
     ) -> None:
         key_options.check_room(options.max_iterations)
@@ -123,8 +125,8 @@ class Session:
         self._begin(objects)
         try:
             self.goals = Goals(goals, self.curve)
-            pins = tuple(sorted({*held.points, *pinned_vertices(objects, self.curve.mesh)}))
-            obstacles, tangents = surroundings.obstacles, held.tangents and bool(pins)
+            pins = tuple(sorted({*pins, *pinned_vertices(objects, self.curve.mesh)}))
+            obstacles, tangents = surroundings.obstacles, pin_tangents and bool(pins)
             self.task = Task(curve=self.curve, obstacles=obstacles, pins=pins, pin_tangents=tangents)
             if pins or obstacles:
                 key_options.check_place()

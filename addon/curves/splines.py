@@ -85,17 +85,9 @@ class Splines:
         data.update_tag()
 
 
-@dataclass(frozen=True)
-class SplineShape:
-    """A spline apart from the positions of its points: its type, their number, and whether it is closed."""
-
-    type: str
-    count: int
-    closed: bool
-
-
-def shape(data: bpy.types.Curve) -> list[SplineShape]:
-    return [SplineShape(each.type, len(control_points(each)), bool(each.use_cyclic_u)) for each in data.splines]
+def shape(data: bpy.types.Curve) -> list[tuple[int, str, bool]]:
+    """The splines apart from the positions of their points: their number, the type, and whether it is closed."""
+    return [(len(control_points(each)), each.type, bool(each.use_cyclic_u)) for each in data.splines]
 
 
 def digest(data: bpy.types.Curve) -> bytes:

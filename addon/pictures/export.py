@@ -79,7 +79,7 @@ def write_movie(
             rendering.use_workbench(scene, *_FILM)
         else:
             rendering.use_cycles(scene, LOOKS[DEFAULT], *_FILM_WITHOUT_DRIVER)
-            scene.frame_step, scene.render.fps = 2, rendering.FRAME_RATE // 2
+            scene.frame_step, scene.render.fps = 2, scene.render.fps // 2
 
     scene, certified = _played(iterates, set_up, playing)
     _make(path, lambda temporary: movie.render_movie(scene, temporary, progress))

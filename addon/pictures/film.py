@@ -17,7 +17,7 @@ from ..curves.keyframes import all_fcurves, mirror
 from ..curves.splines import new_curve_data
 from . import rendering, stage
 from .looks import DEFAULT, LOOKS
-from .materials import colour_components
+from .materials import bundled, colour_components
 
 
 def empty_scene() -> bpy.types.Scene:
@@ -64,12 +64,9 @@ def compose(
         passed = np.cumsum((lengths / lengths.sum(axis=1, keepdims=True)).mean(axis=0))
         along = np.concatenate([[0.0], passed / passed[-1]])
     colour_components(data, look=look, along=along)
-    if cut_out:
-        ground = stage.Stage.from_above(points)
-    else:
-        # up is where the last shape extends least, rather up than down
-        least = np.linalg.svd(points[-1] - points[-1].mean(axis=0, dtype=np.float64), full_matrices=False)[2][2]
-        ground = stage.Stage.around(points, least * np.sign(least[np.abs(least).argmax()]))
+    # up is where the last shape extends least, rather up than down
+    least = np.linalg.svd(points[-1] - points[-1].mean(axis=0, dtype=np.float64), full_matrices=False)[2][2]
+    ground = stage.Stage.around(points, None if cut_out else least * np.sign(least[np.abs(least).argmax()]))
     size = scene.render.resolution_x, scene.render.resolution_y
     floor = stage.build(scene.collection, ground, LOOKS[look])
     floor.is_shadow_catcher = scene.render.film_transparent = cut_out
@@ -77,7 +74,8 @@ def compose(
     if playing.timing.loop:
         for curve in all_fcurves():
             mirror(curve, frames[-1] + playing.timing.hold_end)
-    scene.world = stage.sky(LOOKS[look], "World")
+    scene.world = bundled("worlds", LOOKS[look].label)
+    scene.world.name = "World"
     key = next(each for each in scene.collection.objects if each.type == "LIGHT")
     stage.light_workbench(scene, key.matrix_world.col[2][:3])
     if origin is not None and (origin.scale != 1.0 or origin.location.any()):

@@ -13,7 +13,6 @@ import bpy
 from ...core.base.deadline import signals_wait
 from .looks import Look
 
-FRAME_RATE = 24
 NOT_WHOLE = "Blender did not finish writing it; is the disk full?"
 _TRIAL = """
 import bpy
@@ -76,7 +75,7 @@ def look_plain(scene: bpy.types.Scene) -> None:
 def _set_size(scene: bpy.types.Scene, width: int, height: int) -> None:
     render = scene.render
     render.resolution_x, render.resolution_y, render.resolution_percentage = width, height, 100
-    render.fps = FRAME_RATE
+    render.fps = 24
     render.use_persistent_data = True
 
 

@@ -1,7 +1,7 @@
 """A scene to show a curve in: a camera that follows it gently, lights, a floor below it, and materials."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import bpy
 import numpy as np
@@ -12,13 +12,9 @@ from scipy.ndimage import maximum_filter1d, uniform_filter1d
 from ...core.base.types import FloatArray
 from ...core.curve.refine import interpolated
 from ...core.keys.placement import Frame
-from ..curves.keyframes import FCurves
+from ..curves.keyframes import add_keys
 from .looks import Look
 from .materials import bundled
-
-_LENS = 60.0  # mm
-_SENSOR = 36.0  # mm
-_CALM = 25  # frames over which the camera's way is smoothed
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,26 +25,23 @@ class Stage:
     middle: FloatArray
     size: float  # largest distance of what is shown from the middle
     elevation: float  # of the camera over the floor, in radians
-    margin: float = 1.14  # how much more than the tube the camera sees
+    margin: float  # how much more than the tube the camera sees
 
     @classmethod
-    def around(cls, shown: Sequence[Frame | FloatArray], up: FloatArray) -> "Stage":
-        """Take in everything shown, arrays of shape (n, 3), to be seen well; ``up``: a direction, (3,)."""
-        return cls._around(shown, *facing(shown, up))
+    def around(cls, shown: Sequence[Frame | FloatArray], up: FloatArray | None) -> "Stage":
+        """Take in everything shown, arrays of shape (n, 3).
 
-    @classmethod
-    def from_above(cls, shown: Sequence[Frame | FloatArray]) -> "Stage":
-        """Take in everything shown as it lies, seen down the third axis."""
-        elevation = np.radians(89.5)  # a camera at 90 would not know what is upright
-        return replace(cls._around(shown, np.eye(3), elevation), margin=1.7)  # wide, for shadows
-
-    @classmethod
-    def _around(cls, shown: Sequence[Frame | FloatArray], axes: FloatArray, elevation: float) -> "Stage":
+        It is to be seen well, if ``up`` is a direction, (3,), or else as it lies, down the third axis.
+        """
+        # a camera at 90 degrees would not know what is upright; the wide margin is for shadows
+        axes, elevation, margin = np.eye(3), float(np.radians(89.5)), 1.7
+        if up is not None:
+            (axes, elevation), margin = facing(shown, up), 1.14
         along = [points @ axes.T for points in shown]
         low = np.min([each.min(axis=0) for each in along], axis=0)
         middle = 0.5 * (low + np.max([each.max(axis=0) for each in along], axis=0))
         size = max(float(np.linalg.norm(each - middle, axis=1).max()) for each in along)
-        return cls(axes, middle @ axes, size, elevation)
+        return cls(axes, middle @ axes, size, elevation, margin)
 
 
 def facing(shapes: Sequence[Frame | FloatArray], up: FloatArray) -> tuple[FloatArray, float]:
@@ -110,13 +103,6 @@ def add(collection: bpy.types.Collection, name: str, data: bpy.types.ID) -> bpy.
     return obj
 
 
-def sky(look: Look, name: str) -> bpy.types.World:
-    """A world of an even light."""
-    world = bundled("worlds", look.label)
-    world.name = name
-    return world
-
-
 def follow(
     collection: bpy.types.Collection,
     size: tuple[float, float],
@@ -131,11 +117,11 @@ def follow(
     It swings around the stage, looks at an empty and is focused there. ``size`` is that of its pictures, in any unit;
     the floor is at the height of the stage's middle; points are the vertices, (n, 3), of every key.
     """
-    data = bpy.data.cameras.new("Camera")
-    data.lens, data.sensor_width = _LENS, _SENSOR
+    data, calm = bpy.data.cameras.new("Camera"), 25  # frames over which its way is smoothed
+    data.lens, data.sensor_width = 60.0, 36.0  # mm
     camera, focus = add(collection, "Camera", data), add(collection, "Focus", None)
     every = np.arange(np.floor(frames[0]), np.ceil(frames[-1]) + 1)
-    slopes = 0.5 * _SENSOR / _LENS * np.array(size) / max(size)  # tangents of half the angles of view
+    slopes = 0.5 * data.sensor_width / data.lens * np.array(size) / max(size)  # tangents of half the angles of view
     stacked, places = np.stack(points).astype(np.float64), np.interp(every, frames, np.arange(len(frames)))
     shapes = [(interpolated(stacked, at[None])[0] - stage.middle) @ stage.axes.T for at in places]
     views = []  # right, up and backward, in the stage's axes, rows; once to either side in a film
@@ -151,12 +137,17 @@ def follow(
     high = [(p[:, :2] + p[:, 2:] * slopes + r).max(axis=0) for p, r in zip(seen, reaches, strict=True)]
     low = [(p[:, :2] - p[:, 2:] * slopes - r).min(axis=0) for p, r in zip(seen, reaches, strict=True)]
     centres = [0.5 * (a + b) @ view[:2] for a, b, view in zip(high, low, views, strict=True)]
-    targets = uniform_filter1d(np.array(centres), _CALM, axis=0, mode="nearest")
+    targets = uniform_filter1d(np.array(centres), calm, axis=0, mode="nearest")
     looked = np.array([view @ target for view, target in zip(views, targets, strict=True)])
     needed = np.maximum(high - looked[:, :2], looked[:, :2] - low) / slopes - looked[:, 2:]
-    distances = _calm(needed.max(axis=1))
+
+    def bounded(values: FloatArray) -> FloatArray:
+        """A smooth upper bound of values in consecutive frames: the mean of the largest nearby."""
+        return np.asarray(uniform_filter1d(maximum_filter1d(values, calm, mode="nearest"), calm, mode="nearest"))
+
+    distances = bounded(needed.max(axis=1))
     heights = np.array([((p - stage.middle) @ stage.axes[2]).min() for p in points]) - 1.02 * radii
-    lows = -_calm(-np.interp(every, frames, heights))
+    lows = -bounded(-np.interp(every, frames, heights))
     _move(focus, stage.middle + targets @ stage.axes, every)
     _move(camera, stage.middle + (targets + distances[:, None] * np.array(views)[:, 2]) @ stage.axes, every)
     _move(floor, stage.middle + lows[:, None] * stage.axes[2], every)
@@ -166,19 +157,13 @@ def follow(
     data.clip_start, data.clip_end = 1e-2 * distances.min(), 1e2 * distances.max()
     data.dof.use_dof, data.dof.focus_object = True, focus
     # what is a size of the stage off the focus is softened by 0.03 of one; a lens is measured in millimetres
-    data.dof.aperture_fstop = 1e-3 * _LENS / (0.03 * stage.size)
+    data.dof.aperture_fstop = 1e-3 * data.lens / (0.03 * stage.size)
     return camera
-
-
-def _calm(values: FloatArray) -> FloatArray:
-    """A smooth upper bound of values in consecutive frames: the mean of the largest nearby."""
-    return np.asarray(uniform_filter1d(maximum_filter1d(values, _CALM, mode="nearest"), _CALM, mode="nearest"))
 
 
 def _move(obj: bpy.types.Object, places: FloatArray, frames: FloatArray) -> None:
     """Put an object where it is in the first frame, and let it move if it does."""
     obj.location = places[0]
     if len(places) > 1 and np.ptp(places, axis=0).max() > 0:
-        curves = FCurves(obj, f"{obj.name} Motion")
         for axis in range(3):
-            curves.add("location", axis, frames, places[:, axis])
+            add_keys(obj, f"{obj.name} Motion", "location", axis, frames, places[:, axis])

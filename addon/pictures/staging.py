@@ -17,7 +17,7 @@ from ..curves.splines import read
 from ..curves.surroundings import STAGE, TUBE_OF, WITHOUT_SHAPE
 from . import stage
 from .looks import LOOKS, ON_STAGE
-from .materials import colour_components
+from .materials import bundled, colour_components
 
 _NAME = "Stage"
 # of its collection: what the scene had before, and what it was set up around
@@ -69,8 +69,8 @@ def set_up(
     if use_camera:
         collection[_CAMERA], scene.camera = scene.camera, eye
     if use_world:
-        collection[_WORLD], scene.world = scene.world, stage.sky(style, _NAME)
-        scene.world[STAGE] = True
+        collection[_WORLD], scene.world = scene.world, bundled("worlds", style.label)
+        scene.world.name, scene.world[STAGE] = _NAME, True
     return collection
 
 
