@@ -15,7 +15,7 @@ PLANE_ROUNDING = 32 * 2.0**-53
 
 Differences of coordinates are relatively exact, one unit roundoff u; a dot product of m ≤ 3 terms adds m, the
 combination of D, e and f or g two, the interpolation in time three, this bound's own evaluation a few: below 16 u.
-Twice that is taken.  tests/core/collision/test_decisions.py
+Twice that is taken.  tests/core/collision/test_embedded.py
 """
 
 PLANE_UNDERFLOW = 1e-300
@@ -56,4 +56,4 @@ tests/core/proof/test_filter.py
 """
 
 SIEVE_UNDERFLOW = 1e-290
-"""What products may lose below 2⁻¹⁰²², with much to spare.  tests/core/proof/test_files.py"""
+"""What products may lose below 2⁻¹⁰²², with much to spare: no motion is known for which it is needed."""
