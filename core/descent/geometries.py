@@ -99,7 +99,7 @@ class Penalised:
         penalty = self.penalty if problem.metric.extends_penalty else 0.0
         constraints = problem.constraints
         rows = ConstraintDerivative.of_lengths(curve, constraints.pins.vertices)
-        return inner.whole_space(replace(rows, symmetry=constraints.symmetry), penalty * constraints.lengths)
+        return inner.tangent_space(replace(rows, symmetry=constraints.symmetry), penalty * constraints.lengths)
 
     def residual(self, problem: Problem, curve: Curve) -> FloatArray:
         """Every polygon is allowed: 0."""

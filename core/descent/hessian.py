@@ -10,18 +10,16 @@ SciPy's solvers do not serve: ARPACK's may miss copies of multiple eigenvalues, 
 takes forces normal to the constraints for errors, and solves small problems in the whole space.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.deadline import check_time
 from ..base.types import FloatArray
 from ..energies.moebius import OwnBlocks
 from ..solve.saddle import TangentSpace
+from ..solve.saddle.krylov import LinearMap, conjugate_gradients
 from .problem import Point
 
-LinearMap = Callable[[FloatArray], FloatArray]
 ASSEMBLED_SIZE = 3000  # unknowns up to which one assembled matrix beats products that go through all pairs
 BULK = 0.1  # against J_C: flat and soft directions of knots are below, all others above
 
@@ -74,30 +72,18 @@ def projected_conjugate_gradient(
     """Solve ⟨operator w − right, v⟩ = 0 for all tangent v, for tangent w, preconditioned by the metric of ``space``.
 
     The operator is symmetric, (n, m) to (n, m), the right side a covector, shape (n, m), and the tolerance relative to
-    its norm. Steihaug's rule: on a direction of negative curvature the iteration ends with what it has (the first time
-    with that direction's steepest-descent step), so the result is a direction of descent of the quadratic model.
+    its norm.  By Steihaug's rule the result is a direction of descent of the quadratic model.
     """
-    w = np.zeros_like(right)
-    residual = right.copy()
-    z = space.gradient(residual)[0]
-    square = float(np.sum(residual * z))
-    bound = tolerance**2 * square
-    direction = z
-    for _ in range(max_iterations):
-        if not square > bound:
-            break
-        check_time()
-        image = operator(direction)
-        curvature = float(np.sum(direction * image))
-        if curvature <= 0.0:
-            return w if np.any(w) else direction
-        step = square / curvature
-        w = w + step * direction
-        residual = residual - step * image
-        z = space.gradient(residual)[0]
-        square, last = float(np.sum(residual * z)), square
-        direction = z + (square / last) * direction
-    return w
+    first = 0.0
+
+    def precondition(r: FloatArray, decreases: list[float]) -> tuple[FloatArray, FloatArray] | None:
+        nonlocal first
+        z = space.gradient(r)[0]
+        square = float(np.sum(r * z))
+        first = first if decreases else square
+        return (z, r) if square > tolerance**2 * first else None
+
+    return conjugate_gradients(operator, precondition, right, max_iterations, indefinite=True)
 
 
 @dataclass(frozen=True, eq=False)

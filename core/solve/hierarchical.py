@@ -27,7 +27,7 @@ from .metrics.local import lumped_mass, mass, stiffness
 from .metrics.moebius import pair_kernels
 from .pair_forms import PairForms, RunningSum
 from .saddle import TangentSpace
-from .saddle.iterative import IterativeTangentSpace, IterativeWholeSpace, Tolerances
+from .saddle.iterative import IterativeTangentSpace, Tolerances
 from .saddle.krylov import conjugate_gradients, relative
 from .saddle.models import Resolvents, TwoLevel
 from .saddle.symbol import Circulants
@@ -35,8 +35,6 @@ from .saddle.symbol import Circulants
 FarForm = tuple[RunningSum, sp.csr_array]
 MAX_VERTICES = 200_000  # some 3 GB, and half a minute a step
 EVEN_RATIO = 20.0  # of the longest edge of a component to its shortest, up to which Fourier transforms are faster
-SOLVED = 1e-10  # relative error of A⁻¹ f
-MAX_ITERATIONS = 1000
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +55,7 @@ class CompressedInnerProduct:
         return np.asarray(product + self.vectors @ (self.vectors.T @ u))
 
     def solve(self, f: FloatArray) -> FloatArray:
-        return conjugate_gradients(self.apply, self.model.solve, f, relative(SOLVED), MAX_ITERATIONS)
+        return conjugate_gradients(self.apply, relative(self.model.solve, 1e-10), f, 1000)
 
     def plus(self, other: InnerProduct, weight: float = 1.0) -> InnerProduct:
         """The sum: compressed with a sparse one or another compressed one, otherwise dense."""
@@ -79,11 +77,8 @@ class CompressedInnerProduct:
         matrix = self.apply(np.eye(len(self.curve)))
         return 0.5 * (matrix + matrix.T)
 
-    def tangent_space(self, constraints: ConstraintDerivative) -> TangentSpace:
-        return IterativeTangentSpace(self, constraints, self.tolerances)
-
-    def whole_space(self, constraints: ConstraintDerivative, weights: FloatArray) -> TangentSpace:
-        return IterativeWholeSpace(self, constraints, weights, self.tolerances)
+    def tangent_space(self, constraints: ConstraintDerivative, weights: FloatArray | None = None) -> TangentSpace:
+        return IterativeTangentSpace(self, constraints, self.tolerances, weights)
 
     @cached_property
     def model(self) -> TwoLevel:

@@ -18,14 +18,7 @@ from ...curve.pins import NOWHERE
 from ...energies.quadrature import Rule
 from ..constraints import ConstraintDerivative
 from ..saddle import TangentSpace
-from ..saddle.dense import (
-    DenseTangentSpace,
-    DenseWholeSpace,
-    SparseTangentSpace,
-    SparseWholeSpace,
-    cholesky,
-    factorised,
-)
+from ..saddle.dense import DenseTangentSpace, SparseTangentSpace, cholesky, factorised
 
 MAX_DENSE_ROWS = 12_000  # some six matrices of so many rows make 7 GB
 MAX_SPARSE_ROWS = 50_000  # energies, sums over all pairs of edges, take half a minute there
@@ -47,11 +40,8 @@ class InnerProduct(Protocol):
     def dense(self) -> FloatArray:
         """A, shape (n, n), for tests and for other dense matrices."""
 
-    def tangent_space(self, constraints: ConstraintDerivative) -> TangentSpace:
-        """The tangent space of constraints with this inner product."""
-
-    def whole_space(self, constraints: ConstraintDerivative, weights: FloatArray) -> TangentSpace:
-        """The whole space with J + Cᵀ w C, weights w ≥ 0 of shape (rows of C,)."""
+    def tangent_space(self, constraints: ConstraintDerivative, weights: FloatArray | None = None) -> TangentSpace:
+        """The tangent space of constraints with this inner product, or with weights the whole space."""
 
 
 class DenseInnerProduct:
@@ -78,11 +68,8 @@ class DenseInnerProduct:
     def dense(self) -> FloatArray:
         return _filled(self._matrix.copy(order="F"))
 
-    def tangent_space(self, constraints: ConstraintDerivative) -> TangentSpace:
-        return DenseTangentSpace(self._vanishing_at(constraints.pins), constraints)
-
-    def whole_space(self, constraints: ConstraintDerivative, weights: FloatArray) -> TangentSpace:
-        return DenseWholeSpace(self._vanishing_at(constraints.pins), constraints, weights)
+    def tangent_space(self, constraints: ConstraintDerivative, weights: FloatArray | None = None) -> TangentSpace:
+        return DenseTangentSpace(self._vanishing_at(constraints.pins), constraints, weights)
 
     def _vanishing_at(self, pins: IntArray) -> "DenseInnerProduct":
         """The same on functions that vanish at pins; kept, with its inverse, as a metric outlives tangent spaces."""
@@ -127,11 +114,8 @@ class SparseInnerProduct:
     def dense(self) -> FloatArray:
         return np.asarray(self.matrix.toarray())
 
-    def tangent_space(self, constraints: ConstraintDerivative) -> TangentSpace:
-        return SparseTangentSpace(self.matrix, constraints)
-
-    def whole_space(self, constraints: ConstraintDerivative, weights: FloatArray) -> TangentSpace:
-        return SparseWholeSpace(self.matrix, constraints, weights)
+    def tangent_space(self, constraints: ConstraintDerivative, weights: FloatArray | None = None) -> TangentSpace:
+        return SparseTangentSpace(self, constraints, weights)
 
     @cached_property
     def _factor(self) -> SuperLU:

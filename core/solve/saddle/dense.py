@@ -17,65 +17,46 @@ from scipy.sparse.linalg import SuperLU, splu
 from ...base.types import FloatArray
 from ...energies.edge_pairs import ROWS_TIMES_COLUMNS
 from ..constraints import ConstraintDerivative
-from .tangent_space import TangentSpace, WholeSpace
+from .tangent_space import Applied, TangentSpace
 
 
-class WithInverse(Protocol):
+class WithInverse(Applied, Protocol):
     """A Gram matrix A whose inverse is at hand, on functions that vanish at pins continued by 0."""
 
     @property
     def inverse(self) -> FloatArray:
         """A⁻¹ in full, shape (n, n), in Fortran order."""
 
-    def apply(self, u: FloatArray) -> FloatArray:
-        """A u, shape (n, k)."""
-
     def solve(self, f: FloatArray) -> FloatArray:
         """A⁻¹ f, shape (n, k)."""
 
 
 class DenseTangentSpace(TangentSpace):
-    """Constraints of full rank, J = A ⊗ Id_m; LinAlgError unless A and the Schur complement are positive definite."""
+    """Constraints of full rank, or any with weights; LinAlgError unless A and the Schur complement are definite."""
 
-    def __init__(self, inner: WithInverse, constraints: ConstraintDerivative) -> None:
-        super().__init__(constraints)
-        self._inner = inner
-        self._schur = cholesky(_schur_complement(inner, constraints))
+    _inner: WithInverse
+
+    def __init__(
+        self, inner: WithInverse, constraints: ConstraintDerivative, weights: FloatArray | None = None
+    ) -> None:
+        super().__init__(inner, constraints, weights)
+        schur = _schur_complement(inner, constraints)
+        if weights is not None:  # (S + 1/w)⁻¹ = √w (√w S √w + 1)⁻¹ √w, a form that allows for w = 0
+            schur *= np.sqrt(np.multiply.outer(weights, weights))
+            schur[np.diag_indices_from(schur)] += 1.0
+        self._schur = cholesky(schur)
 
     def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
-        """Solve the Schur complement's system for λ, then for u."""
+        """Solve the Schur complement's system for λ, then for u; with weights by Sherman, Morrison and Woodbury."""
         c = self.constraints
         free = np.zeros(c.shape) if eta is None else self._inner.solve(eta)
         right = c.apply(free)
-        if xi is not None:
-            right -= xi
-        multipliers = substituted(self._schur, right)
-        return free - self._inner.solve(c.apply_transpose(multipliers)), multipliers
-
-    def apply(self, u: FloatArray) -> FloatArray:
-        return self._inner.apply(u)
-
-
-class DenseWholeSpace(WholeSpace):
-    """The whole space with J + Cᵀ w C: in (41) −1/w stands for the zero block, in a form that allows for w = 0."""
-
-    def __init__(self, inner: WithInverse, constraints: ConstraintDerivative, weights: FloatArray) -> None:
-        super().__init__(constraints, weights)
-        self._inner = inner
-        schur = _schur_complement(inner, constraints)
-        schur *= np.sqrt(np.multiply.outer(weights, weights))  # (S + 1/w)⁻¹ = √w (√w S √w + 1)⁻¹ √w
-        schur[np.diag_indices_from(schur)] += 1.0
-        self._schur = cholesky(schur)
-
-    def riesz(self, eta: FloatArray) -> FloatArray:
-        """By the identity of Sherman, Morrison and Woodbury."""
-        free, scale = self._inner.solve(eta), np.sqrt(self.weights)
-        pull = scale * substituted(self._schur, scale * self.constraints.apply(free))
-        return free - self._inner.solve(self.constraints.apply_transpose(pull))
-
-    def apply(self, u: FloatArray) -> FloatArray:
-        c = self.constraints
-        return self._inner.apply(u) + c.apply_transpose(self.weights * c.apply(u))
+        if self.weights is not None:
+            scale = np.sqrt(self.weights)
+            pull, multipliers = scale * substituted(self._schur, scale * right), np.zeros(c.count)
+        else:
+            pull = multipliers = substituted(self._schur, right if xi is None else right - xi)
+        return free - self._inner.solve(c.apply_transpose(pull)), multipliers
 
 
 def _schur_complement(inner: WithInverse, c: ConstraintDerivative) -> FloatArray:
@@ -118,64 +99,42 @@ def substituted(factor: FloatArray, right: FloatArray) -> FloatArray:
 
 
 class SparseTangentSpace(TangentSpace):
-    """The tangent space of constraints of full rank, with J = A ⊗ Id_m for a sparse A; LinAlgError if singular."""
+    """Constraints of full rank, or lengths with weights, for a sparse A; LinAlgError if singular."""
 
-    def __init__(self, gram: sp.csr_array, constraints: ConstraintDerivative) -> None:
-        super().__init__(constraints)
-        self._gram = gram
-        rows, m = len(constraints.edges), constraints.shape[1]
-        self._free = _free(constraints)
-        lengths, full = constraints.length_rows(), sp.kron(_vanishing(gram, constraints), sp.eye_array(m))
+    def __init__(self, inner: "Sparse", constraints: ConstraintDerivative, weights: FloatArray | None = None) -> None:
+        super().__init__(inner, constraints, weights)
+        n, m = constraints.shape
+        self._free = np.ones((n, 1))  # 0 at pins, whose rows and columns are those of the identity
+        self._free[constraints.pins] = 0.0
+        gram, free = inner.matrix, sp.diags_array(self._free[:, 0])
+        if len(constraints.pins):
+            gram = free @ gram @ free + sp.diags_array(1.0 - self._free[:, 0])
+        full, lengths = sp.kron(gram, sp.eye_array(m)), constraints.length_rows()
+        if weights is not None:
+            full, lengths = full + lengths.T @ sp.diags_array(weights) @ lengths, lengths[:0]
         self._factor = factorised(sp.block_array([[full, lengths.T], [lengths, None]]))
         border = np.reshape(list(constraints.border()), (-1, full.shape[0]))
-        self._border = np.hstack([border, np.zeros((len(border), rows))])
+        self._border = np.hstack([border, np.zeros((len(border), lengths.shape[0]))])
         self._response = self._factor.solve(self._border.T)
         self._held = self._border @ self._response
 
     def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
-        rows, (n, m) = len(self.constraints.edges), self.constraints.shape
-        eta = np.zeros((n, m)) if eta is None else self._free * eta
-        xi = np.zeros(self.constraints.count) if xi is None else xi
-        free = self._factor.solve(np.concatenate([eta.ravel(), xi[:rows]]))
-        pull = np.linalg.solve(self._held, self._border @ free - xi[rows:])
+        (n, m), c = self.constraints.shape, self.constraints
+        rows, size = len(c.edges) if self.weights is None else 0, n * m
+        force = np.zeros(size) if eta is None else (self._free * eta).ravel()
+        missing = np.zeros(c.count) if xi is None or self.weights is not None else xi
+        free = self._factor.solve(np.concatenate([force, missing[:rows]]))
+        pull = np.linalg.solve(self._held, self._border @ free - missing[len(c.edges) :])
         both = free - self._response @ pull
-        return both[: n * m].reshape(n, m), np.concatenate([both[n * m :], pull])
-
-    def apply(self, u: FloatArray) -> FloatArray:
-        return np.asarray(self._gram @ u)
+        return both[:size].reshape(n, m), np.concatenate([both[size:], np.zeros(len(c.edges) - rows), pull])
 
 
-class SparseWholeSpace(WholeSpace):
-    """The whole space with J + Cᵀ w C, which is sparse too."""
+class Sparse(Applied, Protocol):
+    """A Gram matrix that has few entries a row."""
 
-    def __init__(self, gram: sp.csr_array, constraints: ConstraintDerivative, weights: FloatArray) -> None:
-        super().__init__(constraints, weights)
-        self._free, lengths = _free(constraints), constraints.length_rows()
-        full = sp.kron(_vanishing(gram, constraints), sp.eye_array(constraints.shape[1]))
-        self._matrix = sp.csr_array(full + lengths.T @ sp.diags_array(weights) @ lengths)
-        self._factor = factorised(self._matrix)
-
-    def riesz(self, eta: FloatArray) -> FloatArray:
-        return np.asarray(self._factor.solve((self._free * eta).ravel())).reshape(eta.shape)
-
-    def apply(self, u: FloatArray) -> FloatArray:
-        """(J + Cᵀ w C) u, for u that vanishes at pins."""
-        return np.asarray(self._matrix @ u.ravel()).reshape(u.shape)
-
-
-def _free(constraints: ConstraintDerivative) -> FloatArray:
-    """0 at pins, 1 elsewhere; shape (n, 1)."""
-    free = np.ones((constraints.shape[0], 1))
-    free[constraints.pins] = 0.0
-    return free
-
-
-def _vanishing(gram: sp.csr_array, constraints: ConstraintDerivative) -> sp.csr_array:
-    """A where functions are free; rows and columns of pins are those of the identity."""
-    if not len(constraints.pins):
-        return gram
-    free = _free(constraints)[:, 0]
-    return sp.csr_array(sp.diags_array(free) @ gram @ sp.diags_array(free) + sp.diags_array(1.0 - free))
+    @property
+    def matrix(self) -> sp.csr_array:
+        """A, shape (n, n)."""
 
 
 def factorised(matrix: sp.sparray) -> SuperLU:

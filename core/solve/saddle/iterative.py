@@ -5,6 +5,7 @@ Conjugate gradients on ker C, flexible because their constraint preconditioner i
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -13,19 +14,9 @@ from ...base.arguments import checked_fields, number
 from ...base.types import FloatArray
 from ...curve import Curve
 from ..constraints import ConstraintDerivative, Constraints
-from .krylov import (
-    ROUNDING,
-    ConstraintPreconditioner,
-    Model,
-    conjugate_gradients,
-    flexible_conjugate_gradients,
-    relative,
-)
+from .krylov import ROUNDING, ConstraintPreconditioner, Model, conjugate_gradients, relative
 from .models import vanishing_at
-from .tangent_space import TangentSpace, WholeSpace
-
-MIN_FORCING = 1e-4  # relative residual of Newton's method for the constraints
-WINDOW = 2  # iterations, at least, whose decrease is the estimate of the error that is left
+from .tangent_space import Applied, TangentSpace
 
 
 @checked_fields
@@ -46,11 +37,8 @@ class Tolerances:
         return cls(gradient=error, preconditioner=error)
 
 
-class WithModel(Protocol):
+class WithModel(Applied, Protocol):
     """A Gram matrix A of which products are known, and a model that is cheaply inverted."""
-
-    def apply(self, u: FloatArray) -> FloatArray:
-        """A u, shape (n, k)."""
 
     @property
     def model(self) -> Model:
@@ -58,26 +46,34 @@ class WithModel(Protocol):
 
 
 class IterativeTangentSpace(TangentSpace):
-    """Constraints of full rank with J = A ⊗ Id_m; LinAlgError unless A is definite and iterations suffice."""
+    """Constraints of full rank, or any with weights; LinAlgError unless A is definite and iterations suffice."""
 
-    def __init__(self, inner: WithModel, constraints: ConstraintDerivative, tolerances: Tolerances) -> None:
-        super().__init__(constraints)
-        self._inner = inner
+    def __init__(
+        self,
+        inner: WithModel,
+        constraints: ConstraintDerivative,
+        tolerances: Tolerances,
+        weights: FloatArray | None = None,
+    ) -> None:
+        super().__init__(inner, constraints, weights)
         self._tolerances = tolerances
         self._model = vanishing_at(constraints.pins, inner.model, constraints.mesh)
-        self._preconditioner = ConstraintPreconditioner(self._model, constraints)
 
-    def apply(self, u: FloatArray) -> FloatArray:
-        return self._inner.apply(u)
+    @cached_property
+    def _preconditioner(self) -> ConstraintPreconditioner:
+        return ConstraintPreconditioner(self._model, self.constraints)
 
     def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
         """Solve for each of the two right sides, to its own tolerance."""
         u, multipliers = np.zeros(self.constraints.shape), np.zeros(self.constraints.count)
-        if (
-            eta is not None
-        ):  # of the tangent vector found the multiple with η·u = ⟨u, u⟩, which has the square of its error
+        if self.weights is not None:  # preconditioned by the model of J
+            precondition = relative(self._model.solve, self._tolerances.gradient)
+            right = u if eta is None else eta
+            return conjugate_gradients(self.apply, precondition, right, self._tolerances.max_iterations), multipliers
+        if eta is not None:
             found, multipliers = self._descend(eta, self._tolerances.gradient, 0.0)
             found = self._feasible(found, np.zeros(self.constraints.count))
+            # of the tangent vector found the multiple with η·u = ⟨u, u⟩, which has the square of its error
             square = float(np.sum(found * self.apply(found)))
             u = found * (float(np.sum(eta * found)) / square) if square > 0.0 else found
         if xi is not None:  # the shortest in the model, then the way from there along ker C to the shortest in J
@@ -89,12 +85,14 @@ class IterativeTangentSpace(TangentSpace):
 
     def project(self, u: FloatArray) -> FloatArray:
         """The orthogonal projection of u: less the shortest correction, a small one where u is nearly tangent."""
+        if self.weights is not None:
+            return u
         return self.constraints.symmetry.mean(u) - self.pseudo_inverse(self.constraints.apply(u))
 
     def restoration(self, constraints: Constraints, curve: Curve, residual: FloatArray) -> FloatArray:
         """The shortest in the model, exact enough for quadratic convergence; Euclidean ones turn fine edges too far."""
         here = ConstraintPreconditioner(self._model, constraints.derivative(curve))
-        return here.shortest(-residual, max(float(np.max(np.abs(residual))), MIN_FORCING))
+        return here.shortest(-residual, max(float(np.max(np.abs(residual))), 1e-4))
 
     def _feasible(self, u: FloatArray, xi: FloatArray) -> FloatArray:
         """The u nearest in the model with C u = ξ."""
@@ -111,35 +109,14 @@ class IterativeTangentSpace(TangentSpace):
         multipliers = np.zeros(c.count)
         negligible = ROUNDING**2 * preconditioner.square(r)
 
-        def precondition(r: FloatArray) -> tuple[FloatArray, FloatArray]:
+        def precondition(r: FloatArray, decreases: list[float]) -> tuple[FloatArray, FloatArray] | None:
             nonlocal multipliers
+            window = max(2, len(decreases) // 4)
+            square = abs(start - sum(decreases))
+            if len(decreases) > window and sum(decreases[-window:]) <= max(tolerance**2 * square, negligible):
+                return None
             z, change = preconditioner.project(r, self._tolerances.preconditioner)
             multipliers = multipliers + change
             return z, r - c.apply_transpose(change)  # without its normal part r does not pull iterates off ker C
 
-        def enough(decreases: list[float]) -> bool:
-            window = max(WINDOW, len(decreases) // 4)
-            square = abs(start - sum(decreases))
-            return len(decreases) > window and sum(decreases[-window:]) <= max(tolerance**2 * square, negligible)
-
-        u = flexible_conjugate_gradients(self.apply, precondition, r, enough, self._tolerances.max_iterations)
-        return u, multipliers
-
-
-class IterativeWholeSpace(WholeSpace):
-    """The whole space with J + Cᵀ w C, by conjugate gradients preconditioned by the model of J."""
-
-    def __init__(
-        self, inner: WithModel, constraints: ConstraintDerivative, weights: FloatArray, tolerances: Tolerances
-    ) -> None:
-        super().__init__(constraints, weights)
-        self._inner, self._tolerances = inner, tolerances
-        self._model = vanishing_at(constraints.pins, inner.model, constraints.mesh)
-
-    def riesz(self, eta: FloatArray) -> FloatArray:
-        enough = relative(self._tolerances.gradient)
-        return conjugate_gradients(self.apply, self._model.solve, eta, enough, self._tolerances.max_iterations)
-
-    def apply(self, u: FloatArray) -> FloatArray:
-        c = self.constraints
-        return self._inner.apply(u) + c.apply_transpose(self.weights * c.apply(u))
+        return conjugate_gradients(self.apply, precondition, r, self._tolerances.max_iterations), multipliers

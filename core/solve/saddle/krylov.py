@@ -14,85 +14,63 @@ from ...base.types import FloatArray
 from ..constraints import ConstraintDerivative
 
 ROUNDING = 1e-12  # relative to all of a covector, below which its tangential part is rounding
-MAX_ITERATIONS = 500
 
 LinearMap = Callable[[FloatArray], FloatArray]
+# From a residual r, and what iterations so far took off the squared norm of the error, to z near the operator's inverse
+# times r, and the residual to go on with: r itself, or r without a part that is of no consequence.  None is enough.
+Preconditioner = Callable[[FloatArray, list[float]], tuple[FloatArray, FloatArray] | None]
 
 
 def conjugate_gradients(
-    operator: LinearMap,
-    precondition: LinearMap,
-    right: FloatArray,
-    enough: Callable[[float, float], bool],
-    max_iterations: int,
+    operator: LinearMap, precondition: Preconditioner, right: FloatArray, most: int, *, indefinite: bool = False
 ) -> FloatArray:
-    """Solve ``operator`` x = ``right``, for arrays of any shape.
+    """Solve ``operator`` x = ``right``, for arrays of any shape and a symmetric positive definite operator.
 
-    The operator and ``precondition``, near its inverse, are symmetric and positive definite.  ``enough`` says whether
-    to stop, from rᵀz, the square of the preconditioned residual, and from xᵀ ``right``, which grows to the squared norm
-    of the solution in the operator's inner product.  A LinAlgError says if the operator
-    is not positive definite, or the iterations do not suffice.
-    """
-    x = np.zeros_like(right)
-    r, direction, last, square = right.copy(), np.zeros_like(right), 1.0, 0.0
-    for _ in range(max_iterations):
-        check_time()
-        z = precondition(r)
-        rho = float(np.sum(r * z))
-        if enough(rho, square):
-            return x
-        direction = z + (rho / last) * direction
-        image = operator(direction)
-        step = rho / _positive(float(np.sum(direction * image)))
-        x += step * direction
-        r -= step * image
-        square += step * rho
-        last = rho
-    raise np.linalg.LinAlgError(f"conjugate gradients need more than {max_iterations} iterations")
-
-
-def relative(tolerance: float) -> Callable[[float, float], bool]:
-    """Enough when the residual is small against the solution, both squared."""
-    return lambda rho, square: rho <= tolerance**2 * square
-
-
-def flexible_conjugate_gradients(
-    operator: LinearMap,
-    precondition: Callable[[FloatArray], tuple[FloatArray, FloatArray]],
-    right: FloatArray,
-    enough: Callable[[list[float]], bool],
-    max_iterations: int,
-) -> FloatArray:
-    """The same with a preconditioner that varies from iteration to iteration (Polak and Ribière's formula).
-
-    ``precondition`` leads from r to z and the residual to go on with: r itself, or r without a part that is of no
-    consequence.  ``enough`` says whether to stop, from the decrease of ½ xᵀ A x − xᵀ ``right`` in all iterations so
-    far, twice each: these are what each took off the squared norm of the error.
+    The preconditioner may vary from iteration to iteration (Polak and Ribière's formula), and says when to stop.  A
+    LinAlgError says if the operator is not positive definite, or ``most`` iterations do not suffice.  Where it may be
+    indefinite, as a second derivative is, neither is an error (Steihaug's rule): on a direction of negative curvature
+    the iteration ends with what it has, the first time with that direction itself, and so does the last iteration.
     """
     x, direction, rho = np.zeros_like(right), np.zeros_like(right), 1.0
     r = last = right
     decreases: list[float] = []
-    while not enough(decreases):
-        if len(decreases) == max_iterations:
-            raise np.linalg.LinAlgError(f"conjugate gradients need more than {max_iterations} iterations")
+    for _ in range(most + (not indefinite)):  # whether the last iteration was enough shows in the next one
         check_time()
-        z, r = precondition(r)
+        preconditioned = precondition(r, decreases)
+        if preconditioned is None:
+            return x
+        z, r = preconditioned
         direction = z + float(np.sum(z * (r - last))) / rho * direction
         rho, last = float(np.sum(r * z)), r
         if rho == 0.0:
-            break
+            return x
         image = operator(direction)
-        curvature, slope = _positive(float(np.sum(direction * image))), float(np.sum(r * direction))
+        curvature, slope = float(np.sum(direction * image)), float(np.sum(r * direction))
+        if not curvature > 0.0:
+            if indefinite:
+                return x if decreases else direction
+            raise np.linalg.LinAlgError("matrix is not positive definite: a direction has no positive curvature")
         x = x + slope / curvature * direction
         r = r - slope / curvature * image
         decreases.append(slope**2 / curvature)
-    return x
+    if indefinite:
+        return x
+    raise np.linalg.LinAlgError(f"conjugate gradients need more than {most} iterations")
 
 
-def _positive(curvature: float) -> float:
-    if not curvature > 0.0:
-        raise np.linalg.LinAlgError("matrix is not positive definite: conjugate gradients met no positive curvature")
-    return curvature
+def stopping(solve: LinearMap, enough: Callable[[float, float], bool]) -> Preconditioner:
+    """A fixed preconditioner that stops by rᵀz, the square of the preconditioned residual, and that of the solution."""
+
+    def precondition(r: FloatArray, decreases: list[float]) -> tuple[FloatArray, FloatArray] | None:
+        z = solve(r)
+        return None if enough(float(np.sum(r * z)), sum(decreases)) else (z, r)
+
+    return precondition
+
+
+def relative(solve: LinearMap, tolerance: float) -> Preconditioner:
+    """One that stops when the residual is small against the solution."""
+    return stopping(solve, lambda rho, square: rho <= tolerance**2 * square)
 
 
 class Model(Protocol):
@@ -115,8 +93,7 @@ class ConstraintPreconditioner:
     """
 
     def __init__(self, model: Model, constraints: ConstraintDerivative) -> None:
-        self._model = model
-        self.constraints = constraints
+        self._model, self.constraints = model, constraints
         self._tension = model.tension(constraints.tangents)
         rows = len(constraints.edges)
         forced = [constraints.apply(model.solve(row))[rows:] for row in constraints.border()]
@@ -130,7 +107,7 @@ class ConstraintPreconditioner:
         def enough(rho: float, normal: float) -> bool:
             return rho <= max(tolerance**2 * (total - normal), ROUNDING**2 * total)
 
-        multipliers = self._solve_schur(self.constraints.apply(free), enough)
+        multipliers = self._solve_schur(self.constraints.apply(free), stopping(self._near_inverse, enough))
         return self._model.solve(r - self.constraints.apply_transpose(multipliers)), multipliers
 
     def square(self, r: FloatArray) -> float:
@@ -139,16 +116,14 @@ class ConstraintPreconditioner:
 
     def shortest(self, xi: FloatArray, tolerance: float) -> FloatArray:
         """The u of least norm in M with C u = ξ, up to a relative error; shapes (rows of C,) -> (n, m)."""
-        multipliers = self._solve_schur(xi, lambda rho, square: rho <= tolerance**2 * square)
+        multipliers = self._solve_schur(xi, relative(self._near_inverse, tolerance))
         return self._model.solve(self.constraints.apply_transpose(multipliers))
 
-    def _solve_schur(self, right: FloatArray, enough: Callable[[float, float], bool]) -> FloatArray:
+    def _solve_schur(self, right: FloatArray, precondition: Preconditioner) -> FloatArray:
         c = self.constraints
+        schur = lambda multipliers: c.apply(self._model.solve(c.apply_transpose(multipliers)))  # noqa: E731
+        return conjugate_gradients(schur, precondition, right, 500)
 
-        def schur(multipliers: FloatArray) -> FloatArray:
-            return c.apply(self._model.solve(c.apply_transpose(multipliers)))
-
-        def near_inverse(residual: FloatArray) -> FloatArray:
-            return np.concatenate([self._tension(c.tensions(residual))[c.edges], self._held @ residual[len(c.edges) :]])
-
-        return conjugate_gradients(schur, near_inverse, right, enough, MAX_ITERATIONS)
+    def _near_inverse(self, residual: FloatArray) -> FloatArray:
+        c = self.constraints
+        return np.concatenate([self._tension(c.tensions(residual))[c.edges], self._held @ residual[len(c.edges) :]])

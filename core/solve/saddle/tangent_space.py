@@ -1,6 +1,7 @@
-"""What methods ask of a tangent space, which `dense` answers."""
+"""What methods ask of a tangent space, which `dense` and `iterative` answer."""
 
 from abc import ABC, abstractmethod
+from typing import Protocol
 
 import numpy as np
 from scipy.linalg import lapack
@@ -11,8 +12,15 @@ from ...curve.pins import free_edges, holds
 from ..constraints import ConstraintDerivative, Constraints
 
 
+class Applied(Protocol):
+    """A Gram matrix A of which products are known."""
+
+    def apply(self, u: FloatArray) -> FloatArray:
+        """A u, shape (n, k)."""
+
+
 class TangentSpace(ABC):
-    """The tangent space {u : C u = 0, u = 0 at pins}, C = DΦ(P), with an inner product J on all of R^(n·m).
+    """The tangent space {u : C u = 0, u = 0 at pins}, C = DΦ(P), with an inner product J = A ⊗ Id_m on all of R^(n·m).
 
     All of it rests on the saddle-point system (41) of [RS21],
 
@@ -21,18 +29,24 @@ class TangentSpace(ABC):
 
     with the rows and columns of pins left out, for three right sides: (DE, 0) gives the projected gradient, (0, ξ) the
     pseudo-inverse C^† ξ, (J v, 0) the projection of v.
+
+    With ``weights`` w ≥ 0, one a row of C, it is the whole space but pins with J + Cᵀ w C, as Section 6.4 of [RS21]
+    penalises lengths: −1/w stands for the zero block, ξ is of no consequence, and multipliers are 0.
     """
 
-    def __init__(self, constraints: ConstraintDerivative) -> None:
-        self.constraints = constraints
+    def __init__(self, inner: Applied, constraints: ConstraintDerivative, weights: FloatArray | None) -> None:
+        self._inner, self.constraints, self.weights = inner, constraints, weights
 
     @abstractmethod
     def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
         """Solve for u, shape (n, m), and λ, shape (rows of C,); None stands for a zero right side."""
 
-    @abstractmethod
     def apply(self, u: FloatArray) -> FloatArray:
-        """J u, shape (n, m)."""
+        """J u, or (J + Cᵀ w C) u, for u that vanishes at pins; shape (n, m)."""
+        if self.weights is None:
+            return self._inner.apply(u)
+        c = self.constraints
+        return self._inner.apply(u) + c.apply_transpose(self.weights * c.apply(u))
 
     def gradient(self, derivative: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Projected gradient u, shape (n, m), and multipliers λ, shape (rows of C,), of a derivative, shape (n, m)."""
@@ -49,31 +63,11 @@ class TangentSpace(ABC):
 
     def project(self, u: FloatArray) -> FloatArray:
         """The orthogonal projection of u, which vanishes at pins; shape (n, m)."""
-        return self.constraints.symmetry.mean(self.solve(self.apply(u), None)[0])
+        return u if self.weights is not None else self.constraints.symmetry.mean(self.solve(self.apply(u), None)[0])
 
     def norm(self, u: FloatArray) -> float:
         """√⟨u, J u⟩."""
         return float(np.sqrt(max(0.0, np.sum(u * self.apply(u)))))
-
-
-class WholeSpace(TangentSpace):
-    """All of R^(n·m) but pins with J + Cᵀ w C, weights w ≥ 0: how Section 6.4 of [RS21] penalises lengths."""
-
-    def __init__(self, constraints: ConstraintDerivative, weights: FloatArray) -> None:
-        super().__init__(constraints)
-        self.weights = weights
-
-    @abstractmethod
-    def riesz(self, eta: FloatArray) -> FloatArray:
-        """(J + Cᵀ w C)⁻¹ η, shape (n, m)."""
-
-    def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
-        """The same without constraints: ξ is of no consequence, multipliers are 0."""
-        u = np.zeros(self.constraints.shape) if eta is None else self.riesz(eta)
-        return u, np.zeros(self.constraints.count)
-
-    def project(self, u: FloatArray) -> FloatArray:
-        return u
 
 
 def euclidean_correction(constraints: Constraints, curve: Curve, residual: FloatArray) -> FloatArray | None:

@@ -103,7 +103,8 @@ def test_what_is_not_near_enough_is_no_index(monkeypatch: pytest.MonkeyPatch) ->
 def test_the_index_does_not_depend_on_how_a_saddle_was_reached(n: int, options: dict[str, str]) -> None:
     """Eigenvalues are against J_C; those in L² would need as many products as there are vertices, and more."""
     fixed = RelaxOptions(vertices=n, mesh="fixed", stability=True)
-    first = minimize(torus_knot(3, 4, n), replace(fixed, method="trust-region", tolerance=1e-6))
+    # where gradients are smaller than that, rounding decides whether the saddle is left
+    first = minimize(torus_knot(3, 4, n), replace(fixed, method="trust-region", tolerance=1e-4))
     again = minimize(first.curve, replace(fixed, edge_lengths="keep", tolerance=0.1, **options))
     assert again.outcome.converged
     assert first.outcome.negative_eigenvalues == again.outcome.negative_eigenvalues

@@ -69,15 +69,12 @@ class Counting(TangentSpace):
     """A tangent space that counts its solves."""
 
     def __init__(self, space: TangentSpace) -> None:
-        super().__init__(space.constraints)
+        super().__init__(space, space.constraints, None)
         self._space, self.solves = space, 0
 
     def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
         self.solves += 1
         return self._space.solve(eta, xi)
-
-    def apply(self, u: FloatArray) -> FloatArray:
-        return self._space.apply(u)
 
 
 @pytest.mark.parametrize(("size", "solves"), [(0.001, 0), (0.01, 1), (0.03, 3)])

@@ -146,5 +146,5 @@ def test_transforms_are_taken_up_to_the_ratio_where_they_take_longer(curve: Curv
 
     assert isinstance(inner.model._fine, expected)
     load = np.sin(3.0 * curve.vertices) * curve.edge_lengths[:, None]
-    conjugate_gradients(apply, inner.model.solve, load, relative(1e-2), 500)
+    conjugate_gradients(apply, relative(inner.model.solve, 1e-2), load, 500)
     assert products < (100 if transforms else 15)

@@ -105,7 +105,7 @@ def test_weighted_constraints_are_a_part_of_the_metric(name, weight, at):
     weights = np.where(np.arange(curve.mesh.edges) % 3 == 0, weight, 2.0 * weight)
     full = np.kron(matrix, np.eye(m)) + rows.T @ (weights[:, None] * rows)
     eta = np.random.default_rng(17).normal(size=(n, m))
-    solver = inner.whole_space(lengths, weights)
+    solver = inner.tangent_space(lengths, weights)
     u, _ = solver.gradient(eta)
     expected = np.linalg.solve(full, eta.ravel())
     # relative errors grow by κ when rounded, and by √κ when iterated to a tolerance in the norm of the matrix
