@@ -4,143 +4,35 @@ A copy of the project is given an energy, a metric, a direction, a search, a mov
 subcommand, from `plugins/`, and is looked at from outside: command line, Blender, documents, tests.
 """
 
-import inspect
 import json
 import os
 import re
 import shutil
 import subprocess
 import sys
+import tomllib
 from itertools import pairwise
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import pytest
-from mobius_flow.core import RelaxOptions, read_curve, write_curve
+from mobius_flow.core import read_curve, write_curve
 from processes import finished, running
 from shapes import torus_trefoil
 
 ROOT = Path(__file__).resolve().parents[1]
 SOURCES = Path(__file__).parent / "plugins"
 CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
-METHODS = "core/descent/methods.py"
-OPTIONS = Path(inspect.getfile(RelaxOptions)).resolve().relative_to(ROOT).as_posix()
-
-
-class Line(NamedTuple):
-    """A line for a table, and the one after which it is put."""
-
-    after: str
-    text: str
-
-
-class Plugin(NamedTuple):
-    """A file for a room, and its lines for a table: an import and an entry, or an entry alone."""
-
-    room: str
-    file: str | None
-    table: str
-    lines: tuple[Line, ...]
-
-
-PLUGINS = {
-    "energy": Plugin(
-        "core/energies",
-        "inverse_cube.py",
-        "core/energies/__init__.py",
-        (
-            Line("from .energy import ", "from .inverse_cube import INVERSE_CUBE"),
-            Line("        TANGENT_POINT_ENERGY,", "        INVERSE_CUBE,"),
-        ),
-    ),
-    "term": Plugin(
-        "core/energies",
-        "height.py",
-        "core/energies/__init__.py",
-        (
-            Line("from .energy import ", "from .height import Height"),
-            Line("            Bending(),", "            Height(),"),
-        ),
-    ),
-    "metric": Plugin(
-        "core/solve/metrics",
-        "lumped.py",
-        "core/solve/metrics/__init__.py",
-        (
-            Line("from .local import ", "from .lumped import LumpedMetric"),
-            Line("        MoebiusMetric(),", "        LumpedMetric(),"),
-        ),
-    ),
-    "direction": Plugin(
-        "core/descent",
-        "heavy_ball.py",
-        METHODS,
-        (
-            Line("from .geometries import ", "from .heavy_ball import HeavyBall"),
-            Line(
-                '    yield Method("lbfgs"',
-                '    yield Method("heavy-ball", "heavy ball, metric J_C", LineSearch(HeavyBall(), armijo))',
-            ),
-        ),
-    ),
-    "search": Plugin(
-        "core/descent",
-        "halving.py",
-        METHODS,
-        (
-            Line("from .geometries import ", "from .halving import Halving"),
-            Line(
-                '    yield Method("lbfgs"',
-                '    yield Method("halving", "steepest descent by halves", LineSearch(steepest, Halving()))',
-            ),
-        ),
-    ),
-    "move": Plugin(
-        "core/driver/moves",
-        "turning.py",
-        "core/driver/moves/__init__.py",
-        (
-            Line("from .rest import ", "from .turning import Turning"),
-            Line("    Untangling,", "    Turning,"),
-        ),
-    ),
-    "format": Plugin(
-        "core/io",
-        "numbered.py",
-        "core/io/formats.py",
-        (
-            Line("from .source import ", "from . import numbered"),
-            Line(
-                '    ".vect": ',
-                '    ".num": Format("number of the component, x, y, z", numbered.read, numbered.write),',
-            ),
-        ),
-    ),
-    "option": Plugin(
-        OPTIONS,
-        None,
-        OPTIONS,
-        (
-            Line(
-                '    method: str = option("lbfgs"',
-                '    patience: float | None = option(None, "Patience", "how long to wait", automatic="always", low=0)',
-            ),
-        ),
-    ),
-    "subcommand": Plugin(
-        "cli", "length.py", "cli/parser.py", (Line('    "verify": ', '    "length": ("length", "print it"),'),)
-    ),
-}
+PLUGINS = tomllib.loads((SOURCES / "plugins.toml").read_text(encoding="utf-8"))
 
 
 def plant(root, plugin):
     """Add the file, and the lines to the table."""
-    if plugin.file is not None:
-        shutil.copy(SOURCES / plugin.file, root / plugin.room)
-    table = root / plugin.table
+    if "file" in plugin:
+        shutil.copy(SOURCES / plugin["file"], root / plugin["room"])
+    table = root / plugin["table"]
     lines = table.read_text(encoding="utf-8").splitlines()
-    for after, text in plugin.lines:
+    for after, text in plugin["lines"]:
         (place,) = (k for k, line in enumerate(lines) if line.startswith(after))
         lines.insert(place + 1, text)
     table.write_text("\n".join(lines) + "\n", encoding="utf-8")
@@ -220,9 +112,9 @@ def trefoil(tmp_path):
 @pytest.mark.parametrize("kind", PLUGINS)
 def test_contributing_names_the_room_and_the_table(kind):
     plugin = PLUGINS[kind]
-    assert f"`{plugin.room}" in CONTRIBUTING
-    assert f"`{plugin.table}`" in CONTRIBUTING
-    assert len(plugin.lines) == 1 or "an import and a line" in " ".join(CONTRIBUTING.split())
+    assert f"`{plugin['room']}" in CONTRIBUTING
+    assert f"`{plugin['table']}`" in CONTRIBUTING
+    assert len(plugin["lines"]) == 1 or "an import and a line" in " ".join(CONTRIBUTING.split())
 
 
 def test_the_lists_of_the_command_line(command):
@@ -231,15 +123,7 @@ def test_the_lists_of_the_command_line(command):
     assert re.search(r"length +print it", command("--help"))
     assert "inverse-cube" in command("energy", "--help")
     shown = " ".join(command("relax", "--help-all").split())
-    for text in (
-        "inverse-cube",
-        "height",
-        "lumped",
-        "heavy-ball",
-        ".num",
-        "--patience",
-        "how long to wait (default: always)",
-    ):
+    for text in ("inverse-cube", "height", "lumped", "heavy-ball", ".num", "--patience", "wait (default: always)"):
         assert text in shown
 
 
