@@ -15,7 +15,6 @@ from .relax import EXIT_STATUS, add_outputs, places, run_to_end, write_results
 from .signals import INTERRUPTED
 from .terminal import emit, one_line
 
-NOT_FOUND = 1
 NAMES = ("A", "B")  # of the curves, on the command line and in sentences
 _ONE_CURVE = ("balance", "grow", "mesh", "edge_lengths", "stability", "escape_saddles")  # not for two curves
 _EPILOG = """\
@@ -102,9 +101,9 @@ def _run(options: argparse.Namespace) -> int:
         result, iterates = run_to_end(morphing((task, goal), wanted, NAMES), task, wanted, options)
     except NoMotionError as error:
         print(one_line(f"mobius-flow: {error}"), file=sys.stderr)
-        return NOT_FOUND
+        return 1
     write_results(options, result, iterates, origin)
-    return NOT_FOUND if result.status is Status.TIME_LIMIT else EXIT_STATUS[result.status]
+    return 1 if result.status is Status.TIME_LIMIT else EXIT_STATUS[result.status]
 
 
 def add_same(parser: argparse.ArgumentParser) -> None:
@@ -126,10 +125,10 @@ def _run_same(options: argparse.Namespace) -> int:
         result = finish(iterates, tasks[0], wanted, way.append)
     except NoMotionError as error:
         emit(f"{'different' if isinstance(error, DifferentError) else 'not known'}: {error}")
-        return NOT_FOUND
+        return 1
     if not (result.outcome.converged and result.certified):
         emit(f"not known: {result.message}")
-        return INTERRUPTED if result.status is Status.INTERRUPTED else NOT_FOUND
+        return INTERRUPTED if result.status is Status.INTERRUPTED else 1
     legs = counted(sum(len(iterate.path) for iterate in way), "leg")
     emit(f"same: a motion of {legs}, proved free of contact, leads from one to the other")
     return 0

@@ -22,7 +22,6 @@ COMMANDS = {  # the module of each, which has add_COMMAND(parser), and what it d
     "view": ("view", "show a curve or a motion in a browser, or make a solid of it"),
     "knot": ("knot", "write a named knot"),
 }
-FAILED, BAD_OPTIONS = 1, 2
 NOT_INSTALLED = "batch, atlas, gallery, compare and methods need an installation: python -m pip install ."
 SHELLS = ("bash", "zsh", "fish")
 Group = argparse._ArgumentGroup
@@ -45,18 +44,21 @@ exit status:
 class Parser(argparse.ArgumentParser):
     """A parser whose errors are one line, and which takes no abbreviations: they break when options are added."""
 
-    def __init__(self, **arguments: Any) -> None:
+    def __init__(self, command: str = "", **arguments: Any) -> None:
+        self.command = command  # whose description is loaded before its arguments are parsed
         self.left_out: list[Group] = []
         super().__init__(allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter, **arguments)
         self.register("type", int, _read(int, "a whole number"))
         self.register("type", float, _read(float, "a number"))
 
     def error(self, message: str) -> NoReturn:
-        self.exit(BAD_OPTIONS, f"{self.prog}: {message} (see {self.prog} --help)")
+        self.exit(2, f"{self.prog}: {message} (see {self.prog} --help)")
 
     def parse_known_args(  # type: ignore[override]
         self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
     ) -> tuple[argparse.Namespace, list[str]]:
+        if self.command:
+            add_to(self, self.command)
         found, unknown = super().parse_known_args(args, namespace)
         word = unknown[0].partition("=")[0] if unknown else ""
         if word.startswith("-"):
@@ -143,16 +145,6 @@ class _PrintCompletion(argparse.Action):
         parser.exit()
 
 
-class Command(Parser):
-    """The parser of a subcommand, which is loaded before its arguments are parsed."""
-
-    def parse_known_args(  # type: ignore[override]
-        self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
-    ) -> tuple[argparse.Namespace, list[str]]:
-        add_to(self, self.prog.rpartition(" ")[2])
-        return super().parse_known_args(args, namespace)
-
-
 @cache
 def joined() -> Mapping[str, EntryPoint]:
     """The subcommands that installed packages add, by entry points in ``mobius_flow.commands``.
@@ -188,7 +180,7 @@ def add_to(parser: argparse.ArgumentParser, name: str) -> None:
         if entry.value.startswith("mobius_flow.lab."):
             raise
         _leave_out(entry, error)
-        parser.exit(FAILED)
+        parser.exit(1)
 
 
 def _read(kind: Callable[[str], Any], meaning: str) -> Callable[[str], Any]:
@@ -211,9 +203,9 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     top.add_argument("--version", action="version", version=f"mobius-flow {__version__}")
     text = f"print what completes commands in a shell, and exit: {', '.join(SHELLS)}"
     top.add_argument("--print-completion", action=_PrintCompletion, metavar="SHELL", choices=SHELLS, help=text)
-    subparsers = top.add_subparsers(dest="command", metavar="COMMAND", title="commands", parser_class=Command)
+    subparsers = top.add_subparsers(dest="command", metavar="COMMAND", title="commands")
     for name, (_, summary) in COMMANDS.items():
-        subparsers.add_parser(name, help=summary)
+        subparsers.add_parser(name, command=name, help=summary)
     words = sys.argv[1:] if arguments is None else arguments
     if not words or words[0] not in COMMANDS:
         for name, entry in joined().items():
@@ -221,7 +213,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
                 summary = (
                     "" if words and words[0] in joined() else str(entry.load().__doc__).splitlines()[0].rstrip(".")
                 )
-                subparsers.add_parser(name, help=summary[:1].lower() + summary[1:])
+                subparsers.add_parser(name, command=name, help=summary[:1].lower() + summary[1:])
             except Exception as error:  # whatever another package's code may raise
                 _leave_out(entry, error)
         if not any(entry.value.startswith("mobius_flow.lab.") for entry in joined().values()):
@@ -229,5 +221,5 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     found = top.parse_args(arguments)
     if found.command is None:
         top.print_help()
-        top.exit(BAD_OPTIONS, "mobius-flow: name a command")
+        top.exit(2, "mobius-flow: name a command")
     return found

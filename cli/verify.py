@@ -17,7 +17,6 @@ from .places import is_file
 from .progress import live
 from .terminal import GREEN, RED, emit, painted, wrapped
 
-MAX_BYTES = 4 << 30  # of a stream, which is copied to a temporary file: archives are read from their ends
 _EPILOG = """\
 examples:
   mobius-flow verify path.npz
@@ -67,12 +66,12 @@ def _seekable(path: str) -> Iterator[str]:
             return
         with tempfile.TemporaryDirectory(prefix="mobius-flow-") as room:
             copy = os.path.join(room, "trajectory.npz")
-            name = INPUT if path == STREAM else path
+            name, most = INPUT if path == STREAM else path, 4 << 30  # bytes
             with open(copy, "wb") as target:
                 while piece := stream.read(1 << 20):
                     if target.tell() == 0 and not piece.startswith(b"PK"):
                         raise MobiusFlowError(f"{name}: not a trajectory: an .npz file starts with the letters PK")
-                    if target.tell() > MAX_BYTES:
-                        raise MobiusFlowError(f"{name}: longer than {MAX_BYTES >> 30} GB; verify a file")
+                    if target.tell() > most:
+                        raise MobiusFlowError(f"{name}: longer than {most >> 30} GB; verify a file")
                     target.write(piece)
             yield copy

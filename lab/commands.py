@@ -113,7 +113,7 @@ def add_atlas(parser: argparse.ArgumentParser) -> None:
 def add_gallery(parser: argparse.ArgumentParser) -> None:
     """Show the results of a batch."""
     from ..cli import options as relax_options
-    from .gallery import SIZE, gallery
+    from .gallery import gallery
 
     parser.description, parser.epilog = "Show all results of a batch, or knots of an atlas, on one page.", _GALLERY
     text = "directory that mobius-flow batch or mobius-flow atlas wrote to"
@@ -121,7 +121,7 @@ def add_gallery(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", required=True, metavar="OUT.png", help="the page")
     parser.add_argument("--only", metavar="A,B,…", help="names of what is shown, in this order (default: all)")
     parser.add_argument("--look", type=relax_options.look, metavar="LOOK", help="of the pictures, as for relax")
-    parser.add_argument("--size", type=int, default=SIZE, metavar="N", help=f"pixels of a picture (default: {SIZE})")
+    parser.add_argument("--size", type=int, default=300, metavar="N", help="pixels of a picture (default: 300)")
     parser.set_defaults(run=gallery)
 
 

@@ -26,14 +26,6 @@ from .batch.folder import results
 from .batch.job import CURVE
 from .compare.figures import figure_class
 
-SIZE = 300  # pixels of a picture's side
-LARGEST = 4000
-INCHES, CELL, FOOT = 2.9, 2.4, 0.4  # of a picture's side, of its place, which it overlaps, and of the lines below
-MARGIN, HEAD = 0.8, 0.6  # inches around all, and of a line above and one below
-HOLDING = {"avoid", "pins"}  # options that Möbius images do not keep
-_ENERGY = r"$\iint\;\left(\dfrac{1}{|\gamma(s)-\gamma(t)|^2}-\dfrac{1}{d(s,t)^2}\right)\;\mathrm{d}s\,\mathrm{d}t$"
-_INKS = (("#e7e3da", "#9a958b"), ("#1d1c1a", "#6d6a64"))  # on dark and on light ground
-
 
 @dataclass(frozen=True)
 class Shown:
@@ -52,8 +44,8 @@ class Shown:
 def gallery(options: argparse.Namespace) -> int:
     if Path(options.output).suffix.lower() != ".png":
         raise MobiusFlowError(f"{options.output}: {wrong_suffix(options.output, ['.png'], 'galleries')}")
-    if not 16 <= options.size <= LARGEST:
-        raise MobiusFlowError(f"size is {options.size}; give 16 to {LARGEST}")
+    if not 16 <= options.size <= 4000:
+        raise MobiusFlowError(f"size is {options.size}; give 16 to 4000")
     export.require_blender()
     figure_class()
     check_place(options.output)
@@ -88,7 +80,8 @@ def _chosen(directory: Path, only: str | None) -> list[Shown]:
 
 def _of_batch(directory: Path) -> Iterator[Shown]:
     for folder, _, row in sorted(results(directory), key=lambda each: (each[2].name, each[2].start)):
-        free = row.status == Status.CONVERGED.value and HOLDING.isdisjoint(json.loads(row.options))
+        # Möbius images do not keep obstacles and pins
+        free = row.status == Status.CONVERGED.value and {"avoid", "pins"}.isdisjoint(json.loads(row.options))
         name = folder.name.replace("$", r"\$")  # a $ would begin a formula
         energy = f"{row.energy:.4f}"
         if row.extrapolated_energy is not None and row.extrapolated_energy_error is not None:
@@ -115,31 +108,33 @@ def _write_page(path: str, titles: Sequence[str], pictures: Sequence[Path], look
     from matplotlib.image import imread
 
     columns = round(math.sqrt(0.75 * len(pictures))) or 1  # of the page, about
-    outside = MARGIN + (HEAD if head else 0.0)
-    width = CELL * columns + 2.0 * MARGIN
-    height = (CELL + FOOT) * math.ceil(len(pictures) / columns) + 2.0 * outside
+    side, cell, foot, margin = 2.9, 2.4, 0.4, 0.8  # inches: of a picture, its place, the lines below, and around all
+    outside = margin + (0.6 if head else 0.0)
+    width = cell * columns + 2.0 * margin
+    height = (cell + foot) * math.ceil(len(pictures) / columns) + 2.0 * outside
     red, green, blue = (1.055 * value ** (1.0 / 2.4) - 0.055 for value in LOOKS[look].floor)  # sRGB, as screens expect
     figure = figure_class()(figsize=(width, height), facecolor=(red, green, blue))
-    ink, faint = _INKS[green > 0.5]
+    ink, faint = ("#1d1c1a", "#6d6a64") if green > 0.5 else ("#e7e3da", "#9a958b")
 
     def write(x: float, y: float, text: str, points: float, color: str) -> None:
         shown = figure.text(x / width, y / height, text, size=points, color=color, ha="center", math_fontfamily="stix")
         shown.set_fontfamily(["STIXGeneral", "DejaVu Sans"])
 
     if head:
-        write(0.5 * width, height - MARGIN - 0.3, head, 24.0, ink)
-        write(0.5 * width, MARGIN, _ENERGY, 12.0, faint)
+        density = r"\left(\dfrac{1}{|\gamma(s)-\gamma(t)|^2}-\dfrac{1}{d(s,t)^2}\right)"
+        write(0.5 * width, height - margin - 0.3, head, 24.0, ink)
+        write(0.5 * width, margin, rf"$\iint\;{density}\;\mathrm{{d}}s\,\mathrm{{d}}t$", 12.0, faint)
     for k, (title, picture) in enumerate(zip(titles, pictures, strict=True)):
-        x, y = MARGIN + CELL * (k % columns + 0.5), height - outside - CELL * 0.5 - (CELL + FOOT) * (k // columns)
-        corner = (x - 0.5 * INCHES) / width, (y - 0.5 * INCHES) / height
-        axes = figure.add_axes((*corner, INCHES / width, INCHES / height))
+        x, y = margin + cell * (k % columns + 0.5), height - outside - cell * 0.5 - (cell + foot) * (k // columns)
+        corner = (x - 0.5 * side) / width, (y - 0.5 * side) / height
+        axes = figure.add_axes((*corner, side / width, side / height))
         axes.set_axis_off()
         axes.imshow(_faded(imread(picture)))
         name, _, more = title.partition("\n")
-        write(x, y - 0.5 * CELL - 0.08, name, 15.0, ink)
-        write(x, y - 0.5 * CELL - 0.28, more, 9.5, faint)
+        write(x, y - 0.5 * cell - 0.08, name, 15.0, ink)
+        write(x, y - 0.5 * cell - 0.28, more, 9.5, faint)
     with writing(path) as temporary:
-        figure.savefig(temporary, dpi=size / INCHES)
+        figure.savefig(temporary, dpi=size / side)
 
 
 def _faded(image: FloatArray) -> FloatArray:

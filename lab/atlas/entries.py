@@ -26,7 +26,6 @@ from .folder import Folder
 from .runs import AtlasRun
 
 Values = dict[str, Any]
-_SYMMETRIC = 0.1  # radii of gyration: balanced curves miss their symmetries by up to .04, and others by .15 or more
 
 
 def entry(folder: Folder, name: str, runs: Sequence[AtlasRun]) -> tuple[Values | None, Mapping[str, list[str]]]:
@@ -66,7 +65,8 @@ def _described(name: str, runs: Sequence[AtlasRun]) -> Values:
     """Everything known about a curve, by the names of the tables' columns: the balanced end of the first run."""
     rest = balanced(runs[0].rest)
     curve, polygon = rest.curve, rest.curve.polygon(rest.curve.sizes)
-    group = symmetries(polygon, _SYMMETRIC)
+    # 0.1 radii of gyration: balanced curves miss their symmetries by up to .04, and others by .15 or more
+    group = symmetries(polygon, 0.1)
     upright = FourierCurve(tuple(c @ standing(polygon, group).T for c in curve.coefficients))
     # twice the vertices that represent a curve, when it is measured
     fine = upright.polygon([2 * size for size in upright.sizes])

@@ -26,7 +26,6 @@ PROVED = "whose type is not proved to be one of the table"
 APART = "whose trajectory does not end at their curve"
 UNLIKE = "whose curve, or smooth shape, is not of the type reported"
 MOVING = "whose smooth shape is not at rest with the energy reported"
-_SHOWN = 8  # names listed of the runs that are left out
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +97,7 @@ class Runs:
     def missing(self) -> str:
         """The runs left out, and why."""
         return "; ".join(
-            f"{counted(len(names), 'run')} {why}: {', '.join(names[:_SHOWN])}{', …' * (len(names) > _SHOWN)}"
+            f"{counted(len(names), 'run')} {why}: {', '.join(names[:8])}{', …' * (len(names) > 8)}"
             for why, names in self.left_out.items()
         )
 

@@ -17,16 +17,14 @@ from .folder import check_replaceable, finished, sweep
 from .job import CSV, PARQUET, Job, Plan, folder_name, inputs, jobs
 from .table import FAILED, Row, check_tables, in_order, save
 
-SHOWN = 100  # rows that are printed in the end
-MOST = 10**9  # starts, more than there is time for
-
 
 def campaign(options: argparse.Namespace) -> int:
     """Do the unfinished runs, write the table, even if the batch is interrupted, and print what was found."""
     if not options.output:
         raise OptionError("output is empty; name the directory of the results")
-    if not 1 <= options.starts <= MOST:
-        raise OptionError(f"starts is {options.starts}; it must be from 1 to {MOST}")
+    most_starts, most_rows = 10**9, 100  # more than there is time for, and than anyone reads
+    if not 1 <= options.starts <= most_starts:
+        raise OptionError(f"starts is {options.starts}; it must be from 1 to {most_starts}")
     wanted = relax_options.from_arguments(options)
     cluster.require(options.scheduler)
     directory = Path(options.output).resolve()
@@ -60,13 +58,13 @@ def campaign(options: argparse.Namespace) -> int:
             "" if row.seconds is None else f"{row.seconds:.1f}",
             row.message if row.failed else row.status.replace("_", " "),
         )
-        for row in in_order(rows.values())[:SHOWN]
+        for row in in_order(rows.values())[:most_rows]
     ]
     ends = Counter(row.status.replace("_", " ") for row in in_order(rows.values()))
     mark, colour = ("–", YELLOW) if ends[FAILED] else ("✓", GREEN)
     head = f"{mark} {counted(len(rows), 'run')}", ", ".join(f"{count} {end}" for end, count in ends.most_common())
     below = [
-        ("shown", f"the first {SHOWN}; all are in the table that is written" if len(rows) > SHOWN else ""),
+        ("shown", f"the first {most_rows}; all are in the table that is written" if len(rows) > most_rows else ""),
         ("wrote", [quoted(os.path.join(options.output, name)) for name in (CSV, PARQUET)]),
         ("next", [command("gallery", options.output, "-o", "gallery.png")]),
     ]

@@ -20,10 +20,7 @@ from .table import Row
 Submit = Callable[..., Any]  # of a function and its arguments; gives a future
 
 WINDOW = 1000  # runs submitted at a time: enough for hundreds of cores, and little memory
-TRIES = 3  # for a run whose process dies
-_LOGS = "distributed", "distributed.client"
 _PATIENCE = 4.0  # seconds for the scheduler to answer
-_JOINING = 30.0  # seconds for the first worker to join
 
 
 def require(address: str | None) -> None:
@@ -54,7 +51,7 @@ def submitting(address: str | None) -> Iterator[Submit]:
         return
     from distributed import Client
 
-    for name in _LOGS:
+    for name in ("distributed", "distributed.client"):
         logging.getLogger(name).setLevel(logging.CRITICAL)  # rows report what goes wrong
     try:
         asyncio.run(asyncio.wait_for(_greet(address), _PATIENCE))  # a peer may take the call and say nothing
@@ -63,9 +60,9 @@ def submitting(address: str | None) -> Iterator[Submit]:
         raise MobiusFlowError(f"{address}: no Dask scheduler answers there") from error
     with client:
         try:
-            client.wait_for_workers(1, timeout=_JOINING)
+            client.wait_for_workers(1, timeout=30.0)
         except TimeoutError as error:
-            raise MobiusFlowError(f"{address}: no worker has joined in {_JOINING:.0f} s") from error
+            raise MobiusFlowError(f"{address}: no worker has joined in 30 s") from error
         yield partial(client.submit, pure=False)
 
 
@@ -103,10 +100,10 @@ def rows(submit: Submit, jobs: Iterable[Job]) -> Iterator[tuple[Job, Row]]:
         except MobiusFlowError:
             raise
         except sandbox.ChildDiedError as error:
-            if tries < TRIES:
+            if tries < 3:
                 begin(job, tries + 1)
                 continue
-            row = Row.failure(job, f"{TRIES} tries failed: {error}")
+            row = Row.failure(job, f"{tries} tries failed: {error}")
         except Exception as error:  # of the cluster: workers that die, or lack the program
             row = Row.failure(job, str(error))
         yield job, row

@@ -15,13 +15,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-DPI, COLORS = 100, 128  # of pictures made of pixels
 _ENDS = {"converged": "o", "stalled": "x"}  # marks where lines end
 _DASHES: Sequence[Any] = (  # one for each kind of method that there is
     *("-", "--", ":", "-.", (0, (8, 2)), (0, (3, 1, 1, 1, 1, 1))),
     *((0, (1, 4)), (0, (8, 2, 1, 2, 1, 2)), (0, (2, 2))),
 )
-_CELL = 1.9  # inches of a curve's picture
 
 
 def figure_class(instead: str = "") -> "type[Figure]":
@@ -40,12 +38,12 @@ def figure_class(instead: str = "") -> "type[Figure]":
 
 def save(figure: "Figure", path: Path) -> None:
     """Write a figure; a .png has a palette, which nobody notices and which makes it a third of the size."""
-    figure.savefig(path, dpi=DPI)
+    figure.savefig(path, dpi=100)
     if path.suffix.lower() == ".png":
         from PIL import Image  # which matplotlib needs, too
 
         with Image.open(path) as picture:
-            picture.convert("RGB").quantize(COLORS).save(path, optimize=True)
+            picture.convert("RGB").quantize(128).save(path, optimize=True)
 
 
 def write_figure(path: Path, runs: Sequence[History]) -> None:
@@ -102,7 +100,8 @@ def write_figure(path: Path, runs: Sequence[History]) -> None:
 
 def write_strip(stages: Sequence[int], path: Path, runs: Sequence[History]) -> None:
     """Draw the curves after some iterations, a row for each method, like Figure 1 of [RS21]."""
-    size = (_CELL * len(stages) + 1.2, (0.7 * _CELL + 0.25) * len(runs) + 0.3)
+    cell = 1.9  # inches of a picture
+    size = (cell * len(stages) + 1.2, (0.7 * cell + 0.25) * len(runs) + 0.3)
     figure = figure_class()(figsize=size, layout="constrained")
     grid = figure.subplots(len(runs), len(stages), squeeze=False)
     for number, (row, run) in enumerate(zip(grid, runs, strict=True)):

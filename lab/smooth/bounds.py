@@ -21,11 +21,6 @@ from ...core.base.types import ComplexArray
 from .balls import arb, points, precise
 from .covering import CurveArcs, cover, scaled
 
-_LOWER, _LOWEST = 0.85, 1.5e-4  # height relative to the strip before; least height of all strips
-_FINEST = 1e-10
-_TERMS = 64  # that are added in doubles before the sums are added exactly
-_BLOCK = 1 << 18  # pairs of nodes at once
-
 
 @checked
 def energy_bounds(coefficients: Sequence[ComplexArray], tolerance: float = 1e-8) -> tuple[float, float]:
@@ -40,8 +35,8 @@ def energy_bounds(coefficients: Sequence[ComplexArray], tolerance: float = 1e-8)
     >>> lower <= 4 <= upper, upper - lower < 1e-8
     (True, True)
     """
-    if not _FINEST <= tolerance < math.inf:
-        raise OptionError(f"tolerance is {tolerance}; give a number from {_FINEST:g} on")
+    if not 1e-10 <= tolerance < math.inf:
+        raise OptionError(f"tolerance is {tolerance}; give a number from 1e-10 on")
     coefficients, _ = scaled(coefficients)
     with precise():
         arcs = [CurveArcs.of(c) for c in coefficients]
@@ -75,14 +70,14 @@ def _strip(arcs: Sequence[CurveArcs], i: int, j: int, highest: float = math.inf)
     """A strip about as high as can be, but no higher than ``highest``; CurveError if none is found."""
     if cover(arcs[i], arcs[j]) is not None:
         height = min(highest, arcs[i].height)
-        while height >= _LOWEST:
+        while height >= 1.5e-4:  # lower strips would take too many nodes
             ratio = cover(arcs[i], arcs[j], height)
             if ratio is not None:
                 bound = 1.0001 * arb(ratio)
                 if i == j:
                     bound = bound.max(400 / arb(height) ** 2) + (arb.pi() / (arb.pi() * height).sinh()) ** 2
                 return _Strip(height, bound)
-            height *= _LOWER
+            height *= 0.85
     which = f"component {i + 1} meets itself or has a cusp" if i == j else f"components {i + 1} and {j + 1} meet"
     raise CurveError(f"{which}, or nearly so: no bound of the energy can be proved")
 
@@ -94,15 +89,16 @@ def _mean(first: ComplexArray, second: ComplexArray, nodes: int) -> arb:
     """
     (x, low_x), (y, low_y) = points(first, nodes), points(second, nodes, shift=1)
     v, w = (np.linalg.norm(points(c, nodes, 1, shift)[0], axis=0) for shift, c in enumerate((first, second)))
-    sums, nearest, rows = [], math.inf, max(1, _BLOCK // nodes)
+    terms_at_once = 64  # are added in doubles before the sums are added exactly
+    sums, nearest, rows = [], math.inf, max(1, (1 << 18) // nodes)  # pairs of nodes at once
     for k in range(0, nodes, rows):
         some = slice(k, k + rows)
         square = np.zeros((len(v[some]), nodes))
         for a in range(3):
             square += (np.subtract.outer(x[a, some], y[a]) + np.subtract.outer(low_x[a, some], low_y[a])) ** 2
         terms = np.multiply.outer(v[some], w) / square
-        sums.append(math.fsum(np.add.reduceat(terms, range(0, nodes, _TERMS), axis=1).ravel().tolist()))
+        sums.append(math.fsum(np.add.reduceat(terms, range(0, nodes, terms_at_once), axis=1).ravel().tolist()))
         nearest = min(nearest, square.min())
     coordinates = max(np.abs(c).sum() for c in (first, second))
-    error = (_TERMS + 32) * 2.0**-53 + 2.0**-98 * coordinates / math.sqrt(nearest)
+    error = (terms_at_once + 32) * 2.0**-53 + 2.0**-98 * coordinates / math.sqrt(nearest)
     return arb(math.fsum(sums)) * arb(1, error) / nodes**2

@@ -15,7 +15,6 @@ from ...core.curve.fourier import FourierCurve
 from .balls import points
 from .covering import CurveArcs, PolygonEdges, cover, scaled
 
-_FIRST, _MORE, _TRIES = 0.6, 1.2, 30  # times the vertices that curvature alone asks for; times those of the try before
 _REFUSAL = "the curve meets itself or has a cusp, or nearly so: its type cannot be proved"
 
 
@@ -28,7 +27,7 @@ def inscribed(coefficients: Sequence[ComplexArray]) -> Curve:
     """
     coefficients, power = scaled(coefficients)
     arcs = _apart(coefficients)
-    for factor in _FIRST * _MORE ** np.arange(_TRIES):
+    for factor in 0.6 * 1.2 ** np.arange(30):  # times the vertices that curvature alone asks for
         sizes = [math.ceil(max(3.0, factor / one.height)) for one in arcs]
         polygon = FourierCurve(tuple(coefficients)).polygon(sizes)
         polygon = polygon.with_vertices(np.ldexp(polygon.vertices, -power))

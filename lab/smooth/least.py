@@ -7,8 +7,6 @@ from ...core.knots.braids import braid_diagram
 from ...core.knots.knot_type import crossing_number
 from ...core.knots.names import braid_word, table_name
 
-_ROUNDED_DOWN = 1.0 - 1e-15
-
 
 @checked
 def lower_bound(name: str) -> float:
@@ -27,4 +25,4 @@ def lower_bound(name: str) -> float:
     components, linking = len(diagram.passes), diagram.linking_numbers
     linked = 1 if components == 2 else sum(number != 0 for number in linking)  # no sphere separates two of the table
     more = 2.0 * math.pi * crossing_number(entry) if components == 1 else 4.0 * math.pi**2 * linked
-    return 4.0 * components + _ROUNDED_DOWN * more
+    return 4.0 * components + (1.0 - 1e-15) * more  # rounded down

@@ -18,7 +18,6 @@ from .rest import RestingCurve, energy_of
 
 SAME_ENERGY = 1e-6  # of the energy: ends at one curve differ by up to 4e-8
 SAME_SHAPE = 3e-4  # of eigenvalues up to 1: those of one curve differ by up to 1e-5, of two types by 6e-3 or more
-_ROUNDING = 1e-13  # of the energy
 _POINTS = 8  # of the trapezoidal rule for each mode there was
 
 
@@ -37,7 +36,7 @@ def balanced(rest: RestingCurve) -> RestingCurve:
     for more in (1.0, 1.25, 1.5, 2.0, 2.5):  # times the modes that a Möbius image may need
         found = FourierCurve.through(image, [round(k * more) for k in rest.curve.modes])
         lost = abs(energy_of(found, math.ceil(_POINTS / more)) - rest.energy)
-        if lost <= max(rest.error, _ROUNDING * rest.energy):
+        if lost <= max(rest.error, 1e-13 * rest.energy):  # of the energy: rounding
             return replace(rest, curve=found)
     return replace(rest, curve=found, error=rest.error + lost)
 
