@@ -7,64 +7,12 @@ import numpy as np
 import pytest
 from baked_curves import KEYED, SHORT, again, blocks, clear, curve_of, go_on, last_frame, reopen, two_rings
 from blender_scenes import add_curve, add_trefoil, contents, evaluated, relax, stored
-from families import crossed
-from mathutils import Vector
 from mobius_flow.addon.curves import bake, keyframes
 from mobius_flow.addon.curves.recorded import BakedKeys
 from mobius_flow.core.collision import is_free
 from mobius_flow.core.curve import Mesh
 from mobius_flow.core.keys import key_options
 from mobius_flow.core.knots import knot
-from shapes import torus_trefoil
-
-
-def link_of_kind(kind):
-    rng = np.random.default_rng(7)
-    obj = add_curve([torus_trefoil(24).vertices + 4 * k for k in (0, 1)], kind=kind)
-    for spline in obj.data.splines:
-        spline.resolution_u = 5
-        for point in spline.bezier_points if kind == "BEZIER" else spline.points:
-            point.radius, point.tilt = rng.random(2)
-            if kind == "BEZIER":
-                point.handle_left_type = point.handle_right_type = "ALIGNED"
-                point.handle_right = Vector(point.co) + Vector((0.1, 0.2, 0.3))
-    obj.data.splines[1].material_index, obj.data.splines[0].use_smooth = 2, False
-    obj.data.splines.active = obj.data.splines[0]
-    return obj
-
-
-@pytest.mark.parametrize(("kind", "keyframes", "reopened"), crossed(["POLY", "BEZIER", "NURBS"], KEYED, [False, True]))
-def test_clear_gives_the_curve_back(tmp_path, kind, keyframes, reopened):
-    obj = link_of_kind(kind)
-    before, names = contents(), blocks()
-    relax(max_iterations=2, vertices=300, keyframes=keyframes, sample_splines=True)
-    assert contents() != before
-    if reopened:
-        obj = reopen(tmp_path / "a.blend")
-    bpy.context.scene.frame_set(3)
-    clear()
-    after = contents()
-    assert all(after[name] == before[name] for name in ("splines", "curves", "actions", "shape_keys", "objects"))
-    assert blocks() == names
-    assert not obj.data.keys()
-    assert obj.data.splines.active == obj.data.splines[0]
-
-
-@pytest.mark.parametrize("reopened", [False, True])
-@pytest.mark.parametrize("keyframes", KEYED)
-def test_baking_again_is_baking_the_original(tmp_path, keyframes, reopened):
-    obj = add_trefoil()
-    relax(max_iterations=7, keyframes=keyframes, start_frame=4)
-    names = blocks()
-    expected = [evaluated(obj, 4 + k) for k in range(8)]
-    clear()
-    relax(max_iterations=2, vertices=100, keyframes=keyframes)
-    if reopened:
-        obj = reopen(tmp_path / "a.blend")
-    again(max_iterations=7, keyframes=keyframes, start_frame=4, timing="ITERATE")
-    for k, points in enumerate(expected):
-        np.testing.assert_array_equal(evaluated(obj, 4 + k), points)
-    assert blocks() == names
 
 
 def test_relax_on_a_baked_curve_is_bake_again():
@@ -145,29 +93,6 @@ def test_constant_thickness_is_the_least():
     further = [block.data[0].radius for block in obj.data.shape_keys.key_blocks[len(constant) :]]
     assert len(further) == 8
     assert np.ptp(further) < 1e-6
-
-
-@pytest.mark.parametrize("reopened", [False, True])
-@pytest.mark.parametrize("keyframes", KEYED)
-def test_continuing_adds_proved_keys_after_the_old_ones(tmp_path, capfd, keyframes, reopened):
-    obj = add_trefoil()
-    relax(max_iterations=4, keyframes=keyframes)
-    old = [evaluated(obj, 1 + k) for k in range(5)]
-    names = blocks()
-    if reopened:
-        obj = reopen(tmp_path / "a.blend")
-    bpy.context.scene.frame_set(2)  # F-curves leave the points of this frame in the curve
-    capfd.readouterr()
-    go_on(max_iterations=2, timing="ITERATE", keyframes="RESULT")
-    assert "2 new keys up to frame 7, proved free of contact" in capfd.readouterr().out
-    shown = [evaluated(obj, 1 + k) for k in range(7)]
-    np.testing.assert_array_equal(shown[:5], old)
-    mesh = Mesh((len(old[0]),))
-    for a, b in pairwise(shown):
-        assert not np.array_equal(a, b)
-        assert is_free(mesh, a.astype(np.float64), b.astype(np.float64))
-    assert last_frame(obj) == 7
-    assert blocks() == names
 
 
 def test_continuing_by_length_goes_on_after_the_rest(monkeypatch):

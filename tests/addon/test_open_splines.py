@@ -3,9 +3,8 @@
 import bpy
 import numpy as np
 import pytest
-from baked_curves import KEYED, SHORT, again, clear, go_on
-from blender_scenes import add_curve, evaluated, place, relax, stored
-from mobius_flow.addon.curves.recorded import BakedKeys
+from baked_curves import SHORT, clear
+from blender_scenes import add_curve, evaluated, relax, stored
 from mobius_flow.addon.live.requirements import RELAXABLE
 from mobius_flow.core import Curve, Mesh, RelaxOptions, minimize
 from mobius_flow.core.knots import overhand
@@ -40,25 +39,6 @@ def test_the_result_is_the_librarys_and_a_spline_that_is_closed_later_is_another
     obj.data.splines[0].use_cyclic_u = True
     bpy.context.view_layer.update()
     assert "has other keys or points than it was baked with" in RELAXABLE(bpy.context).sentence
-
-
-@pytest.mark.parametrize("keyframes", KEYED)
-def test_the_keys_are_proved_and_shown_and_all_is_given_back(keyframes, capfd):
-    obj = add_both()
-    place(obj)
-    before = stored(obj.data)
-    relax(max_iterations=4, keyframes=keyframes)
-    assert "proved free of contact with itself" in capfd.readouterr().out
-    keys = BakedKeys([obj])
-    assert (keys.mesh.closed, keys.unproved) == ((True, False), 0)
-    assert cyclic(obj) == [True, False]
-    np.testing.assert_array_equal(evaluated(obj, 1), keys.frames[0])
-    again(keyframes=keyframes)
-    go_on()
-    assert cyclic(obj) == [True, False]
-    clear()
-    np.testing.assert_array_equal(stored(obj.data), before)
-    assert cyclic(obj) == [True, False]
 
 
 def test_a_segment_is_a_curve():
@@ -144,15 +124,6 @@ def test_its_smooth_curve_runs_from_end_to_end(kind, capfd):
     made = bpy.context.object
     assert cyclic(made) == [True, False]
     np.testing.assert_allclose(evaluated(made)[-1], end, atol=1e-5)
-
-
-def test_a_link_of_several_objects():
-    add_arc(name="A")
-    ring = add_curve([RING], name="B")
-    place(ring)
-    relax(**SHORT)
-    assert BakedKeys(bpy.context.selected_objects).unproved == 0
-    assert cyclic(bpy.data.objects["A"]) == [False]
 
 
 def test_the_worker_knows_ends(operator):
