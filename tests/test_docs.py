@@ -73,6 +73,10 @@ def test_a_version_has_few_words_in_the_changelog():
     assert all(len(text.split()) <= 460 for text in versions)
 
 
+def test_the_manual_stays_short():
+    assert sum(len(path.read_text(encoding="utf-8").split()) for path in (ROOT / "docs").glob("*.md")) <= 16_000
+
+
 @pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
 def test_links_lead_somewhere(document):
     for target in re.findall(r"\]\(([^)#]+)[^)]*\)", document.read_text(encoding="utf-8")):
