@@ -95,17 +95,14 @@ def _nodes_of(tree: bpy.types.NodeTree | None, seen: set[bpy.types.NodeTree]) ->
 def unsteady(avoided: Iterable[bpy.types.Object], relaxed: Sequence[bpy.types.Object]) -> Message | None:
     """Say what changes in avoided objects, or in curves that avoid them, or return None if nothing does."""
     avoided = list(avoided)
-    for obj in avoided:
-        if said := unsteady_object(obj, relaxed):
-            return said
-    for obj in relaxed if avoided else ():
-        if mover := what_moves(obj):
-            sentence = (
-                "'{name}' is moved by {mover}, and curves that avoid something must keep their places; "
-                "remove that, or avoid nothing"
-            )
-            return Message(sentence, name=obj.name, mover=mover)
-    return None
+    if said := next((said for obj in avoided if (said := unsteady_object(obj, relaxed))), None):
+        return said
+    sentence = (
+        "'{name}' is moved by {mover}, and curves that avoid something must keep their places; "
+        "remove that, or avoid nothing"
+    )
+    moved = ((obj, mover) for obj in relaxed if avoided and (mover := what_moves(obj)))
+    return next((Message(sentence, name=obj.name, mover=mover) for obj, mover in moved), None)
 
 
 def unsteady_object(obj: bpy.types.Object, relaxed: Sequence[bpy.types.Object]) -> Message | None:

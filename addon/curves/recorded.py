@@ -94,43 +94,36 @@ def _radii(data: bpy.types.Curve, mesh: Mesh) -> FloatArray:
     return np.concatenate([along(radii(spline), size, spline.use_cyclic_u) for spline, size in pieces])
 
 
-@dataclass(frozen=True, eq=False)
-class WorldMotion:
-    """Curve objects over time; between frames, points move straight, or nearly so if something moves the objects."""
+def world_motion(
+    scene: bpy.types.Scene, objects: Sequence[bpy.types.Object]
+) -> tuple[FloatArray, list[FloatArray], FloatArray]:
+    """Sample curve objects at all their keys; where something moves them, at all frames of the scene too.
 
-    frames: FloatArray  # ascending scene frames; (frames,)
-    points: list[FloatArray]  # points of all objects at each of them; (n, 3)
-    radii: FloatArray  # radius of the thickest tube at each of them; (frames,)
-
-    @classmethod
-    def of(cls, scene: bpy.types.Scene, objects: Sequence[bpy.types.Object]) -> "WorldMotion":
-        """Sample curve objects at all their keys; where something moves them, at all frames of the scene too.
-
-        Modifiers are ignored. Raises CurveError if splines cannot be read.
-        """
-        recorded = [Recorded.of(obj) for obj in objects]
-        moving = any(what_moves(obj) for obj in objects)
-        keyed = [each.frames for each in recorded if len(each.frames) > 1]
-        every = [np.arange(scene.frame_start, scene.frame_end + 1, dtype=np.float64)] if moving else []
-        frames = np.unique(np.concatenate([*keyed, *every] or [np.array([float(scene.frame_start)])]))
-        # places of objects by their names, at each frame where something moves them
-        placements = {obj.name: [placement(obj)] * len(frames) for obj in objects}
-        frame_shown = scene.frame_current, scene.frame_subframe
-        try:
-            for k, frame in enumerate(frames if moving and len(frames) > 1 else ()):
-                scene.frame_set(int(frame // 1), subframe=float(frame % 1))
-                for obj in objects:
-                    placements[obj.name][k] = placement(obj)
-        finally:
-            if (scene.frame_current, scene.frame_subframe) != frame_shown:
-                scene.frame_set(frame_shown[0], subframe=frame_shown[1])
-        points, thickness = [], []
-        for obj, each in zip(objects, recorded, strict=True):
-            shown = each.at(np.interp(frames, each.frames, np.arange(len(each.frames))))
-            there = zip(placements[obj.name], shown.points, strict=True)
-            points.append([place.to_world(shape) for place, shape in there])
-            thickness.append(drawn_radius(obj) * shown.radii.max(axis=1))
-        return cls(frames, [np.concatenate(shapes) for shapes in zip(*points, strict=True)], np.max(thickness, axis=0))
+    Returns ascending scene frames, (frames,), the points of all objects at each of them, (n, 3), and the radius of the
+    thickest tube there. In between, points move straight, or nearly so if something moves the objects. Modifiers are
+    ignored. Raises CurveError if splines cannot be read.
+    """
+    recorded = [Recorded.of(obj) for obj in objects]
+    moving = any(what_moves(obj) for obj in objects)
+    keyed = [each.frames for each in recorded if len(each.frames) > 1]
+    every = [np.arange(scene.frame_start, scene.frame_end + 1, dtype=np.float64)] if moving else []
+    frames = np.unique(np.concatenate([*keyed, *every] or [np.array([float(scene.frame_start)])]))
+    placements = [[placement(obj) for obj in objects]] * len(frames)
+    frame_shown = scene.frame_current, scene.frame_subframe
+    try:
+        for k, frame in enumerate(frames if moving and len(frames) > 1 else ()):
+            scene.frame_set(int(frame // 1), subframe=float(frame % 1))
+            placements[k] = [placement(obj) for obj in objects]
+    finally:
+        if (scene.frame_current, scene.frame_subframe) != frame_shown:
+            scene.frame_set(frame_shown[0], subframe=frame_shown[1])
+    shown = [each.at(np.interp(frames, each.frames, np.arange(len(each.frames)))) for each in recorded]
+    points = [
+        np.concatenate([place.to_world(each.points[k]) for place, each in zip(places, shown, strict=True)])
+        for k, places in enumerate(placements)
+    ]
+    radii = [drawn_radius(obj) * each.radii.max(axis=1) for obj, each in zip(objects, shown, strict=True)]
+    return frames, points, np.max(radii, axis=0)
 
 
 def drawn_radius(obj: bpy.types.Object) -> float:
@@ -148,10 +141,10 @@ class BakedKeys:
 
     def __init__(self, objects: Sequence[bpy.types.Object]) -> None:
         self._objects = objects
-        sizes = [[len(spline.points) for spline in obj.data.splines] for obj in objects]
-        open_too = tuple(flag for obj in objects for flag in closed(obj.data))
-        self.mesh = Mesh(tuple(size for each in sizes for size in each), open_too)
-        self.link = Link(tuple(map(placement, objects)), tuple(map(len, sizes)))
+        splines = [spline for obj in objects for spline in obj.data.splines]
+        flags = tuple(flag for obj in objects for flag in closed(obj.data))
+        self.mesh = Mesh(tuple(len(each.points) for each in splines), flags)
+        self.link = Link(tuple(map(placement, objects)), tuple(len(obj.data.splines) for obj in objects))
         self.sizes = [bake.sizes(obj.data) for obj in objects]
         keys = [keyed_points(obj.data) for obj in objects]
         if len({len(each) for each in keys}) > 1:

@@ -166,12 +166,11 @@ def sampled(obj: bpy.types.Object) -> list[Frame]:
     if len(loops) != len(obj.data.splines):
         sentence = "'{name}' has splines that Blender draws nothing for; delete them, or convert all to Poly first"
         raise CurveError(Message(sentence, name=obj.name))
+    sentence = (
+        "Spline {number} of '{name}' is drawn with only {count} points; raise its Resolution U, or give it more points"
+    )
     for k, (loop, spline) in enumerate(zip(loops, obj.data.splines, strict=True), 1):
         if len(loop) < (3 if spline.use_cyclic_u else 2):
-            sentence = (
-                "Spline {number} of '{name}' is drawn with only {count} points; raise its Resolution U, or give it "
-                "more points"
-            )
             raise CurveError(Message(sentence, number=k, name=obj.name, count=len(loop)))
     return loops
 

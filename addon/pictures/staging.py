@@ -12,7 +12,7 @@ import numpy as np
 
 from ...core import CurveError
 from ...core.keys.colours import COMPONENT
-from ..curves.recorded import WorldMotion
+from ..curves.recorded import world_motion
 from ..curves.splines import read
 from ..curves.surroundings import STAGE, TUBE_OF, WITHOUT_SHAPE
 from . import stage
@@ -42,8 +42,8 @@ def set_up(
     it is none of `LOOKS`. All that lasts until the stage is struck. Raises CurveError if splines cannot be read, or are
     a single point; nothing has changed then.  ``played``: the scene that shows how objects move, if it is another.
     """
-    motion = WorldMotion.of(played or scene, objects)
-    ground = stage.Stage.around(motion.points, np.array([0.0, 0.0, 1.0]))
+    frames, points, radii = world_motion(played or scene, objects)
+    ground = stage.Stage.around(points, np.array([0.0, 0.0, 1.0]))
     if not ground.size:
         raise CurveError("All points of the curves are the same; move them apart")
     strike(scene)
@@ -60,7 +60,7 @@ def set_up(
             collection[f"{HIDDEN}{k}"], obj.hide_render = obj, True
     floor = stage.build(collection, ground, style)
     floor.hide_select = True  # it is in the way of every click
-    eye = stage.follow(collection, (_aspect(scene), 1.0), ground, floor, motion.points, motion.radii, motion.frames)
+    eye = stage.follow(collection, (_aspect(scene), 1.0), ground, floor, points, radii, frames)
     for obj in collection.objects:
         obj[STAGE] = True
     _paint(objects, look)
