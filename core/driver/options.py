@@ -17,10 +17,7 @@ from ..energies import ENERGIES, TERMS, Energy, Term
 from ..solve.metrics import METRICS, Metric
 
 EDGE_LENGTHS = ("auto", "equal", "keep")
-BARRIERS = ("auto", "on", "off")
 MESHES = ("auto", "fixed", "finer", "adaptive")
-UNTANGLE = ("auto", "always", "never")
-SOLVERS = ("auto", "dense", "hierarchical")
 # what "auto" means with the method "paper": nothing that [RS21] does not do
 AS_IN_THE_PAPER = {"barrier": "off", "solver": "dense", "mesh": "fixed", "untangle": "never"}
 
@@ -112,7 +109,7 @@ class RelaxOptions:
         "Barrier",
         "whether near pairs of edges have their exact energy, infinite at contact, instead of the quadrature rule's; "
         "auto: on, except for the method paper",
-        choices=BARRIERS,
+        choices=("auto", "on", "off"),
         metavar="B",
     )
     metric: str | Metric | None = option(  # noqa: RUF009 (a field, made for this class)
@@ -156,7 +153,7 @@ class RelaxOptions:
         "Solver",
         "how sums over all pairs of edges are computed: dense, pair by pair; hierarchical, with distant edges in "
         "clusters, for many vertices; auto takes the faster one",
-        choices=SOLVERS,
+        choices=("auto", "dense", "hierarchical"),
         metavar="S",
     )
     accuracy: float = option(
@@ -217,7 +214,7 @@ class RelaxOptions:
         "whether strands are moved over and under others to remove crossings, every motion proved: auto, where the "
         "flow comes to rest or makes no headway, though a diagram shows that crossings go; always, also before the "
         "flow; these moves change the mesh and do not count as iterations",
-        choices=UNTANGLE,
+        choices=("auto", "always", "never"),
         metavar="U",
         row=True,
     )

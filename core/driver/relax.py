@@ -16,7 +16,7 @@ from ..curve import Curve
 from ..descent.task import Task
 from ..io.trajectory import Iterate
 from . import moves
-from .hand import Hand
+from .moves.hand import Hand
 from .options import RelaxOptions
 from .outcome import INTERRUPTED, OUT_OF_MEMORY, Outcome, Phase, Result, Status
 from .prepare import Symmetrised, start_problem

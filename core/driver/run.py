@@ -3,7 +3,7 @@
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -16,13 +16,14 @@ from ..descent.line_searches import LineSearch
 from ..energies.components import energy_scale
 from ..energies.hierarchy import SampledErrors
 from ..io.trajectory import Iterate, StrandMoves
-from .hand import Hand
 from .options import RelaxOptions
 from .outcome import Outcome, Rises, Status, converged, degenerate, stalled
 from .prepare import Symmetrised
 
-HEADWAY, LOOKING_BACK = 0.01, 100  # part of the energy that goes in so many iterations as long as the flow gets ahead
+if TYPE_CHECKING:
+    from .moves.hand import Hand
 
+HEADWAY, LOOKING_BACK = 0.01, 100  # part of the energy that goes in so many iterations as long as the flow gets ahead
 
 Relaxation = Generator[Iterate, None, Outcome]
 

@@ -1,4 +1,3 @@
 """Morphs: proved motions from one curve to another."""
 
-from .evidence import DifferentError, NoMotionError, compare
-from .morph import morph, morphing, moving
+from .morph import DifferentError, NoMotionError, compare, morph, morphing, moving

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from ..run import Move, Run
 from .balance import Balance
 from .grow import Grow
-from .hold import AwaitHand, Hold
+from .hand import AwaitHand, Hold
 from .hops import ON_A_FIXED_MESH, Hops
 from .links import Composite, OpenKnots, SplitLinks
 from .remesh import CoarseStart, FinerMesh, Remesh, SymmetricStart

@@ -17,7 +17,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.optimize import minimize
 
-from ...base.arguments import checked_fields, number
 from ...base.types import FloatArray
 from ...collision.motion import walk
 from ...curve import Curve
@@ -29,7 +28,6 @@ from ...solve.constraints import weighted_barycenter
 from ..outcome import Outcome, Status
 from ..run import Change, Move
 
-BALANCED = "balanced: bending reduced from {before:.4g} to {after:.4g} (4π² for a round circle)"
 CUT_OFF = "the Möbius image of least bending has not converged yet"
 IS_BALANCED = "no other shape of the same energy that can be reached bends less"
 
@@ -77,15 +75,14 @@ def _barycenter(curve: Curve) -> FloatArray:
     return weighted_barycenter(curve) / curve.length
 
 
-@checked_fields
 @dataclass(eq=False)
 class Balance(Move):
     """Go from a converged curve to its balanced image, once, and once more wherever a hand has pulled it."""
 
-    gain: float = number(0.01, most=1)  # relative decrease of the bending that makes the way worthwhile
+    gain: float = 0.01  # relative decrease of the bending that makes the way worthwhile
     # longest, shortest: steps, in radians of half the sphere's angle of rotation
-    longest: float = number(0.02)
-    shortest: float = number(5e-6)
+    longest: float = 0.02
+    shortest: float = 5e-6
     _before: float | None = field(default=None, init=False)  # bending of the curve before it was balanced
 
     def stepped(self, step: Step) -> None:
@@ -103,8 +100,10 @@ class Balance(Move):
         if self._before is not None:
             before, after = self._before, bending(run.iterate.curve)
             # on coarse and uneven meshes energies of images differ, and the flow may have gone all the way back
-            gained = after <= (1.0 - self.gain) * before
-            return outcome.adding(BALANCED, before=before, after=after) if gained else outcome.adding(IS_BALANCED)
+            if after > (1.0 - self.gain) * before:
+                return outcome.adding(IS_BALANCED)
+            told = "balanced: bending reduced from {before:.4g} to {after:.4g} (4π² for a round circle)"
+            return outcome.adding(told, before=before, after=after)
         steps = self.way(run.point)
         if not steps:
             return outcome.adding(IS_BALANCED)

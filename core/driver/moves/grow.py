@@ -5,7 +5,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...base.arguments import checked_fields, number
 from ...collision.motion import walk
 from ...curve.pins import spans
 from ...curve.refine import SPLIT, affordable_pieces, graded_spacing
@@ -19,23 +18,20 @@ from ..outcome import Outcome
 from ..run import Change, Event, Move
 from .remesh import FinerMesh, split_edges
 
-CROWDED = "every motion that changes the lengths as requested causes contact or costs too much energy"
 
-
-@checked_fields
 @dataclass(eq=False)
 class Grow(Move):
     """Change the lengths, by motions proved like all others, each after the steps since the last have settled."""
 
     # fastest, slowest: logarithmic change of the lengths in one motion; less is not worth an iteration
-    fastest: float = number(0.2)
-    slowest: float = number(0.01)
+    fastest: float = 0.2
+    slowest: float = 0.01
     # of the objective, by its scale, in one motion: contacts make more, and take long to relax from
-    rise: float = number(0.25)
-    settled: float = number(0.01)  # decrease of the objective in a step, by its scale, after which the next may come
-    later: float = number(0.1, most=1)  # factor on ``settled`` after no motion was found
-    edges_per_gap: float = number(2.0)  # packed curves bend as tightly as strands are near
-    most: int = number(FinerMesh.most)  # vertices, unless there are more already
+    rise: float = 0.25
+    settled: float = 0.01  # decrease of the objective in a step, by its scale, after which the next may come
+    later: float = 0.1  # factor on ``settled`` after no motion was found
+    edges_per_gap: float = 2.0  # packed curves bend as tightly as strands are near
+    most: int = FinerMesh.most  # vertices, unless there are more already
     _energy: float = field(default=math.inf, init=False)  # after the last event
 
     def __post_init__(self) -> None:
@@ -90,7 +86,11 @@ class Grow(Move):
             self._energy = found.end.energy
             return Change((Step((found,), 0.0, None),))
         self._enough *= self.later
-        return event.stalling(CROWDED) if isinstance(event, Outcome) else event
+        if not isinstance(event, Outcome):
+            return event
+        return event.stalling(
+            "every motion that changes the lengths as requested causes contact or costs too much energy"
+        )
 
     def summarised(self, outcome: Outcome) -> Outcome:
         """The outcome with a clause on how far lengths have come, if they were to change."""

@@ -8,8 +8,7 @@ from itertools import islice
 
 import numpy as np
 
-from ...base.arguments import checked_fields, number
-from ...base.errors import CurveError, OptionError
+from ...base.errors import CurveError
 from ...base.messages import Message
 from ...base.types import FloatArray
 from ...collision.motion import walk
@@ -34,21 +33,16 @@ Field = Callable[[FloatArray], FloatArray]
 """Velocities at vertices; shapes (n, m) -> (n, m)."""
 
 
-@checked_fields
 @dataclass(frozen=True)
 class RandomMotion(ABC):
     """Move along random fields up to a random energy, within constraints; lengths are RMS in radii of gyration."""
 
-    fields: int = number()
-    distance: float = number()  # that the curve moves along each field
-    stride: float = number()  # of a step at most, halved where a step is not accepted
-    shortest: float = number()  # step at which a field is given up
+    fields: int
+    distance: float  # that the curve moves along each field
+    stride: float  # of a step at most, halved where a step is not accepted
+    shortest: float  # step at which a field is given up
     # least and greatest ceiling for the energy of the curve, as multiples of the energy scale
     ceilings: tuple[float, float] = (2.0, 16.0)
-
-    def __post_init__(self) -> None:
-        if not 1.0 <= self.ceilings[0] <= self.ceilings[1] < math.inf:
-            raise OptionError(f"ceilings are {self.ceilings}; they must ascend from 1 or more")
 
     def fits(self, point: Point) -> bool:
         return point.problem.geometry.prescribes
@@ -85,19 +79,18 @@ class RandomMotion(ABC):
             base = leg.end.anchored
 
 
-@checked_fields
 @dataclass(frozen=True)
 class Push(RandomMotion):
     """Push along random soft modes, which slide touching strands along each other; flows would press them together."""
 
-    fields: int = number(3)
-    distance: float = number(1.0)
-    stride: float = number(0.05)  # where strands touch, only short steps are free
-    shortest: float = number(1e-3)
-    modes: int = number(6)  # number of modes in a combination
+    fields: int = 3
+    distance: float = 1.0
+    stride: float = 0.05  # where strands touch, only short steps are free
+    shortest: float = 1e-3
+    modes: int = 6  # number of modes in a combination
     # with the Hessian, to find the modes: soft enough by then, they need not converge any further. From a single
     # start, only one of all rotations and other flat directions can be among them
-    products: int = number(30)
+    products: int = 30
 
     def fits(self, point: Point) -> bool:
         """Whether, in addition, the energy has a second derivative."""
@@ -110,7 +103,6 @@ class Push(RandomMotion):
         return lambda _: u
 
 
-@checked_fields
 @dataclass(frozen=True)
 class Stir(RandomMotion):
     """Stir space by random flows, which fold the curve and turn it over.
@@ -119,13 +111,13 @@ class Stir(RandomMotion):
     ceiling lets the curve forget more of the minimum.
     """
 
-    fields: int = number(10)
-    distance: float = number(1.0)
-    stride: float = number(0.1)
-    shortest: float = number(5e-3)
-    waves: int = number(4)  # number of plane waves that a flow is the sum of
+    fields: int = 10
+    distance: float = 1.0
+    stride: float = 0.1
+    shortest: float = 5e-3
+    waves: int = 4  # number of plane waves that a flow is the sum of
     # standard deviation of each component of their wave vectors, in radians per radius of gyration
-    frequency: float = number(2.0)
+    frequency: float = 2.0
 
     def field(self, point: Point, rng: np.random.Generator) -> Field:
         """A sum of plane waves, each without divergence, most of them shorter than the curve is wide."""
@@ -155,7 +147,6 @@ ON_A_FIXED_MESH: Sequence[Callable[[Run], Move]] = (SplitLinks, Fallback, CheckA
 """The moves in a trial, which neither changes the mesh nor looks for more at its end."""
 
 
-@checked_fields
 @dataclass(eq=False)
 class Hops(Move):
     """Leave the place where a run would end by a motion, and relax from there, if that leads lower.
@@ -167,7 +158,7 @@ class Hops(Move):
     lasts = True  # hops are counted from the start on
     motions: Sequence[RandomMotion] = MOTIONS  # with which hops begin, in turn
     # relative decrease of the objective that counts: vertices sliding along a curve change it by about as much
-    gain: float = number(1e-3, most=1)
+    gain: float = 1e-3
     _tried: int = field(default=0, init=False)
     _taken: int = field(default=0, init=False)
 

@@ -10,7 +10,6 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
-from ...base.arguments import checked_fields, number
 from ...base.errors import MobiusFlowError
 from ...base.messages import COMPONENT, Message
 from ...base.types import FloatArray
@@ -26,35 +25,26 @@ from ...solve.constraints import Barycenters, Parts
 from ..outcome import Outcome
 from ..run import Change, Move, Run
 
-COMPOSITE = (
-    "strands pull tight without limit: the curve is composite, knotted both inside and outside the ball of radius "
-    "{radius:.3g} around ({center}), and has no shape of least energy"
-)
 UNTESTED = "whether the link is composite was not tested, as there are too many ways to divide it"
-HELD = (
-    "unlinked parts, which would drift apart without limit, are held in place; their own energies add up to "
-    "{energy:.6g}"
-)
 DIRECTIONS = np.array([[3, 1, 2], [-2, 3, 1], [1, -2, 3], [-3, -1, 2], [2, -3, -1]]) / np.sqrt(14)
 EFFORT = Effort(vertices=5000, views=3, work=100_000)
 _log = logging.getLogger(__name__)
 
 
-@checked_fields
 @dataclass(eq=False)
 class SplitLinks(Move):
     """Give every part that is far from the others a barycenter of its own among the constraints."""
 
-    interval: int = number(5)  # accepted steps between two checks
-    gap: float = number(1.0)  # least gap between the balls around two parts, in radii of the larger ball
-    most: int = number(50)  # parts: each has rows of its own in the linear systems
+    interval: int = 5  # accepted steps between two checks
+    gap: float = 1.0  # least gap between the balls around two parts, in radii of the larger ball
+    most: int = 50  # parts: each has rows of its own in the linear systems
 
     def stepped(self, step: Step) -> Change | None:
         run, constraints = self.run, self.run.problem.constraints
         if not run.problem.geometry.prescribes or run.iterate.index % self.interval:
             return None
         parts = separate_parts(run.iterate.curve, run.problem.obstacles, self.gap, self.most)
-        if max(parts) <= max(parts_of(run)):
+        if max(parts) <= max(constraints.block(Barycenters).parts):
             return None
         held = Barycenters.of(run.point.curve, constraints.pins, parts)
         return Change(point=run.point.changing(constraints=constraints.replacing(held)))
@@ -65,12 +55,11 @@ class SplitLinks(Move):
         if not max(held.parts) or not held.loose:
             return None
         alone = sum(moebius_energy(part)[0] for part in split(self.run.iterate.curve, held.parts))
-        return outcome.adding(HELD, energy=alone)
-
-
-def parts_of(run: Run) -> Parts:
-    """For each component the number of the part whose barycenter is fixed."""
-    return run.problem.constraints.block(Barycenters).parts
+        told = (
+            "unlinked parts, which would drift apart without limit, are held in place; their own energies add up to "
+            "{energy:.6g}"
+        )
+        return outcome.adding(told, energy=alone)
 
 
 def separate_parts(
@@ -125,10 +114,14 @@ class Composite(Move):
 
     def converged(self, outcome: Outcome) -> Outcome | None:
         ball = shrinking_ball(self.run)
-        if ball is not None:
-            center = ", ".join(f"{x:.3g}" for x in ball.center)
-            return replace(outcome.stalling(COMPOSITE, radius=ball.radius, center=center), unbounded=True)
-        return None if all(map(is_searchable, _may_shrink(self.run))) else outcome.adding(UNTESTED)
+        if ball is None:
+            return None if all(map(is_searchable, _may_shrink(self.run))) else outcome.adding(UNTESTED)
+        composite = (
+            "strands pull tight without limit: the curve is composite, knotted both inside and outside the ball of "
+            "radius {radius:.3g} around ({center}), and has no shape of least energy"
+        )
+        center = ", ".join(f"{x:.3g}" for x in ball.center)
+        return replace(outcome.stalling(composite, radius=ball.radius, center=center), unbounded=True)
 
 
 def shrinking_ball(run: Run) -> Ball | None:
@@ -155,7 +148,7 @@ def _may_shrink(run: Run) -> list[Curve]:
         return []
     return [
         part
-        for part in split(run.iterate.curve, parts_of(run))
+        for part in split(run.iterate.curve, run.problem.constraints.block(Barycenters).parts)
         if part.dimension == 3 and part.mesh.all_closed and is_unresolved(part)
         # less than any composite has: two trefoils (74.4 each) less a circle make 144.8, two Hopf links (47.5 each) 91
         if moebius_energy(part)[0] >= (140.0 if len(part.mesh.component_sizes) == 1 else 90.0)

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...base.arguments import checked_fields, number
 from ...base.errors import MobiusFlowError
 from ...base.messages import Message, joined
 from ...base.types import FloatArray, IntArray
@@ -39,18 +38,12 @@ from ..prepare import equal_lengths, target_lengths
 from ..run import Change, Move
 from .links import is_unresolved, shrinking_ball
 
-ADVICE = Message("a finer or an adaptive mesh may help")
-KEPT = "symmetry {group} was kept, which the start missed by {distance:.2g} times its size"
-NONE = "symmetry {group}, so that there was none to keep"
-UNRESOLVED = "strands are closer than this mesh resolves: a finer one would reach a lower energy"
 
-
-@checked_fields
 @dataclass(eq=False)
 class Remesh(Move):
     """The adaptive mesh: shorter edges where strands are near, and around edges that are stuck."""
 
-    interval: int = number(5)  # accepted steps between two looks at the mesh
+    interval: int = 5  # accepted steps between two looks at the mesh
     _just_refined: bool = field(default=False, init=False)  # around edges that were stuck: once is enough
 
     def stepped(self, step: Step) -> Change | None:
@@ -60,7 +53,7 @@ class Remesh(Move):
 
     def stuck(self, found: NoStep) -> NoStep | Change | None:
         if not self._adapts:
-            return replace(found, reason=joined((found.reason, ADVICE), "; "))
+            return replace(found, reason=joined((found.reason, Message("a finer or an adaptive mesh may help")), "; "))
         if found.limited_by is None or self._just_refined:
             return None
         change = self._change(found.limited_by)
@@ -111,7 +104,6 @@ def proved_remesh(
     return Step((Leg(problem.at_curve(change.moved), free),), 0.0, None), change
 
 
-@checked_fields
 @dataclass(eq=False)
 class FinerMesh(Move):
     """Split edges where strands are nearer than the mesh resolves, or report that this would help.
@@ -125,18 +117,18 @@ class FinerMesh(Move):
     """
 
     # the barrier acts below 3: strands may draw nearer by half; energies are within some 0.1 % then
-    edges_per_gap: float = number(6.0)
-    most: int = number(10_000)  # vertices, unless there are more: what the hierarchical solver has time for
+    edges_per_gap: float = 6.0
+    most: int = 10_000  # vertices, unless there are more: what the hierarchical solver has time for
     # that must be left: it takes two or three to regain what corners cost when their edges are split
-    min_iterations: int = number(5)
-    share: float = number(0.1, most=1)  # of the error, up to which a gain counts as small
+    min_iterations: int = 5
+    share: float = 0.1  # of the error, up to which a gain counts as small
     # relative error of an energy at rest above which vertices are added: estimates of it are a few per cent off
-    accuracy: float = number(9.5e-4)
-    aim: float = number(0.9, most=1)  # part of that error that added vertices are to leave
-    affordable: int = number(1000)  # vertices for that: as many as second derivatives are factorised for
-    pieces: int = number(16)  # of an edge: where pins nearly touch, no number of vertices resolves the gap between them
-    recent: float = number(0.8, most=1)  # part of the steps on this mesh after which gains count
-    pause: float = number(1.1, above=1)  # factor of the number of steps on this mesh from one check to the next
+    accuracy: float = 9.5e-4
+    aim: float = 0.9  # part of that error that added vertices are to leave
+    affordable: int = 1000  # vertices for that: as many as second derivatives are factorised for
+    pieces: int = 16  # of an edge: where pins nearly touch, no number of vertices resolves the gap between them
+    recent: float = 0.8  # part of the steps on this mesh after which gains count
+    pause: float = 1.1  # factor of the number of steps on this mesh from one check to the next
 
     def __post_init__(self) -> None:
         self._resolution = replace(self.run.resolution, edges_per_gap=self.edges_per_gap)
@@ -168,7 +160,8 @@ class FinerMesh(Move):
             return None
         finer = (self._finer() or self._more_exact()) if self.run.iterations_left >= self.min_iterations else None
         if finer is None:
-            return outcome.adding(UNRESOLVED) if is_unresolved(self.run.iterate.curve) else None
+            coarse = "strands are closer than this mesh resolves: a finer one would reach a lower energy"
+            return outcome.adding(coarse) if is_unresolved(self.run.iterate.curve) else None
         return Change(point=finer, resolution=self._resolution)
 
     def _finer(self) -> Point | None:
@@ -235,20 +228,20 @@ class SymmetricStart(Move):
         if symmetrised is None:
             return outcome
         group = symmetrised.group
-        if len(symmetrised.symmetry):
-            return outcome.adding(KEPT, group=group.name, distance=group.distance)
-        return outcome.adding(NONE, group=group.name)
+        if not len(symmetrised.symmetry):
+            return outcome.adding("symmetry {group}, so that there was none to keep", group=group.name)
+        kept = "symmetry {group} was kept, which the start missed by {distance:.2g} times its size"
+        return outcome.adding(kept, group=group.name, distance=group.distance)
 
 
-@checked_fields
 @dataclass(eq=False)
 class CoarseStart(Move):
     """Leave vertices out, as far as the gaps between strands allow; in the end bring all back, on a smooth curve."""
 
-    min_vertices: int = number(1500)  # from which it is worthwhile
-    min_gain: float = number(2.0, above=1)  # factor by which there must be fewer vertices at first
-    min_iterations: int = number(30)  # the way there and back takes a dozen, and leaves some for untangling
-    min_share: float = number(0.05, most=1)  # of the way to the smooth curve; with less the curve stays as it is
+    min_vertices: int = 1500  # from which it is worthwhile
+    min_gain: float = 2.0  # factor by which there must be fewer vertices at first
+    min_iterations: int = 30  # the way there and back takes a dozen, and leaves some for untangling
+    min_share: float = 0.05  # of the way to the smooth curve; with less the curve stays as it is
     _coarse: Curve | None = field(default=None, init=False)
 
     def __post_init__(self) -> None:

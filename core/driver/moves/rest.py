@@ -10,7 +10,6 @@ from functools import cached_property
 
 import numpy as np
 
-from ...base.arguments import checked_fields, number
 from ...base.messages import Message
 from ...curve import Curve, Mesh
 from ...curve.symmetry import NO_SYMMETRY
@@ -29,25 +28,19 @@ from .links import is_unresolved
 
 MINIMUM = "a minimum"
 SADDLE = "a saddle of index {index}"
-AMONG = "{kind} among curves of symmetry {group}, {whole} among all"
-INACCURATE = (
-    "the hierarchical solver misses the requested accuracy: against dense sums over a sample its relative errors are "
-    "up to {energy:.1g} in the energy and {norm:.1g} in the gradient norm; the dense solver has no such error"
-)
 ILL_CONDITIONED = "the Hessian is too ill-conditioned to tell a minimum from a saddle"
 
 
-@checked_fields
 @dataclass(eq=False)
 class Settle(Move):
     """On the last mesh second derivatives take over from L-BFGS until nothing is left to gain; they give the index."""
 
     newton: Newton = field(default_factory=Newton)
-    loosest: float = number(1e-4)  # tolerance above which small gradients are all that is required
-    gradient: float = number(1e-3)  # norm of the gradient, relative to √E, at which second derivatives take over
-    exact: float = number(1e-8)  # gain that may be left, relative to E
-    rounds: int = number(6)  # of steps at rest: in a curved valley, where these are short, they would never end
-    trusted: float = number(0.1)  # largest σ: where more is needed, as on a ridge, L-BFGS goes on
+    loosest: float = 1e-4  # tolerance above which small gradients are all that is required
+    gradient: float = 1e-3  # norm of the gradient, relative to √E, at which second derivatives take over
+    exact: float = 1e-8  # gain that may be left, relative to E
+    rounds: int = 6  # of steps at rest: in a curved valley, where these are short, they would never end
+    trusted: float = 0.1  # largest σ: where more is needed, as on a ridge, L-BFGS goes on
 
     def __post_init__(self) -> None:
         self.started()
@@ -98,7 +91,8 @@ class Settle(Move):
         except np.linalg.LinAlgError:
             return None  # it is at rest, judged by its gradient
         outcome = replace(outcome, negative_eigenvalues=whole, symmetric_negative_eigenvalues=index)
-        return outcome.adding(AMONG, kind=_kind(index), group=symmetry, whole=_kind(whole))
+        among = "{kind} among curves of symmetry {group}, {whole} among all"
+        return outcome.adding(among, kind=_kind(index), group=symmetry, whole=_kind(whole))
 
     def _steps(self, curvature: Curvature, inverse: FactorisedHessian, shift: float) -> tuple[Step, ...]:
         most, least = self.run.iterations_left, self._least(curvature.point)
@@ -177,15 +171,14 @@ class EscapeSaddle(Move):
         return Change((step,)) if isinstance(step, Step) else outcome.adding("no step down from it was found")
 
 
-@checked_fields
 @dataclass(eq=False)
 class Fallback(Move):
     """Hand over to another method where no step is found, and back after some steps."""
 
     # its metric does not see how near strands are, and so does not hold them together
     method: Method = METHODS["flow-h3-2"]
-    steps: int = number(10)  # number of steps it takes
-    progress: float = number(1e-6, most=1)  # relative decrease of the energy without which another attempt is pointless
+    steps: int = 10  # number of steps it takes
+    progress: float = 1e-6  # relative decrease of the energy without which another attempt is pointless
     _until: int = field(default=0, init=False)  # iterate at which the fallback hands back
     _tried_at: float = field(default=math.inf, init=False)  # energy at the last attempt on the present mesh
 
@@ -250,4 +243,9 @@ class CheckAccuracy(Move):
             outcome = outcome.adding(tightened, order=errors.order)
         if errors.within(self.run.options.accuracy):
             return outcome
-        return outcome.adding(INACCURATE, energy=errors.energy.bound, norm=errors.gradient_norm.bound)
+        inaccurate = (
+            "the hierarchical solver misses the requested accuracy: against dense sums over a sample its relative "
+            "errors are up to {energy:.1g} in the energy and {norm:.1g} in the gradient norm; the dense solver has no "
+            "such error"
+        )
+        return outcome.adding(inaccurate, energy=errors.energy.bound, norm=errors.gradient_norm.bound)

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...base.arguments import checked_fields, number
 from ...base.deadline import TimeIsUp
 from ...base.errors import MobiusFlowError
 from ...base.messages import Message
@@ -30,14 +29,8 @@ from .links import shrinking_ball
 
 # directions to the points, ten lengths of the curve from its middle, where ends are joined
 WAYS = 10.0 * np.array([[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]])
-NO_ITERATIONS = Message("none, as there are to be no iterations")
-PACKED = Message("none, as what grows between pins or among obstacles is left to the flow")
-KNOTTED = Message("others would undo a knot between pinned ends")
-STRETCHED = Message("others would stretch the curve between pins")
-IN_VAIN = "strands were being moved, but with {left} of {before} crossings left nothing is kept of that"
 
 
-@checked_fields
 @dataclass(eq=False)
 class Untangling(Move):
     """Strand moves where the flow comes to rest or makes no headway, though a diagram shows that crossings go.
@@ -46,8 +39,8 @@ class Untangling(Move):
     """
 
     # crossings that must go from a curve with pins: lengths between them, which moves change, come back step by step
-    many: int = number(20)
-    room: int = number(50)  # iterations to be left: with fewer the flow might end higher
+    many: int = 20
+    room: int = 50  # iterations to be left: with fewer the flow might end higher
 
     remarks: list[Message] = field(default_factory=list)
 
@@ -62,7 +55,8 @@ class Untangling(Move):
             return None
         packed = run.options.grow != 1.0 and not run.problem.unconfined
         if packed or run.max_iterations == 0:
-            self._tell(PACKED if packed else NO_ITERATIONS)
+            left = "none, as what grows between pins or among obstacles is left to the flow"
+            self._tell(Message(left if packed else "none, as there are to be no iterations"))
             return None
         return Change(iterates=self._untangled())
 
@@ -161,13 +155,18 @@ class Untangling(Move):
             if least is None or earlier is None:
                 earlier = earlier or StrandMoves(seen.crossings, seen.crossings)
                 least = seen.crossings - 1 if run.options.untangle == "always" else seen.crossings // 2
-            self._in_vain = Message(IN_VAIN, left=seen.crossings, before=earlier.before)
+            in_vain = "strands were being moved, but with {left} of {before} crossings left nothing is kept of that"
+            self._in_vain = Message(in_vain, left=seen.crossings, before=earlier.before)
             if seen.crossings > least:
                 continue
             end = stages[-1].end
-            refused = STRETCHED if lengths.stretched(end) else KNOTTED if _closures(end, ways) != knots else None
-            if refused:
+            if lengths.stretched(end):
+                refused = Message("others would stretch the curve between pins")
                 continue
+            if _closures(end, ways) != knots:
+                refused = Message("others would undo a knot between pinned ends")
+                continue
+            refused = None
             point, least, so_far = lengths.point(end), seen.crossings, run.strand_moves or earlier
             spent = so_far.seconds + time.perf_counter() - began
             now = so_far._replace(left=least, moves=earlier.moves + seen.moves, seconds=spent, done=False)
