@@ -9,11 +9,10 @@ They stand between ``<!-- generated: NAME -->`` and ``<!-- end -->``.
 import argparse
 import re
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable
 from fnmatch import fnmatchcase
 from inspect import cleandoc
 from pathlib import Path
-from types import MappingProxyType
 
 import mobius_flow
 from import_map import drawn, import_map
@@ -26,43 +25,47 @@ from mobius_flow.core.io import FORMATS
 from mobius_flow.core.solve.metrics import METRICS
 
 ROOT = Path(__file__).resolve().parents[1]
-_REGION = re.compile(r"(?<=<!-- generated: )(\w+)( -->\n)(.*?)(?=<!-- end -->)", re.DOTALL)
 
 
 def energies() -> str:
     """The available energies."""
     rows = [(f"`{name}`", each.description, f"{each.scale_exponent:g}") for name, each in ENERGIES.items()]
-    return _table(("name", "what it is", "scaling exponent"), rows)
+    return table(("name", "what it is", "scaling exponent"), rows)
 
 
 def metrics() -> str:
     """The metrics, each with its inner product, taken from the first sentence of its class."""
     rows = [
-        (f"`{name}`", _typeset(each.description), _first_line(type(each)).removesuffix("."), f"{each.most_vertices:,}")
-        for name, each in METRICS.items()
-    ]
-    return _table(("name", "space", "⟨u, u⟩", "vertices up to"), rows)
+        (f"`{name}`", typeset(each.description), cleandoc(str(type(each).__doc__)).splitlines()[0].removesuffix("."),
+         f"{each.most_vertices:,}") for name, each in METRICS.items()
+    ]  # fmt: skip
+    return table(("name", "space", "⟨u, u⟩", "vertices up to"), rows)
 
 
 def methods() -> str:
-    """The methods, each linked to the section whose heading names it."""
-    sections = list(_sections())
-    rows = []
+    """The methods, each linked to the section whose heading has its name, or a pattern that it fits."""
+    page, rows = (ROOT / "docs/methods.md").read_text(encoding="utf-8"), []
+    headings = re.findall(r"^## (.+: `.+)$", page, re.MULTILINE)
     for name, each in METHODS.items():
-        anchor = next((anchor for anchor, names in sections if _is_one_of(name, names)), "")
-        link = f"[`{name}`](#{anchor})" if anchor else f"`{name}`"
-        rows.append((link, _typeset(each.description)))
-    return _table(("name", "what it is"), rows)
+        link = f"`{name}`"
+        for heading in headings:  # anchors as GitHub and MyST make them
+            if any(fnmatchcase(name, pattern) for pattern in re.findall(r"`(\S+)`", heading)):
+                anchor = re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-")
+                link = f"[`{name}`](#{anchor})"
+                break
+        rows.append((link, typeset(each.description)))
+    return table(("name", "what it is"), rows)
 
 
 def options() -> str:
     """The options of a relaxation, as on the command line."""
     rows = []
     for each in declared(RelaxOptions):
-        plain = each.kind is bool or each.repeated
-        default = "" if plain else f" (default: {each.automatic or each.default})"
-        rows.append((_code(flag(each), "" if each.kind is bool else each.metavar), each.phrase + default))
-    return _definitions(rows)
+        default = "" if each.kind is bool or each.repeated else f" (default: {each.automatic or each.default})"
+        rows.append(
+            (f"`{flag(each)} {'' if each.kind is bool else each.metavar}".rstrip() + "`", each.phrase + default)
+        )
+    return definitions(rows)
 
 
 def commands() -> str:
@@ -75,14 +78,14 @@ def commands() -> str:
         add_to(alone, name)
         for each in alone._actions:
             if each.option_strings and each.dest not in elsewhere and each.help not in (None, argparse.SUPPRESS):
-                option = _code(max(each.option_strings, key=len), str(each.metavar or ""))
+                option = f"`{max(each.option_strings, key=len)} {each.metavar or ''}".rstrip() + "`"
                 takers.setdefault(option, []).append(f"`{name}`")
                 texts.setdefault(option, str(each.help))
     several = [(f"{one} ({', '.join(names)})", texts[one]) for one, names in takers.items() if len(names) > 1]
     sections = {"Several commands": several}
     for name in (*COMMANDS, *joined()):
         sections[f"`{name}`"] = [(one, texts[one]) for one, names in takers.items() if names == [f"`{name}`"]]
-    return "".join(f"### {title}\n\n{_definitions(rows)}" for title, rows in sections.items() if rows)
+    return "".join(f"### {title}\n\n{definitions(rows)}" for title, rows in sections.items() if rows)
 
 
 def formats() -> str:
@@ -90,7 +93,7 @@ def formats() -> str:
     suffixes: dict[str, list[str]] = {}
     for suffix, form in FORMATS.items():
         suffixes.setdefault(form.description, []).append(f"`{suffix}`")
-    return _table(("suffix", "what the file holds"), [(", ".join(names), text) for text, names in suffixes.items()])
+    return table(("suffix", "what the file holds"), [(", ".join(names), text) for text, names in suffixes.items()])
 
 
 def rooms() -> str:
@@ -98,58 +101,20 @@ def rooms() -> str:
     return f"```text\n{drawn(import_map(ROOT))}\n```\n"
 
 
-RENDERERS: Mapping[str, Callable[[], str]] = MappingProxyType(
-    {each.__name__: each for each in (energies, metrics, methods, options, commands, formats, rooms)}
-)
-
-
-def documents() -> list[Path]:
-    """The documents that may have generated parts."""
-    return [ROOT / "README.md", *sorted(ROOT.glob("docs/**/*.md"))]
-
-
-def regions(text: str) -> list[str]:
-    """The names of the parts of a document."""
-    return [match[1] for match in _REGION.finditer(text)]
-
-
-def rendered(text: str) -> str:
-    """A document with its parts brought up to date."""
-    return _REGION.sub(lambda match: f"{match[1]}{match[2]}{RENDERERS[match[1]]()}", text)
-
-
-def _table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:
+def table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:
+    """A table in Markdown."""
     lines = [head, ("---",) * len(head), *(tuple(cell.replace("|", "\\|") for cell in row) for row in rows)]
     return "".join(f"| {' | '.join(cells)} |\n" for cells in lines)
 
 
-def _typeset(text: str) -> str:
-    """Typeset spaces and metrics as formulas."""
-    return re.sub(r"W\^\{.*?\}|J_C", r"$\g<0>$", text)
-
-
-def _first_line(owner: type) -> str:
-    return cleandoc(str(owner.__doc__)).splitlines()[0]
-
-
-def _sections() -> Iterator[tuple[str, list[str]]]:
-    """The anchor of each section about methods, as GitHub and MyST make it, and the names or patterns it covers."""
-    for heading in re.findall(r"^## (.+: `.+)$", (ROOT / "docs/methods.md").read_text(encoding="utf-8"), re.MULTILINE):
-        anchor = re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-")
-        yield anchor, re.findall(r"`(\S+)`", heading)
-
-
-def _is_one_of(name: str, patterns: Iterable[str]) -> bool:
-    return any(fnmatchcase(name, pattern) for pattern in patterns)
-
-
-def _definitions(rows: Iterable[tuple[str, str]]) -> str:
+def definitions(rows: Iterable[tuple[str, str]]) -> str:
     """A list of terms and their meanings, which fits on a telephone's screen too."""
     return "".join(f"{term}\n: {text[0].upper()}{text[1:]}.\n\n" for term, text in rows)
 
 
-def _code(*words: str) -> str:
-    return f"`{' '.join(filter(None, words))}`"
+def typeset(text: str) -> str:
+    """Spaces and metrics as formulas."""
+    return re.sub(r"W\^\{.*?\}|J_C", r"$\g<0>$", text)
 
 
 def main() -> int:
@@ -159,15 +124,18 @@ def main() -> int:
     check = parser.parse_args().check
     if Path(mobius_flow.__file__).resolve().parent != ROOT:
         parser.error(f"Python imports {mobius_flow.__file__}; install this checkout instead: pip install -e .")
-    stale = []
-    for path in documents():
+    made = {each.__name__: each for each in (energies, metrics, methods, options, commands, formats, rooms)}
+    stale = 0
+    for path in (ROOT / "README.md", *sorted(ROOT.glob("docs/**/*.md"))):
         text = path.read_text(encoding="utf-8")
-        if (new := rendered(text)) != text:
-            stale.append(path)
+        part = r"(?<=<!-- generated: )(\w+)( -->\n)(.*?)(?=<!-- end -->)"
+        new = re.sub(part, lambda match: f"{match[1]}{match[2]}{made[match[1]]()}", text, flags=re.DOTALL)
+        if new != text:
+            stale += 1
             if not check:
                 path.write_text(new, encoding="utf-8")
-    for path in stale:
-        print(f"{path.relative_to(ROOT)} {'is out of date; python tools/docs.py mends it' if check else 'rewritten'}")
+            what = "is out of date; python tools/docs.py mends it" if check else "rewritten"
+            print(f"{path.relative_to(ROOT)} {what}")
     return 1 if check and stale else 0
 
 

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 from mobius_flow.core import Curve, Mesh, RelaxOptions, minimize
-from mobius_flow.core.base.types import ComplexArray, FloatArray
+from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.curve.fourier import FourierCurve
 from mobius_flow.core.knots import KNOTS, knot
 from mobius_flow.core.knots.diagrams import quick_invariants
@@ -27,12 +27,6 @@ from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
 KEPT = Path(__file__).resolve().parents[1] / "build" / "knot_shapes"
-VERTICES = 160  # at least
-MODES = range(1, 60)
-TOLERANCES = (0.004, 0.002, 0.001)  # of the half-width, between relaxed and stored curve
-VIEWS = 400
-FAVOUR = 1.1  # a little more may be hidden where a curve is seen along its flattest axis
-NEAR = 0.25  # in the picture, of the curve's radius
 
 
 def main() -> int:
@@ -52,11 +46,6 @@ def main() -> int:
     return 0
 
 
-def rounded(given: FourierCurve) -> FourierCurve:
-    """A shape as stored: coefficients are multiples of the quantum."""
-    return FourierCurve(tuple(QUANTUM * np.round(c / QUANTUM) for c in given.coefficients))
-
-
 def store(given: Mapping[str, FourierCurve], path: Path = FILE) -> None:
     """Write shapes, rounded."""
     parts = [c for each in given.values() for c in each.coefficients]
@@ -74,7 +63,7 @@ def relaxed(name: str) -> Curve:
     """The relaxed polygon of a knot; the motion there from its closed braid is proved free of contact."""
     path = KEPT / f"{name}.npz"
     if not path.exists():
-        start = max(knot(name), knot(name, VERTICES), key=len)
+        start = max(knot(name), knot(name, 160), key=len)
         result = minimize(start, RelaxOptions(vertices=len(start), mesh="fixed", balance=True))
         if not (result.certified and result.outcome.converged):
             sys.exit(f"{name}: the relaxation ended, {result.message}")
@@ -86,83 +75,63 @@ def relaxed(name: str) -> Curve:
 
 def facing(curve: Curve) -> Curve:
     """A curve turned so that few strands are hidden as seen from +z, wide along x, and scaled to half-width 1."""
+
+    def signed(axis: FloatArray, points: FloatArray) -> FloatArray:
+        """An axis with the sign that puts the first point more than half-way out along it on its positive side.
+
+        The sign of eigenvectors depends on rounding, which differs from processor to processor.
+        """
+        along = points @ axis
+        return np.asarray(axis * np.sign(along[np.argmax(np.abs(along) > 0.5 * np.abs(along).max())]))
+
+    def clutter(points: FloatArray) -> int:
+        """Pairs of vertices that are near each other in the picture: at crossings, and where strands recede."""
+        near = 0.25 * float(np.linalg.norm(points, axis=1).max())
+        return len(cKDTree(points[:, :2]).query_pairs(near, output_type="ndarray"))
+
     points = curve.vertices - curve.vertices.mean(axis=0)
-    turned = min((points @ view for view in _views()), key=_clutter)
-    if _clutter(flat := points @ _principal(points)) < FAVOUR * _clutter(turned):
-        turned = flat
-    turned[:, :2] = turned[:, :2] @ _wide(turned[:, :2])
-    low, high = turned.min(axis=0), turned.max(axis=0)
-    return curve.with_vertices((turned - 0.5 * (low + high)) / (0.5 * (high - low).max()))
-
-
-def _principal(points: FloatArray) -> FloatArray:
-    """Rotation to look along the curve's flattest axis, which shows symmetries; (3, 3)."""
-    x, y = (_signed(axis, points) for axis in np.linalg.svd(points, full_matrices=False)[2][:2])
-    return np.stack([x, y, np.cross(x, y)], axis=1)
-
-
-def _wide(points: FloatArray) -> FloatArray:
-    """Rotation in the plane that turns the widest axis of a picture to +x; (2, 2)."""
-    x, y = _signed(np.linalg.eigh(points.T @ points)[1][:, -1], points)
-    return np.array([[x, -y], [y, x]])
-
-
-def _signed(axis: FloatArray, points: FloatArray) -> FloatArray:
-    """An axis with the sign that puts the first point more than half-way out along it on its positive side.
-
-    The sign of eigenvectors depends on rounding, which differs from processor to processor.
-    """
-    along = points @ axis
-    return np.asarray(axis * np.sign(along[np.argmax(np.abs(along) > 0.5 * np.abs(along).max())]))
-
-
-def _views() -> list[FloatArray]:
-    """Rotations to look from directions spread over the sphere (Fibonacci's spiral); each (3, 3)."""
-    k = np.arange(VIEWS) + 0.5
-    z, phi = 1.0 - 2.0 * k / VIEWS, np.pi * (1.0 + np.sqrt(5.0)) * k
-    rho = np.sqrt(1.0 - z**2)
-    views = []
+    # 400 directions spread over the sphere, by Fibonacci's spiral
+    k = np.arange(400) + 0.5
+    z, phi = 1.0 - 2.0 * k / 400, np.pi * (1.0 + np.sqrt(5.0)) * k
+    rho, views = np.sqrt(1.0 - z**2), []
     for normal in np.stack([rho * np.cos(phi), rho * np.sin(phi), z], axis=1):
         x = np.cross(normal, np.eye(3)[np.abs(normal).argmin()])
         x /= np.linalg.norm(x)
         views.append(np.stack([x, np.cross(normal, x), normal], axis=1))
-    return views
-
-
-def _clutter(points: FloatArray) -> int:
-    """Number of pairs of vertices that are near each other in the picture: at crossings, and where strands recede."""
-    size = float(np.linalg.norm(points, axis=1).max())
-    return len(cKDTree(points[:, :2]).query_pairs(NEAR * size, output_type="ndarray"))
+    turned = min((points @ view for view in views), key=clutter)
+    # along the flattest axis, which shows symmetries, a little more may be hidden
+    x, y = (signed(axis, points) for axis in np.linalg.svd(points, full_matrices=False)[2][:2])
+    if clutter(flat := points @ np.stack([x, y, np.cross(x, y)], axis=1)) < 1.1 * clutter(turned):
+        turned = flat
+    x, y = signed(np.linalg.eigh(turned[:, :2].T @ turned[:, :2])[1][:, -1], turned[:, :2])  # the widest axis
+    turned[:, :2] = turned[:, :2] @ np.array([[x, -y], [y, x]])
+    low, high = turned.min(axis=0), turned.max(axis=0)
+    return curve.with_vertices((turned - 0.5 * (low + high)) / (0.5 * (high - low).max()))
 
 
 def shape(name: str) -> FourierCurve:
     """Fit a knot's shape with the fewest modes that stay close to it and are proved to keep its type."""
     curve = facing(relaxed(name))
-    for tolerance in TOLERANCES:
-        fitted = rounded(FourierCurve(tuple(_fitted(part, tolerance) for part in curve.components)))
-        if is_proved(curve, fitted):
+    for tolerance in (0.004, 0.002, 0.001):  # of the half-width, between relaxed and stored curve
+        coefficients = []
+        for points in curve.components:
+            closed = np.concatenate([points, points[:1]])
+            spline = CubicSpline(np.append(arc_steps(points), 1.0), closed, bc_type="periodic")
+            samples = spline(np.arange(1024) / 1024)
+            spectrum = np.fft.rfft(samples, axis=0) / 512
+            spectrum[0] /= 2
+            for modes in range(1, 60):
+                kept = np.where(np.arange(len(spectrum))[:, None] <= modes, spectrum, 0.0)
+                kept[0] *= 2
+                if np.abs(np.fft.irfft(kept * 512, axis=0) - samples).max() < tolerance:
+                    break
+            coefficients.append(spectrum[: modes + 1])
+        fitted = FourierCurve(tuple(QUANTUM * np.round(c / QUANTUM) for c in coefficients))  # as it is stored
+        # the motion from the relaxed polygon to the one inscribed in the shape is free of contact
+        polygon = fitted.polygon(fitted.sizes)
+        if is_isotopic(curve, [arc_steps(part) for part in curve.components], polygon, equal_steps(polygon)):
             return fitted
     sys.exit(f"{name}: the motion from the relaxed curve to no stored shape is proved free of contact")
-
-
-def _fitted(points: FloatArray, tolerance: float) -> ComplexArray:
-    """Fourier coefficients (modes + 1, 3) of a closed polygon's spline by arc length."""
-    spline = CubicSpline(np.append(arc_steps(points), 1.0), np.concatenate([points, points[:1]]), bc_type="periodic")
-    samples = spline(np.arange(1024) / 1024)
-    spectrum = np.fft.rfft(samples, axis=0) / 512
-    spectrum[0] /= 2
-    for modes in MODES:
-        kept = np.where(np.arange(len(spectrum))[:, None] <= modes, spectrum, 0.0)
-        kept[0] *= 2
-        if np.abs(np.fft.irfft(kept * 512, axis=0) - samples).max() < tolerance:
-            break
-    return np.asarray(spectrum[: modes + 1])
-
-
-def is_proved(curve: Curve, fitted: FourierCurve) -> bool:
-    """Whether the motion from a relaxed polygon to the one inscribed in a shape is proved free of contact."""
-    polygon = fitted.polygon(fitted.sizes)
-    return is_isotopic(curve, [arc_steps(part) for part in curve.components], polygon, equal_steps(polygon))
 
 
 if __name__ == "__main__":
