@@ -32,8 +32,7 @@ CODES: Mapping[str, str] = {
 _BRAID = re.compile(r"[\[({]\s*(?:(\d+)\s*,\s*[\[({])?([^\[\](){}]*)[\])}\s]*")
 _CODE = re.compile(r"[^\[({]*[\[({].*\d.*|[\d\s,;+-]+|[a-zA-Z]{4,}(\.[01]+)?", re.DOTALL)  # not a column's title
 _NAME = re.compile(r"(m?[KL]?\d+(?:\^\d)?(?:_|[an]_?)\d+)(?:\(0,0\))*")  # a knot's, and as SnapPy prints manifolds
-_EDGES = 4  # in a row of Knoodle's, before the sign and two colours
-_COLUMNS = range(_EDGES, _EDGES + 4)
+_COLUMNS = range(4, 8)  # of Knoodle's: four edges, and perhaps the sign and two colours
 
 
 def _read(kind: str, source: Source) -> list[Polygon]:
@@ -96,10 +95,10 @@ def knoodle_diagrams(source: Source) -> list[Diagram]:
 def _crossings(source: Source, rows: list[tuple[int, list[int]]]) -> Diagram:
     """The diagram of crossings with their lines; raises CurveError if there is none, or given signs contradict it."""
     check_count(len(rows))
-    diagram = diagram_of([edges[:_EDGES] for _, edges in rows])
+    diagram = diagram_of([edges[:4] for _, edges in rows])
     for (number, edges), sign, (a, b) in zip(rows, diagram.signs, diagram.joins(), strict=True):
-        if a == b and len(edges) % 2 and edges[_EDGES] != sign:
-            raise source.error(f"the sign of this crossing is {edges[_EDGES]}, but its edges make it {sign}", number)
+        if a == b and len(edges) % 2 and edges[4] != sign:
+            raise source.error(f"the sign of this crossing is {edges[4]}, but its edges make it {sign}", number)
     return diagram
 
 

@@ -17,8 +17,6 @@ from .source import Source
 Point = Sequence[float]
 Triangle = tuple[int, int, int]
 
-_MAX_CUTTING = 1 << 24  # squares of the faces' numbers of corners, together: seconds; one face of 4,096 corners
-
 
 @checked
 def read_obstacle(path: str | os.PathLike[str]) -> Obstacle:
@@ -33,14 +31,13 @@ def read_obstacle(path: str | os.PathLike[str]) -> Obstacle:
     if path.suffix.lower() == ".obj":
         source = Source.load(path)
         content = parsed(source)
-        # cutting a face into triangles takes time like the square of its corners
+        most = 1 << 24  # squares of numbers of corners, which cutting into triangles takes time like: seconds
         for face, work in zip(content.faces, accumulate(len(face.words) ** 2 for face in content.faces), strict=True):
-            if work > _MAX_CUTTING:
-                raise source.error(
-                    f"a face with {len(face.words)} corners takes too long to cut into triangles after those before "
-                    "it; triangulate the mesh before exporting it",
-                    face.line,
+            if work > most:
+                reason = (
+                    f"a face with {len(face.words)} corners takes too long to cut into triangles after those before it"
                 )
+                raise source.error(f"{reason}; triangulate the mesh before exporting it", face.line)
         triangles = [triangle for face in content.faces for triangle in _triangles(source, content, face)]
         segments = [(link.tail, link.head) for link in content.links]
         if not triangles and not segments:

@@ -15,10 +15,7 @@ from ..curve.curve import Curve
 
 MAX_BYTES = 16 << 20  # two hundred thousand vertices with all their digits
 MAX_LINES = 500_000
-MAX_DIMENSION = 16  # embeddedness is checked in each of its planes
-_INTEGER = re.compile(r"[+-]?[0-9]+", re.ASCII)
-_MAX_DIGITS = 18  # digits; any number beyond that is not a count or index of anything in memory
-_LFS = b"version https://git-lfs"
+_INTEGER = re.compile(r"[+-]?[0-9]{1,18}")  # with more digits it is no count or index of anything in memory
 _log = logging.getLogger(__name__)
 
 
@@ -49,7 +46,7 @@ class Source:
             raise CurveFileError(path, f"cannot be read: {reason_of(error)}") from error
         if len(data) > most:
             raise CurveFileError(path, f"longer than {most >> 20} MB, more than this program reads")
-        if data.startswith(_LFS):
+        if data.startswith(b"version https://git-lfs"):
             raise CurveFileError(path, "a pointer of Git LFS, not the file itself: get it with git lfs pull")
         nul = data.find(b"\0")
         try:
@@ -84,7 +81,7 @@ class Source:
             raise self.error(f"{shown(token)} is not a number", line) from None
 
     def integer(self, token: str, line: int) -> int:
-        if not _INTEGER.fullmatch(token) or len(token) > _MAX_DIGITS:
+        if not _INTEGER.fullmatch(token):
             raise self.error(f"{shown(token)} is not a whole number", line)
         return int(token)
 
@@ -117,33 +114,26 @@ def assemble(source: Source, polygons: Sequence[Polygon]) -> Curve:
     if not polygons:
         raise source.error("no vertex found; give at least one polygon")
     dimension = len(polygons[0].points[0]) if polygons[0].points else 0
-    if dimension > MAX_DIMENSION:
-        reason = f"vertices have {dimension} coordinates; there may be at most {MAX_DIMENSION}"
-        raise source.error(reason, polygons[0].line_of(0))
+    if dimension > 16:  # embeddedness is checked in each of its planes
+        raise source.error(f"vertices have {dimension} coordinates; there may be at most 16", polygons[0].line_of(0))
     components = []
     for number, polygon in enumerate(polygons, start=1):
         for i, point in enumerate(polygon.points):
+            place = f"component {number}, vertex {i + 1}"
             if len(point) != dimension:
-                reason = (
-                    f"component {number}, vertex {i + 1} has {len(point)} coordinates, the first vertex {dimension}"
-                )
+                reason = f"{place} has {len(point)} coordinates, the first vertex {dimension}"
                 raise source.error(reason, polygon.line_of(i))
             if not all(map(math.isfinite, point)):
-                reason = f"component {number}, vertex {i + 1} is not finite: {list(point)}"
-                raise source.error(reason, polygon.line_of(i))
-        points = polygon.points
+                raise source.error(f"{place} is not finite: {list(point)}", polygon.line_of(i))
+        points, closed = polygon.points, polygon.closed or polygon.repeats_first
         if polygon.repeats_first:
-            _log.warning(
-                "%s: the last vertex of component %d repeats its first; dropped, since polygons close by themselves",
-                source.path,
-                number,
-            )
+            note = "%s: the last vertex of component %d repeats its first; dropped, since polygons close by themselves"
+            _log.warning(note, source.path, number)
             points = points[:-1]
-        closed = polygon.closed or polygon.repeats_first
         if len(points) < (least := 3 if closed else 2):
             count = "1 vertex" if len(points) == 1 else f"{len(points)} vertices"
-            kind = "a closed polygon" if closed else "an open polygon"
-            reason = f"component {number} has {count}; {kind} needs at least {least} different vertices"
+            kind = "a closed" if closed else "an open"
+            reason = f"component {number} has {count}; {kind} polygon needs at least {least} different vertices"
             raise source.error(reason, polygon.line_of(0) if points else None)
         components.append(points)
     try:

@@ -23,8 +23,6 @@ from .motion import Keys, Proof
 from .placement import Frame
 
 AIR = 0.94  # of half the gap, so that strands do not seem to touch
-_BENT = 1.1  # radians by which a curve turns, at most, along the tube's diameter: more, and the tube is a lump
-_THINNED = 0.5  # of its radius is left where a curve turns more than that
 
 
 def thickest_radius(curve: Curve) -> float:
@@ -163,21 +161,21 @@ def eased(radii: FloatArray, frames: FloatArray, moves: Sequence[bool] = ()) -> 
 def _bendable(curve: Curve, radii: FloatArray) -> FloatArray:
     """Radii at all vertices, (n,), made smaller where the curve turns so much that a tube would be a lump.
 
-    Within one radius to either side of a vertex it turns by `_BENT` at most, or `_THINNED` of the radius is left. A
-    corner counts for half of that at most: no tube is thin enough for it.
+    Within one radius to either side of a vertex it turns by ``bent`` radians at most, or ``thinned`` of the radius is
+    left. A corner counts for half of that at most: no tube is thin enough for it.
     """
-    found, mesh = radii.copy(), curve.mesh
+    found, mesh, bent, thinned = radii.copy(), curve.mesh, 1.1, 0.5
     along = curve.edge_vectors / curve.edge_lengths[:, None]
     cosines = np.einsum("ij,ij->i", along[mesh.incoming], along[mesh.outgoing])
-    turns = np.minimum(np.arccos(np.clip(cosines, -1.0, 1.0)), 0.5 * _BENT)
+    turns = np.minimum(np.arccos(np.clip(cosines, -1.0, 1.0)), 0.5 * bent)
     for piece, edges, closed in zip(mesh.slices, mesh.edge_slices, mesh.closed, strict=True):
         n, rounds = piece.stop - piece.start, 3 if closed else 1  # the middle one has neighbours on both sides
         places = np.concatenate([[0.0], np.cumsum(np.tile(curve.edge_lengths[edges], rounds))])[: n * rounds]
         halfway = 0.5 * (places + np.append(places[1:], places[-1]))  # where edges have turned as much as they will
         turned, middle = np.cumsum(np.tile(turns[piece], rounds)), places[n * (rounds // 2) :][:n]
-        fits, part = _THINNED * radii[piece], radii[piece]
+        fits, part = thinned * radii[piece], radii[piece]
         for step in 0.5 ** np.arange(1.0, 9.0)[:, None] * part:
-            straight = np.diff(np.interp([middle - part, middle + part], halfway, turned), axis=0)[0] <= _BENT
+            straight = np.diff(np.interp([middle - part, middle + part], halfway, turned), axis=0)[0] <= bent
             fits = np.where(straight, np.maximum(fits, part), fits)
             part = part + np.where(straight, step, -step)
         found[piece] = np.minimum(fits, radii[piece])

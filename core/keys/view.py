@@ -22,7 +22,6 @@ from ..proof.checker import TrajectoryError
 COLOURS = ("#3b6fb6", "#d1663f", "#4b9b6e", "#9b5fb0", "#c9a227", "#5aa7b8", "#b8436d", "#7a7a7a")
 EYE = (0.26, -0.42, 1.36)  # from where figures are seen at first
 FRAMES = 60  # of a motion
-_LARGEST = 20_000  # vertices of a single curve
 
 
 @dataclass(frozen=True)
@@ -95,9 +94,10 @@ def _on_one_mesh(curves: Sequence[Curve]) -> list[Curve]:
 @checked
 def still(curve: Curve, energies: Sequence[float] = ()) -> Motion:
     """A curve that does not move, and the objective of a run that led to it; a CurveError if it cannot be shown."""
-    if curve.dimension > 3 or len(curve) > _LARGEST:
+    largest = 20_000
+    if curve.dimension > 3 or len(curve) > largest:
         what = f"{len(curve)} vertices in dimension {curve.dimension}"
-        raise CurveError(f"the curve has {what}; shown are curves in the plane or in space with at most {_LARGEST}")
+        raise CurveError(f"the curve has {what}; shown are curves in the plane or in space with at most {largest}")
     return Motion((curve,), tuple(energies))
 
 

@@ -216,9 +216,6 @@ def alexander_values(knot: Diagram, t: IntArray, field: Field) -> IntArray:
     return found
 
 
-_ORDERS = (2, 3, 5, 7)  # of the roots of unity; these divide the number of units of the field
-
-
 @dataclass(frozen=True)
 class QuickInvariants:
     """What is quickly computed of a knot or link of any size."""
@@ -256,7 +253,7 @@ def unsigned_linking(link: Diagram) -> tuple[int, ...]:
 def _values(knot: Diagram) -> tuple[int, ...]:
     """Values of the Alexander polynomial of one component, one after the other, as matrices may be large."""
     field, values = FIELDS[0], []
-    for q in _ORDERS:
+    for q in (2, 3, 5, 7):  # which divide the number of units of the field
         root = field.root_of_unity(q)
         value = 1 if knot.crossings < 3 else int(alexander_values(knot, np.array([root]), field)[0])
         associates = [value * pow(root, k, field.prime) for k in range(q)]
