@@ -35,9 +35,9 @@ def read_obstacle(path: str | os.PathLike[str]) -> Obstacle:
         for face, work in zip(content.faces, accumulate(len(face.words) ** 2 for face in content.faces), strict=True):
             if work > most:
                 reason = (
-                    f"a face with {len(face.words)} corners takes too long to cut into triangles after those before it"
+                    f"a face with {len(face.words)} corners takes too long to cut into triangles after those before"
                 )
-                raise source.error(f"{reason}; triangulate the mesh before exporting it", face.line)
+                raise source.error(f"{reason} it; triangulate the mesh before exporting it", face.line)
         triangles = [triangle for face in content.faces for triangle in _triangles(source, content, face)]
         segments = [(link.tail, link.head) for link in content.links]
         if not triangles and not segments:
