@@ -13,7 +13,7 @@ import numpy as np
 from ..base.tolerances import PLANE_UNDERFLOW
 from ..base.types import BoolArray, FloatArray, IntArray
 from ..curve import Mesh
-from ..curve.mesh import component_order, z_order
+from ..curve.mesh import component_order, near_to_near
 from ..curve.obstacle import Obstacle
 
 CHUNK = 1 << 14  # pairs of boxes handled at once: bounds the memory whatever the curve
@@ -167,5 +167,5 @@ def still_triangles(obstacles: tuple[Obstacle, ...], exponent: int) -> StillTria
     numbered = zip(obstacles, first[:-1], strict=True)
     corners = np.concatenate([each.faces[:, [0, 1, -1]] + k for each, k in numbered]).T
     points = np.ldexp(vertices.T, -exponent, order="C")
-    order = z_order(points[:, corners].mean(axis=1))
+    order = near_to_near(points[:, corners].mean(axis=1))
     return StillTriangles(obstacles, vertices, BoxTree.over(order, corners[:, order], points[None]))

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.spatial import cKDTree
 
 from ..base.arguments import is_list
 from ..base.errors import CurveError, shown
@@ -139,7 +140,7 @@ class Mesh:
     @cached_property
     def anticycle(self) -> IntArray:
         """The vertex before each vertex; before the first of a component its last, closed or not; shape (n,)."""
-        return frozen(_with(np.empty(self.size, dtype=np.intp), self.cycle))
+        return frozen(np.argsort(self.cycle))
 
     @cached_property
     def outgoing(self) -> IntArray:
@@ -199,14 +200,9 @@ class Mesh:
     def index_distance(self, i: IntArray, j: IntArray) -> IntArray:
         """Number of edges from ``i`` to ``j`` the shorter way along the curve; the mesh's size across components."""
         gap = np.abs(i - j)
-        length = self._periods[self.edge_component[i]]
+        length = np.where(self.closed, self.edge_counts, 2 * self.size)[self.edge_component[i]]
         together = self.edge_component[i] == self.edge_component[j]
         return np.where(together, np.minimum(gap, length - gap), self.size)
-
-    @cached_property
-    def _periods(self) -> IntArray:
-        """Edges once round each component; twice the mesh's size for open components."""
-        return np.where(self.closed, self.edge_counts, 2 * self.size)
 
     def disjoint(self, i: IntArray, j: IntArray) -> BoolArray:
         """Whether the closures of edges ``i`` and ``j`` are disjoint: no vertex in common."""
@@ -236,25 +232,19 @@ class Mesh:
 
 
 def component_order(mesh: Mesh, points: FloatArray) -> IntArray:
-    """Edges in curve order, the components sorted along a Z-curve through their centers; shapes (m, n) -> (edges,)."""
+    """Edges in curve order, the components sorted so that near ones come next to each other; (m, n) -> (edges,)."""
     if len(mesh.component_sizes) < 3:
         return np.arange(mesh.edges)
     starts = mesh.offsets[:-1]
     centers = 0.5 * (np.minimum.reduceat(points, starts, axis=1) + np.maximum.reduceat(points, starts, axis=1))
     rank = np.empty(len(starts), dtype=np.intp)
-    rank[z_order(centers)] = np.arange(len(starts))
+    rank[near_to_near(centers)] = np.arange(len(starts))
     return np.argsort(rank[mesh.edge_component], kind="stable")
 
 
-def z_order(points: FloatArray) -> IntArray:
-    """Points along a Z-curve through a grid of 1024 cells in every direction; shapes (m, k) -> (k,)."""
-    low, high = points.min(axis=1, keepdims=True), points.max(axis=1, keepdims=True)
-    cells = ((points - low) / np.maximum(high - low, np.finfo(np.float64).tiny) * 1023).astype(np.int64)
-    code = np.zeros(points.shape[1], dtype=np.int64)
-    for bit in range(10):
-        for axis, cell in enumerate(cells):
-            code |= ((cell >> bit) & 1) << (len(cells) * bit + axis)
-    return np.argsort(code, kind="stable")
+def near_to_near(points: FloatArray) -> IntArray:
+    """Points in an order in which neighbours in space are near each other, that of a k-d tree; (m, k) -> (k,)."""
+    return np.asarray(cKDTree(points.T, leafsize=1).indices)
 
 
 def _flags(closed: Any, components: int) -> tuple[bool, ...]:

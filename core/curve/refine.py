@@ -28,14 +28,8 @@ from .mesh import Mesh
 from .pins import NO_PINS, NOWHERE, Pins, arcs, holds
 
 DEFAULT_VERTICES = 200  # per component: enough for energies to a tenth of a per cent
-# to begin with: where gaps ask for more, the barrier's exact energies do, and hard unknots become circles in a sixth of
-# the time; strands that are as near in the end get more then
-MAX_PER_COMPONENT = 1000  # unless the curve has half as many
 COMPONENTS = 10  # that get so many each; more of them share what ten would have
 SPLIT = 1.5  # edges longer than this many times the spacing wanted are split
-COLLAPSE = 0.5  # two edges are joined if each is shorter than this many times the spacing
-GRADING = 1.3  # ratio of the spacings wanted on neighbouring edges, at most
-EDGES_PER_CLEARANCE = 2.0  # of obstacles: a curve bends as tightly as it is near to them
 MIN_VERTICES = 16  # edges that a component, or an arc between pins, keeps if it had as many
 SAMPLES = 8  # points of a spline, for each vertex of its polygon, at which its arc length is measured
 
@@ -63,9 +57,10 @@ def refine(curve: Curve, vertices: int | None = None) -> Curve:
     if vertices is not None:
         edges = vertices - len(curve.mesh.ends)
         return subdivide(curve, apportion(curve.edge_lengths / spacing, edges))
-    components = len(curve.mesh.component_sizes)
-    # 5,000 altogether, unless the curve has more already
-    most = min(max(2 * len(curve), MAX_PER_COMPONENT * min(COMPONENTS, components)), 5000)
+    # 1,000 for each of ten components, unless the curve has half as many, and 5,000 altogether, unless it has more:
+    # where gaps ask for more, the barrier's exact energies do to begin with, and hard unknots become circles in a sixth
+    # of the time; strands that are as near in the end get more then
+    most = min(max(2 * len(curve), 1000 * min(COMPONENTS, len(curve.mesh.component_sizes))), 5000)
     return subdivide(curve, affordable_pieces(curve, spacing, most))
 
 
@@ -155,22 +150,28 @@ def refined_alike(x: Curve, y: Curve, begins: tuple[float, ...]) -> tuple[Curve,
 
 
 def graded_spacing(curve: Curve, resolution: Resolution) -> FloatArray:
-    """Edge length wanted on every edge, varying by a bounded ratio from edge to edge; shape (edges,)."""
-    spacing = np.minimum(target_spacing(curve, resolution), resolution.clearance(curve) / EDGES_PER_CLEARANCE)
+    """Edge length wanted on every edge, varying by a ratio of 1.3 at most from edge to edge; shape (edges,).
+
+    It is half of the clearance at most, because a curve bends as tightly as it is near to obstacles.
+    """
+    spacing = np.minimum(target_spacing(curve, resolution), 0.5 * resolution.clearance(curve))
     for part, closed in zip(curve.mesh.edge_slices, curve.mesh.closed, strict=True):
         # one sweep each way, twice round where the component is closed, spreads every minimum as far as it reaches
         for direction in (1, -1):
             local = np.tile(spacing[part][::direction], 2 if closed else 1)
-            steps = np.log(GRADING) * np.arange(len(local))
+            steps = np.log(1.3) * np.arange(len(local))
             local = np.exp(np.minimum.accumulate(np.log(local) - steps) + steps)
             spacing[part] = local[part.start - part.stop :][::direction]
     return spacing
 
 
 def superfluous(curve: Curve, spacing: FloatArray, kept: IntArray = NOWHERE) -> IntArray:
-    """Vertices that may be removed, no two of them neighbours or next but one, and no ends or vertices to be kept."""
+    """Vertices that may be removed: both edges there are shorter than half the spacing wanted.
+
+    No two of them are neighbours or next but one, and none is an end or a vertex to be kept.
+    """
     mesh, before, after = curve.mesh, curve.mesh.incoming, curve.mesh.outgoing
-    joined = curve.edge_lengths < COLLAPSE * spacing
+    joined = curve.edge_lengths < 0.5 * spacing
     short = joined[before] & joined[after] & (before != after) & ~holds(mesh, kept)
     arc_of, room = np.empty(mesh.edges, dtype=np.intp), []
     for number, arc in enumerate(arcs(mesh, kept)):

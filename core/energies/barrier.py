@@ -23,7 +23,6 @@ from .inverse_square import inverse_square
 
 NEAR = 1.0  # of q, up to which only the exact energy of a pair counts,
 FAR = 2.25  # and from which only its midpoint energy does
-BLOCK = 4096  # pairs processed together, for the processor's cache
 
 
 @checked_fields
@@ -81,10 +80,10 @@ class Barrier:
 
 
 def _blocks(curve: Curve) -> Iterator[tuple[IntArray, IntArray]]:
-    """The near pairs in blocks, to bound the memory."""
+    """The near pairs in blocks, to bound the memory and for the processor's cache."""
     i, j = near_pairs(curve)
-    for first in range(0, len(i), BLOCK):
-        yield i[first : first + BLOCK], j[first : first + BLOCK]
+    for first in range(0, len(i), 4096):
+        yield i[first : first + 4096], j[first : first + 4096]
 
 
 def cutoff(q: FloatArray) -> tuple[FloatArray, FloatArray]:

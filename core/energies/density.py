@@ -22,11 +22,9 @@ from ..curve import Curve
 from ..curve.distances import arc_positions, periods
 from .edge_pairs import Tile, half_changes
 
-KINK = 1e-12  # difference of the two arcs, relative to the component, below which they count as equal
-
 
 class Arcs:
-    """Arc lengths of one curve."""
+    """Arc lengths of one curve; collects Σ g_IJ ∂ϱ_IJ/∂ℓ_K for all edges K, with weights g."""
 
     def __init__(self, curve: Curve) -> None:
         mesh, ell = curve.mesh, curve.edge_lengths
@@ -34,6 +32,9 @@ class Arcs:
         self.component = mesh.edge_component
         self.start = arc_positions(curve, 0.0)
         self.total = periods(curve)
+        self._at_edges = np.zeros_like(ell)
+        self._steps = np.zeros(len(ell) + 1, ell.dtype)  # differences, from edge to edge, of what all of an arc get
+        self._around = np.zeros(len(self.total), ell.dtype)  # the amounts that all edges of a component get
 
     def distances(self, tile: Tile, t_row: float, t_column: float) -> FloatArray:
         """ϱ between points at ``t_row`` of the tile's rows and ``t_column`` of its columns; inf between components."""
@@ -51,7 +52,8 @@ class Arcs:
         gap, _ = self._gaps(tile, t_row, t_column)
         total = self.total[self.component[tile.rows], None]
         excess = 1.0 - 2.0 * gap.real / total.real
-        return np.where(np.abs(excess) < KINK, 0.5, np.where(excess > 0.0, 1.0, 0.0))
+        equal = np.abs(excess) < 1e-12  # relative to the component, so much by rounding
+        return np.where(equal, 0.5, np.where(excess > 0.0, 1.0, 0.0))
 
     def _gaps(self, tile: Tile, t_row: float, t_column: float) -> tuple[FloatArray, BoolArray]:
         """Arc length from row to column in the direction of the curve, and whether they are on one component."""
@@ -60,20 +62,9 @@ class Arcs:
         gap = position - (self.start[rows] + t_row * self.ell[rows])[:, None]
         return gap, self.component[rows, None] == self.component[columns]
 
-
-class ArcDerivative:
-    """Collects Σ g_IJ ∂ϱ_IJ/∂ℓ_K for all edges K; weights g are 0 for pairs on different components."""
-
-    def __init__(self, arcs: Arcs) -> None:
-        self._arcs = arcs
-        n, dtype = len(arcs.ell), arcs.ell.dtype
-        self._at_edges = np.zeros(n, dtype)
-        self._steps = np.zeros(n + 1, dtype)  # differences, from edge to edge, of what all edges of an arc get
-        self._around = np.zeros(len(arcs.total), dtype)  # the amounts that all edges of a component get
-
     def add(self, tile: Tile, t_row: float, t_column: float, weights: FloatArray) -> None:
-        """Add the pairs of a tile; ``weights`` has shape (rows, columns), and every row index I < J."""
-        direct = weights * self._arcs.shares(tile, t_row, t_column)
+        """Add pairs I < J of a tile with weights, (rows, columns), 0 for pairs on different components."""
+        direct = weights * self.shares(tile, t_row, t_column)
         direct_rows, direct_columns = direct.sum(axis=1), direct.sum(axis=0)
         around_rows, around_columns = weights.sum(axis=1) - direct_rows, weights.sum(axis=0) - direct_columns
         rows, columns = tile.rows, tile.columns
@@ -85,15 +76,15 @@ class ArcDerivative:
         self._at_edges[rows] += (1.0 - t_row) * direct_rows
         self._at_edges[columns] += t_column * direct_columns
         # the other arc has the rest: all edges but I … J, the first part of I and the last part of J
-        np.add.at(self._around, self._arcs.component[rows], around_rows)
+        np.add.at(self._around, self.component[rows], around_rows)
         self._steps[rows] -= around_rows
         self._steps[after_columns] += around_columns
         self._at_edges[rows] += t_row * around_rows
         self._at_edges[columns] += (1.0 - t_column) * around_columns
 
     def by_length(self) -> FloatArray:
-        """The sums, shape (edges,)."""
-        return np.asarray(self._at_edges + np.cumsum(self._steps)[:-1] + self._around[self._arcs.component])
+        """What has been collected, shape (edges,)."""
+        return np.asarray(self._at_edges + np.cumsum(self._steps)[:-1] + self._around[self.component])
 
 
 class PointSet(NamedTuple):

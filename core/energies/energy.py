@@ -26,14 +26,26 @@ class Term(Protocol):
 
 
 @runtime_checkable
-class LocalTerm(Term, Protocol):
+class TwiceDifferentiable(Term, Protocol):
+    """A term with a second derivative, for methods of second order and for the index of a critical point."""
+
+    def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
+        """D²E v for a vector ``v`` of shape (n, m), without forming the matrix; shape (n, m)."""
+
+
+class Assembled(TwiceDifferentiable, Protocol):
+    """One whose second derivative is as cheap as a few products, so that it is factorised."""
+
+    def hessian(self, curve: Curve) -> FloatArray:
+        """D²E, symmetric, shape (n·m, n·m); rows and columns in the order of ``vertices.ravel()``."""
+
+
+@runtime_checkable
+class LocalTerm(TwiceDifferentiable, Protocol):
     """A term whose second derivative couples few vertices with each other."""
 
     def sparse_hessian(self, curve: Curve) -> sp.csr_array:
-        """Second derivative as a sparse matrix, symmetric, shape (n·m, n·m), in the order of ``vertices.ravel()``."""
-
-    def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
-        """The second derivative times a vector ``v`` of shape (n, m), without forming the matrix; shape (n, m)."""
+        """The second derivative as a sparse matrix, in the same order."""
 
 
 @runtime_checkable
@@ -97,18 +109,3 @@ class Approximate(Term, Protocol):
 
     def frozen_at(self, curve: Curve) -> Term:
         """The smooth function given by the approximation for one curve."""
-
-
-@runtime_checkable
-class TwiceDifferentiable(Term, Protocol):
-    """A term with a second derivative, for methods of second order and for the index of a critical point."""
-
-    def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
-        """D²E v for a vector ``v`` of shape (n, m); shape (n, m)."""
-
-
-class Assembled(TwiceDifferentiable, Protocol):
-    """One whose second derivative is as cheap as a few products, so that it is factorised."""
-
-    def hessian(self, curve: Curve) -> FloatArray:
-        """D²E, symmetric, shape (n·m, n·m); rows and columns in the order of ``vertices.ravel()``."""

@@ -14,7 +14,7 @@ from ..base.types import FloatArray
 from ..curve import Curve
 from ..curve.distances import points_at
 from .components import ComponentShares
-from .density import ArcDerivative, Arcs, Density, PointPairs, PointSet
+from .density import Arcs, Density, PointPairs, PointSet
 from .edge_pairs import SteppedCurve, Tile, change, pair_tiles
 from .energy import is_moebius_invariant
 from .quadrature import Rule
@@ -81,7 +81,7 @@ class KPointEnergy:
         # without its derivative ϱ is a constant, which no complex step changes
         arcs = Arcs(curve if self.arc_derivative else curve.with_vertices(curve.vertices.real))
         by_tail, by_head, by_tau = (np.zeros_like(tau) for _ in range(3))
-        by_length, by_arc, total = np.zeros_like(ell), ArcDerivative(arcs), 0.0
+        by_length, total = np.zeros_like(ell), 0.0
         for tile, x, y, area in self._pairs(curve):
             rows, columns, pairs = tile.rows, tile.columns, PointPairs(x, y, arcs, tile)
             weighted = area * self.density.value(pairs)
@@ -107,13 +107,13 @@ class KPointEnergy:
                 by_tau[rows] += weights @ tau_y
                 by_tau[columns] += weights.T @ tau_x
             if partials.rho is not None and self.arc_derivative:
-                by_arc.add(tile, x.t, y.t, area * partials.rho)
+                arcs.add(tile, x.t, y.t, area * partials.rho)
             for edges, t, force in ((rows, x.t, force_x), (columns, y.t, -force_y)):
                 by_tail[edges] += (1.0 - t) * force
                 by_head[edges] += t * force
         # ∂τ/∂e = (1 − τ τᵀ)/ℓ
         across = by_tau - np.einsum("ij,ij->i", by_tau, tau)[:, None] * tau
-        by_edge = (by_length + by_arc.by_length())[:, None] * tau + across / ell[:, None]
+        by_edge = (by_length + arcs.by_length())[:, None] * tau + across / ell[:, None]
         derivative = 2.0 * curve.mesh.scatter(by_tail - by_edge, by_head + by_edge)
         return total, derivative + self.density.constant * ComponentShares(curve).derivative()
 

@@ -11,8 +11,6 @@ from ..curve import Curve
 from ..curve.distances import periods, vertex_positions
 from ..curve.measures import bending, bending_and_derivative
 
-WIDTH = 0.02  # standard deviation of the stretch, in lengths of its component, unless edges are longer
-SUPPORT = 3.0  # of the stretch to either side, in standard deviations
 REACH = 0.5  # r, in the program's units, in which a component is 4 to 8 long
 
 
@@ -31,13 +29,16 @@ class Pull:
 
     @classmethod
     def at(cls, curve: Curve, component: int, share: float, strength: float) -> "Pull":
-        """A pull at rest, around the point at a share of a component's length."""
+        """A pull at rest, around the point at a share of a component's length.
+
+        The stretch has a standard deviation of 2 % of the length, or of the longest edge, and three of them either way.
+        """
         length, vertices = curve.component_lengths[component], curve.mesh.slices[component]
         gap = np.abs(vertex_positions(curve)[vertices] - share * length)
         gap = np.minimum(gap, np.abs(periods(curve)[component] - gap))
-        width = max(WIDTH * length, float(curve.edge_lengths[curve.mesh.edge_slices[component]].max()))
+        width = max(0.02 * length, float(curve.edge_lengths[curve.mesh.edge_slices[component]].max()))
         weights = np.zeros(len(curve))
-        weights[vertices] = np.exp(-0.5 * (gap / width) ** 2) * (gap <= SUPPORT * width)
+        weights[vertices] = np.exp(-0.5 * (gap / width) ** 2) * (gap <= 3.0 * width)
         weights *= curve.mesh.scatter(curve.edge_lengths, curve.edge_lengths)
         weights /= weights.sum()
         return cls(weights, weights @ curve.vertices, strength)

@@ -14,7 +14,6 @@ from ..edge_pairs import EdgePairIndices
 
 ClusterPairs = tuple[IntArray, IntArray]
 
-CHUNK = 1 << 14  # pairs of leaves whose edges are listed at once, to bound the memory
 MOSTLY_NEAR = 1.0 / 8.0  # share of near pairs from which all pairs in tiles are faster than near ones from a list
 
 
@@ -70,9 +69,9 @@ class BlockList:
     @cached_property
     def near(self) -> EdgePairIndices:
         """The edges i < j of each near pair, sorted by i and then by j; shape (pairs,) twice."""
-        size, codes = self.tree.stop - self.tree.start, []
-        for k in range(0, len(self.leaves[0]), CHUNK):
-            first, second = (side[k : k + CHUNK] for side in self.leaves)
+        size, codes, chunk = self.tree.stop - self.tree.start, [], 1 << 14  # pairs of leaves, to bound the memory
+        for k in range(0, len(self.leaves[0]), chunk):
+            first, second = (side[k : k + chunk] for side in self.leaves)
             count = size[first] * size[second]
             pair = np.repeat(np.arange(len(first)), count)
             row, column = np.divmod(ranges(np.zeros_like(count), count), size[second][pair])

@@ -24,7 +24,6 @@ from .fields import FarField, NearField
 MAX_ORDER = 8  # every two orders make errors some forty times smaller, and half of the work twice as much
 KEPT = 1.05  # times θ: separation up to which a list is as good as a new one
 OUTDATED = 1.0 / 3.0  # blocks with less separation make a new list; up to 1/3 all replaced pairs are near pairs
-STRETCH, SHIFT = 1e-4, 1e-2  # of each edge, and of the shortest one: how far vertices move for a difference
 
 
 @checked_fields
@@ -105,8 +104,9 @@ class HierarchicalMoebiusEnergy:
     def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
         """D²E v for ``v`` of shape (n, m), to some five digits: a central difference with one block list."""
         smooth, ell = self.frozen_at(curve), curve.edge_lengths
-        stretch = np.abs(curve.mesh.changes(v) / ell[:, None]).max() / STRETCH
-        rate = max(float(stretch), float(np.abs(v).max() / (SHIFT * ell.min())))
+        # no edge is stretched by more than 1e-4 of it, and no vertex moves by more than 1e-2 of the shortest one
+        stretch = np.abs(curve.mesh.changes(v) / ell[:, None]).max() / 1e-4
+        rate = max(float(stretch), float(np.abs(v).max() / (1e-2 * ell.min())))
         if rate == 0.0:
             return np.zeros_like(v)
         ends = (curve.with_vertices(curve.vertices + sign * v / rate) for sign in (1.0, -1.0))

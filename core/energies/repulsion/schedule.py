@@ -21,9 +21,6 @@ MAX_POINTS = 8
 # simplices, and of exp(−8) = 3e-4 for clusters, still less than what moments leave: k points have the error ρ⁻²ᵏ, and
 # the Bernstein ellipse lies within a disc of R half lengths if ρ + 1/ρ ≤ 2R.
 EXACT, CLUSTERED = (np.cosh(exponent / (2.0 * np.arange(1, MAX_POINTS + 1))) for exponent in (20.0, 8.0))
-SHORTEST = 2.0**-48  # of an edge: panels are no shorter even at contact
-EDGES = 1024  # processed together, to bound the memory
-POINTS = 8192  # at which a potential is taken at once, for the processor's cache
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,9 +69,8 @@ class Schedule:
     def of(cls, curve: Curve, clusters: Clusters, theta: float) -> "Schedule":
         """The schedule of a curve in R³."""
         tree, n, single, clustered = clusters.tree, curve.mesh.edges, list[Panels](), list[Panels]()
-        for first_edge in range(0, n, EDGES):
+        for edges in np.array_split(np.arange(n), -(-n // 1024)):  # to bound the memory
             # from whole edges that see the root
-            edges = np.arange(first_edge, min(first_edge + EDGES, n))
             panels = Panels(edges, np.zeros(len(edges)), np.ones(len(edges)), np.zeros_like(edges))
             while len(panels):
                 far = _are_far(curve, clusters, panels, theta)
@@ -82,7 +78,9 @@ class Schedule:
                 panels = panels[~far]
                 leaf = tree.is_leaf[panels.source]
                 seen = replace(panels[leaf], source=tree.start[panels.source[leaf]])
-                fine = (_analytic_ratios(curve, clusters, seen) >= EXACT[-1]) | (seen.width <= SHORTEST)
+                fine = (_analytic_ratios(curve, clusters, seen) >= EXACT[-1]) | (
+                    seen.width <= 2.0**-48
+                )  # even at contact
                 single.append(seen[fine])
                 left = np.ones(len(panels), dtype=bool)
                 left[leaf] = ~fine
@@ -116,7 +114,7 @@ class Schedule:
         """Potentials, the panels that see their sources, and the number of points on each."""
         for source, groups in ((clusters.simplices, self.single), (clusters, self.clustered)):
             for points, panels in groups:
-                size = POINTS // points
+                size = 8192 // points  # potentials at once, for the processor's cache
                 for first in range(0, len(panels), size):
                     yield source.potential, panels[first : first + size], points
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, Mesh, OptionError, RelaxOptions, Status, minimize, relax
 from mobius_flow.core.curve.pins import Pins
-from mobius_flow.core.curve.refine import EDGES_PER_CLEARANCE, SPLIT
+from mobius_flow.core.curve.refine import SPLIT
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.knots import knot
 from mobius_flow.core.solve.constraints import Constraints, weighted_barycenter
@@ -59,7 +59,7 @@ def test_edges_are_split_as_walls_come_near():
     result = minimize(*wanted(**in_the_box(3.0, mesh="finer", max_iterations=60)))
     assert result.last.grown == pytest.approx(3.0, rel=1e-12)
     problem = start_problem(*wanted(result.curve, vertices=len(result.curve), avoid=[WALLS]))
-    coarse = result.curve.edge_lengths * EDGES_PER_CLEARANCE / problem.clearance(result.curve)
+    coarse = result.curve.edge_lengths * 2.0 / problem.clearance(result.curve)
     assert 0.5 < coarse.max() < 1.1 * SPLIT
 
 
