@@ -105,13 +105,6 @@ def blocks(data: bpy.types.Curve) -> dict[str, bpy.types.ID]:
     return {kind: block for kind, block in found.items() if block is not None}
 
 
-def output_of(data: bpy.types.Curve) -> Output | None:
-    """How the keys that curve data already has are written, or None if it has none."""
-    if data.shape_keys:
-        return Output.SHAPE_KEYS
-    return Output.FCURVES if data.animation_data and data.animation_data.action else None
-
-
 def end_of(data: bpy.types.Curve) -> Frame:
     """Points of a curve at the last of its keys, (n, 3); the stored points may be those of another frame."""
     if data.shape_keys:

@@ -13,7 +13,7 @@ import numpy as np
 from ...core import Curve
 from ...core.base.messages import Message
 from ...core.base.types import FloatArray
-from ...core.keys.key_options import Course, KeyOptions
+from ...core.keys.key_options import Course, KeyOptions, Output
 from ...core.keys.motion import Keys
 from ...core.keys.placement import Frame
 from . import bake, bevel, keyframes, sizes
@@ -124,7 +124,9 @@ class Member:
             for block in obj.data.shape_keys.key_blocks if obj.data.shape_keys else ():  # radii are relative to it
                 block.data.foreach_set("radius", read(block.data, "radius") * np.float32(depth / obj.data.bevel_depth))
             relative = radii / radii[-1]
-        output = keyframes.output_of(obj.data) or options.output
+        output = options.output
+        if keyframes.animated(obj.data):  # more of the keys that are there already
+            output = Output.SHAPE_KEYS if obj.data.shape_keys else Output.FCURVES
         yield from keyframes.writing(obj, keys, frames, output, relative, options.timing)
 
     def keep(self, keys: Keys, frames: FloatArray, options: KeyOptions, course: Course) -> None:

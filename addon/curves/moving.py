@@ -120,15 +120,10 @@ def what_changes(
 ) -> Message | None:
     """Say what may move an object or change its shape, or return None if nothing does.
 
-    What its shape is made with may be relaxed, or move or change itself.
+    What its shape is made with may be relaxed, or move or change itself. ``seen``: what was examined already.
     """
     seen = set() if seen is None else seen  # shared by all objects examined in turn
     seen.add(obj)
-    return what_moves(obj) or next(_changes(obj, relaxed, seen), None)
-
-
-def _changes(obj: bpy.types.Object, relaxed: Sequence[bpy.types.Object], seen: set[bpy.types.ID]) -> Iterator[Message]:
-    """Reasons why a shape may change, except those seen already."""
 
     def changing(blocks: Iterable[bpy.types.ID]) -> bool:
         found = (each for each in blocks if each not in seen)
@@ -136,24 +131,27 @@ def _changes(obj: bpy.types.Object, relaxed: Sequence[bpy.types.Object], seen: s
             what_changes(each, relaxed, seen) if each.id_type == "OBJECT" else _is_animated(each) for each in found
         )
 
+    if mover := what_moves(obj):
+        return mover
     if obj in relaxed:
-        yield Message("the relaxation itself")
+        return Message("the relaxation itself")
     if any(map(_is_animated, (obj, obj.data, getattr(obj.data, "shape_keys", None)))):
-        yield Message("animation of its shape")
+        return Message("animation of its shape")
     if obj.pose is not None and any(not each.mute for bone in obj.pose.bones for each in bone.constraints):
-        yield Message("a constraint")
+        return Message("a constraint")
     stem = obj.name.partition(".")[0]  # metaballs with the same one form one surface
     balls = (each for each in bpy.data.objects if each.type == obj.type == "META")
     same = (each for each in balls if each.name.partition(".")[0] == stem)
     if obj.data is not None and changing(chain(_ingredients(obj.data), same)):
-        yield Message("an object that its shape is made with")
+        return Message("an object that its shape is made with")
     for modifier in obj.modifiers:
         if modifier.type == "PARTICLE_SYSTEM":
             itself = modifier.particle_system.settings.type == "EMITTER"
         else:
             itself = _is_of(modifier, _CHANGING, _CHANGING_NODES)
         if modifier.show_viewport and (itself or changing(_ingredients(modifier))):
-            yield Message("the modifier '{modifier}'", modifier=modifier.name)
+            return Message("the modifier '{modifier}'", modifier=modifier.name)
+    return None
 
 
 def _is_animated(block: bpy.types.ID | None) -> bool:

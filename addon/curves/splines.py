@@ -162,22 +162,7 @@ def sampled(obj: bpy.types.Object) -> list[Frame]:
 
     Raises CurveError if no polygon is drawn for a spline.
     """
-    loops = _drawn(obj.data)
-    if len(loops) != len(obj.data.splines):
-        sentence = "'{name}' has splines that Blender draws nothing for; delete them, or convert all to Poly first"
-        raise CurveError(Message(sentence, name=obj.name))
-    sentence = (
-        "Spline {number} of '{name}' is drawn with only {count} points; raise its Resolution U, or give it more points"
-    )
-    for k, (loop, spline) in enumerate(zip(loops, obj.data.splines, strict=True), 1):
-        if len(loop) < (3 if spline.use_cyclic_u else 2):
-            raise CurveError(Message(sentence, number=k, name=obj.name, count=len(loop)))
-    return loops
-
-
-def _drawn(data: bpy.types.Curve) -> list[Frame]:
-    """The line itself, without all that is drawn around it."""
-    copy = data.copy()
+    copy = obj.data.copy()  # the line itself, without all that is drawn around it
     bare = bpy.data.objects.new("Sampled", copy)
     try:
         copy.dimensions = "3D"  # flat curves would be filled
@@ -188,12 +173,22 @@ def _drawn(data: bpy.types.Curve) -> list[Frame]:
         mesh = bare.to_mesh()
         points, edges = read(mesh.vertices, "co", 3), read(mesh.edges, "vertices", 2, np.int32)
         low, high = np.sort(edges, axis=1).T
-        starts = np.setdiff1d(np.arange(len(mesh.vertices)), high[high - low == 1])
-        return np.split(points, starts[1:]) if len(starts) else []
+        starts = np.setdiff1d(np.arange(len(points)), high[high - low == 1])
+        loops = np.split(points, starts[1:]) if len(starts) else []
     finally:
         bare.to_mesh_clear()
         bpy.data.objects.remove(bare)
         bpy.data.curves.remove(copy)
+    if len(loops) != len(obj.data.splines):
+        sentence = "'{name}' has splines that Blender draws nothing for; delete them, or convert all to Poly first"
+        raise CurveError(Message(sentence, name=obj.name))
+    sentence = (
+        "Spline {number} of '{name}' is drawn with only {count} points; raise its Resolution U, or give it more points"
+    )
+    for k, (loop, spline) in enumerate(zip(loops, obj.data.splines, strict=True), 1):
+        if len(loop) < (3 if spline.use_cyclic_u else 2):
+            raise CurveError(Message(sentence, number=k, name=obj.name, count=len(loop)))
+    return loops
 
 
 def read_link(objects: Sequence[bpy.types.Object]) -> tuple[Curve, Link]:
