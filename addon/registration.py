@@ -7,12 +7,12 @@ import bpy
 from . import settings, translations
 from .buttons import adding, drawing, film, mending, outputs, presets, relaxing, shape
 from .live import handlers, overlay
-from .sidebar import menus, panels, relax
+from .sidebar import menus, panels
 
 # presets go into the head of the panel; the sub-panels follow in the order they are shown
 _MODULES = (
     *(relaxing, mending, shape, outputs, film, adding, drawing, presets),
-    *(menus, relax, panels),
+    *(menus, panels),
 )
 # everything else to register
 _PARTS = (translations, settings, presets, menus, handlers, overlay)

@@ -1,24 +1,96 @@
-"""The gallery of knots, the sub-panels, and the report, the last of all, so that nothing moves when it appears."""
+"""The panels in the sidebar: what is done first, the gallery of knots, the sub-panels, and the report.
 
+The report is the last of all, so that nothing moves when it appears.
+"""
+
+from collections.abc import Sequence
 from functools import partial
 
 import bpy
 
-from ...core import OptionError
+from ...core import METHODS, OptionError
 from ...core.base.messages import Message
 from ...core.driver.words import named, time_left
-from ..curves import bake, pins
+from ..buttons.presets import VIEW3D_PT_mobius_flow_presets
+from ..curves import bake, pins, surroundings
+from ..curves.moving import unsteady
 from ..curves.splines import length
 from ..engine.knot_list import labels
 from ..live import registry
 from ..live.modal import unseen
-from ..live.requirements import Remedy, closable, curves_at_hand, selected_curves, shown_curves
+from ..live.requirements import RELAXABLE, Remedy, avoided, closable, curves_at_hand, selected_curves, shown_curves
 from ..live.run import RunState
 from ..pictures import staging
-from ..properties import shown, timing
+from ..properties import QUALITIES, shown, timing
 from ..translations import iface_
-from .layout import InSidebar, SubPanel, button, column, operator, row, sentence, settings, value
+from .layout import InSidebar, SubPanel, button, column, operator, refused, row, sentence, settings, value
 from .menus import search
+
+
+def _buttons(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """The large buttons; they and the rows below them keep their places whatever is said."""
+    run, objects = registry.current(), _concerned(context)
+    several = iface_("Relax {count} Curves Together", count=len(objects))
+    text = several if len(objects) > 1 else iface_("Relax")
+    large = layout.row(align=True)
+    large.scale_y = 1.8
+    if run is None:
+        operator(large, "relax", text=text, icon="PLAY")
+        operator(large, "morph", text="", icon="MOD_SIMPLEDEFORM")
+        operator(large, "grab", text="", icon="VIEW_PAN")
+    else:
+        text, icon = (iface_("Resume"), "PLAY") if run.state is RunState.PAUSED else (iface_("Pause"), "PAUSE")
+        operator(large, "pause", text=text, icon=icon)
+        operator(large, "stop", icon="CHECKMARK")
+        operator(large, "cancel", icon="X")
+
+
+def _concerned(context: bpy.types.Context) -> Sequence[bpy.types.Object]:
+    run = registry.current()
+    return run.objects if run is not None else selected_curves(context)
+
+
+def _hints(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Why Relax is disabled, and what helps; what might be crossed; what can be brought back."""
+    run, shown, objects = registry.current(), registry.shown(context.active_object), _concerned(context)
+    if shown is not None and shown.recoverable:
+        operator(layout, "recover", icon="RECOVER_LAST")
+    hindered = RELAXABLE(context)
+    if hindered and (run is None or any(obj not in objects for obj in selected_curves(context))):
+        refused(layout.column(align=True), context, hindered)
+    if run or not hindered:
+        # say what cannot be avoided, or else what might be crossed, with the button that helps
+        found = avoided(context)
+        if moving := unsteady(found, selected_curves(context)):
+            sentence(layout, context, moving, icon="ERROR")
+        elif unguarded := surroundings.warning(context, objects, found):
+            sentence(layout, context, unguarded, icon="ERROR")
+            operator(layout, "avoid", icon="ADD")
+
+
+def _qualities(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """The levels of quality; where options are other than theirs, what the curves are relaxed by."""
+    panel = context.scene.mobius_flow_panel
+    row = layout.row(align=True)
+    row.use_property_split = False
+    for name in QUALITIES:
+        row.prop_enum(panel, "quality", name)
+    if panel.quality == "CUSTOM":
+        try:
+            method = METHODS[context.scene.mobius_flow.method]
+        except OptionError as error:
+            sentence(layout, context, str(error), icon="ERROR")
+            return
+        after = Message("{method}, after Reiter and Schumacher (2021)", method=iface_(method.label))
+        sentence(layout, context, method.label if method.comparison else after)
+
+
+class VIEW3D_PT_mobius_flow(InSidebar, bpy.types.Panel):
+    bl_label = "Möbius Flow"
+    rows = (_buttons, _qualities, button("add_knot", "ADD", Message("Add Knot")), _hints)
+
+    def draw_header_preset(self, _context: bpy.types.Context) -> None:
+        VIEW3D_PT_mobius_flow_presets.draw_panel_header(self.layout)
 
 
 def _gallery(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from blender_scenes import add_trefoil, relax, sentence, stored
 from mobius_flow.addon import properties
-from mobius_flow.addon.sidebar.panels import VIEW3D_PT_mobius_flow_expert
-from mobius_flow.addon.sidebar.relax import VIEW3D_PT_mobius_flow
+from mobius_flow.addon.sidebar.panels import VIEW3D_PT_mobius_flow, VIEW3D_PT_mobius_flow_expert
 from mobius_flow.core import METHODS, Curve, OptionError, RelaxOptions, minimize
 from mobius_flow.core.base.arguments import declared, option
 from option_values import unlike_default

@@ -9,7 +9,7 @@ from blender_scenes import add_trefoil
 from mobius_flow.addon import registration
 from mobius_flow.addon.curves.splines import length
 from mobius_flow.addon.settings import GROUPS_OF_SCENE
-from mobius_flow.addon.sidebar import menus, panels, relax
+from mobius_flow.addon.sidebar import menus, panels
 from mobius_flow.addon.sidebar.layout import wrapped
 from mobius_flow.core import METHODS
 from panel_layout import Layout, shown
@@ -18,18 +18,13 @@ from panel_layout import Layout, shown
 @pytest.mark.parametrize("curve", [True, False])
 @pytest.mark.parametrize(
     "cls",
-    [
-        each
-        for module in (relax, panels, menus)
-        for each in registration.declared(module)
-        if "report" not in each.__name__
-    ],
+    [each for module in (panels, menus) for each in registration.declared(module) if "report" not in each.__name__],
     ids=lambda cls: cls.__name__,
 )
 def test_every_button_is_an_operator(cls, curve, monkeypatch):
     if curve:
         add_trefoil()
-    monkeypatch.setattr(relax, "refused", lambda *_: None)  # sentences want a window
+    monkeypatch.setattr(panels, "refused", lambda *_: None)  # sentences want a window
     layout = shown(cls)
     assert layout.buttons or layout.settings
     ours = {name.removeprefix("curve.") for name in layout.buttons} - {"wm.url_open"}
@@ -42,9 +37,9 @@ def test_the_sidebar_has_few_settings_and_one_place_for_each(monkeypatch):
     over = SimpleNamespace(value="Done", over=True)
     run = dict.fromkeys(("recoverable", "waits", "failed", "last", "report", "message", "trouble"))
     run |= {"state": over, "session": SimpleNamespace(names=["Knot"]), "energies": [1.0]}
-    monkeypatch.setattr(relax.registry, "shown", lambda _obj: SimpleNamespace(**run))
-    monkeypatch.setattr(relax, "refused", lambda *_: None)
-    panels_drawn = [cls for module in (relax, panels) for cls in registration.declared(module)]
+    monkeypatch.setattr(panels.registry, "shown", lambda _obj: SimpleNamespace(**run))
+    monkeypatch.setattr(panels, "refused", lambda *_: None)
+    panels_drawn = registration.declared(panels)
     layouts = {cls: shown(cls) for cls in panels_drawn}
     settings = [name for layout in layouts.values() for name in set(layout.settings)]  # qualities are one setting
     expert = set(layouts[panels.VIEW3D_PT_mobius_flow_expert].settings)
@@ -68,15 +63,15 @@ def test_nothing_is_below_the_report_that_would_move_when_it_comes():
 
 def test_what_the_curves_are_relaxed_by_is_said_where_it_is_no_quality(monkeypatch):
     said = []
-    monkeypatch.setattr(relax, "sentence", lambda _layout, _context, text, icon="": said.append(str(text)))
+    monkeypatch.setattr(panels, "sentence", lambda _layout, _context, text, icon="": said.append(str(text)))
     scene = bpy.context.scene.mobius_flow
-    relax._quality(Layout(), bpy.context)
+    panels._qualities(Layout(), bpy.context)
     scene.method = "flow-moebius"
-    relax._quality(Layout(), bpy.context)
+    panels._qualities(Layout(), bpy.context)
     scene.method = "penalty-cg"
-    relax._quality(Layout(), bpy.context)
+    panels._qualities(Layout(), bpy.context)
     scene.options = "method="
-    relax._quality(Layout(), bpy.context)
+    panels._qualities(Layout(), bpy.context)
     label = METHODS["flow-moebius"].label
     assert said[:2] == [f"{label}, after Reiter and Schumacher (2021)", METHODS["penalty-cg"].label]
     assert said[2].startswith("Further Options have 'method='")
