@@ -11,7 +11,7 @@ from mobius_flow.core.knots.braids import Word, checked_word, columns, cycles
 def bent_trefoil(vertices: int) -> Curve:
     """A torus knot T(2, 3) after three shears of space, which preserve its type."""
     x, y, z = torus_knot(2, 3, vertices).vertices.T
-    bend = 0.3  # the knot is 3 wide and its edges still differ by less than EVEN_RATIO, so that they are made equal
+    bend = 0.3  # the knot is 3 wide and its edges still differ by less than 20:1, so that they are made equal
     x = x + bend * np.sin(2.0 * z + 1.0)
     z = z + bend * np.sin(2.0 * y)
     y = y + bend * np.sin(2.0 * x)

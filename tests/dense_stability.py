@@ -8,6 +8,7 @@ from mobius_flow.core import Curve
 from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.curve.pins import holds
 from mobius_flow.core.descent import Point
+from mobius_flow.core.descent.hessian import lagrangian_matrix
 from mobius_flow.core.knots import torus_knot
 from mobius_flow.core.solve.constraints import ConstraintDerivative
 from scipy.linalg import eigh, qr
@@ -43,26 +44,11 @@ def dense_modes(point: Point) -> tuple[FloatArray, FloatArray]:
     """All eigenvalues of D²E − Σ λ_I D²Φ_I on ker DΦ against the metric, and the eigenvectors, shape (k, n·m)."""
     n = len(point.vertices)
     tangent = tangent_basis(point.tangent_space.constraints)
-    hessian = tangent.T @ lagrangian_hessian_matrix(point) @ tangent
+    hessian = tangent.T @ lagrangian_matrix(point) @ tangent
     # the metric acts coordinate by coordinate, on all basis vectors at once
     gram = tangent.T @ point.tangent_space.apply(tangent.reshape(n, -1)).reshape(tangent.shape)
     values, vectors = eigh(0.5 * (hessian + hessian.T), 0.5 * (gram + gram.T))
     return values, (tangent @ vectors).T
-
-
-def lagrangian_hessian_matrix(point: Point) -> FloatArray:
-    """D²E − Σ λ_I D²Φ_I, which acts on tangent vectors; symmetric, shape (n·m, n·m)."""
-    ell, mesh, constraints = point.curve.edge_lengths, point.problem.mesh, point.tangent_space.constraints
-    n, m = point.vertices.shape
-    tau = point.curve.edge_vectors / ell[:, None]
-    weight = constraints.loads(point.multipliers)[0] / ell**2
-    matrix = point.problem.objective.hessian(point.curve).reshape(n, m, n, m)
-    blocks = weight[:, None, None] * (np.eye(m) - 2.0 * tau[:, :, None] * tau[:, None, :])
-    by_vertices = matrix.transpose(0, 2, 1, 3)
-    tail, head = mesh.tails, mesh.heads
-    for a, b, sign in ((tail, tail, -1.0), (head, head, -1.0), (tail, head, 1.0), (head, tail, 1.0)):
-        np.add.at(by_vertices, (a, b), sign * blocks)
-    return matrix.reshape(n * m, n * m)
 
 
 def tangent_basis(constraints: ConstraintDerivative) -> FloatArray:

@@ -31,15 +31,6 @@ class SteepestDescent:
         return -point.gradient, None
 
 
-@dataclass(frozen=True, eq=False)
-class LastDirection:
-    """The last gradient, its squared norm, and the last direction."""
-
-    gradient: FloatArray
-    square: float
-    direction: FloatArray
-
-
 @dataclass(frozen=True)
 class ConjugateGradient:
     """−u + β d with β = max(0, ⟨u, u − u_last⟩/⟨u_last, u_last⟩): Polak–Ribière with automatic reset (PR+).
@@ -50,25 +41,21 @@ class ConjugateGradient:
 
     natural_step: float = np.inf
 
-    def propose(self, point: Point, memory: LastDirection | None) -> tuple[FloatArray, LastDirection]:
-        """The conjugate direction, or steepest descent where that is no direction of descent."""
+    def propose(self, point: Point, memory: Any) -> tuple[FloatArray, Any]:
+        """The conjugate direction, or steepest descent where that is no direction of descent.
+
+        The memory is the last gradient, its squared norm, and the last direction.
+        """
         direction = -point.gradient
         if memory is not None:
+            last, square, before = memory
             # ⟨u, v⟩ = DE·v for tangent v, so the metric is needed for the transport only
-            overlap = float(np.sum(point.derivative * point.transport(memory.gradient)))
-            beta = max(0.0, (point.gradient_norm**2 - overlap) / memory.square)
-            conjugate = direction + beta * point.transport(memory.direction)
+            overlap = float(np.sum(point.derivative * point.transport(last)))
+            beta = max(0.0, (point.gradient_norm**2 - overlap) / square)
+            conjugate = direction + beta * point.transport(before)
             if np.sum(point.derivative * conjugate) < -1e-3 * point.gradient_norm * point.tangent_space.norm(conjugate):
                 direction = conjugate
-        return direction, LastDirection(point.gradient, point.gradient_norm**2, direction)
-
-
-@dataclass(frozen=True, eq=False)
-class RecentSteps:
-    """The last point and the pairs (s, y) of displacements and Lagrangian-gradient differences, oldest first."""
-
-    point: Point
-    pairs: tuple[tuple[FloatArray, FloatArray], ...]
+        return direction, (point.gradient, point.gradient_norm**2, direction)
 
 
 @dataclass(frozen=True)
@@ -84,11 +71,15 @@ class LimitedMemoryBFGS:
     inverse: Callable[[FloatArray], FloatArray] | None = None
     natural_step: float = 1.0
 
-    def propose(self, point: Point, memory: RecentSteps | None) -> tuple[FloatArray, RecentSteps]:
-        """The quasi-Newton direction, or steepest descent where that is no direction of descent."""
-        pairs, q = () if memory is None else memory.pairs, point.lagrangian_derivative(point.multipliers)
-        if memory is not None:  # a step without positive curvature leaves no pair
-            last = memory.point
+    def propose(self, point: Point, memory: Any) -> tuple[FloatArray, Any]:
+        """The quasi-Newton direction, or steepest descent where that is no direction of descent.
+
+        The memory is the last point and the pairs (s, y) of displacements and Lagrangian-gradient differences, oldest
+        first.
+        """
+        last, pairs = (None, ()) if memory is None else memory
+        q = point.lagrangian_derivative(point.multipliers)
+        if last is not None:  # a step without positive curvature leaves no pair
             s, y = point.vertices - last.vertices, q - last.lagrangian_derivative(point.multipliers)
             if np.sum(s * y) > 1e-8 * np.sum(s * point.tangent_space.apply(s)):
                 pairs = (*pairs, (s, y))[-self.history :]
@@ -108,4 +99,4 @@ class LimitedMemoryBFGS:
         slope = float(np.sum(point.derivative * direction))
         if not slope < -1e-3 * point.gradient_norm * point.tangent_space.norm(direction):
             direction, pairs = -point.gradient, ()
-        return direction, RecentSteps(point, pairs)
+        return direction, (point, pairs)

@@ -107,72 +107,45 @@ def soft_modes(
     near enough to eigenvalues where their residuals are within the tolerance.  After ``most`` products with the Hessian
     and as many projections pairs are left as they are.
     """
-    basis = _Basis(point)
-    most = min(most, basis.dimension)
-    basis.extend(starts[:most].reshape(-1, point.vertices.size))
+    space, hessian, (n, m) = point.tangent_space, lagrangian_hessian(point), point.vertices.shape
+    most = min(most, m * (n - len(space.constraints.pins)) - space.constraints.count)  # no more dimensions than that
+
+    def each(operator: LinearMap, rows: FloatArray) -> FloatArray:
+        return np.array([operator(row.reshape(n, m)).ravel() for row in rows]).reshape(rows.shape)
+
+    # a basis that is orthonormal in the metric, J times it, and D²L times it; rows of n·m numbers
+    vectors, duals, images = np.empty((3, 0, n * m))
+    new = starts[:most].reshape(-1, n * m)
     while True:
-        values, turns = basis.ritz()
+        added = each(space.apply, new)
+        for _ in range(2):  # what the basis has of new vectors is taken off them; once leaves rounding errors
+            part = new @ duals.T
+            new, added = new - part @ vectors, added - part @ duals
+            squares, turns = np.linalg.eigh(new @ added.T)
+            # of squared lengths: vectors that add so little to the others are left out
+            kept = squares > 1e-10 * squares.max(initial=0.0)
+            turn = (turns[:, kept] / np.sqrt(squares[kept])).T
+            new, added = turn @ new, turn @ added
+        vectors, duals = np.vstack([vectors, new]), np.vstack([duals, added])
+        images = np.vstack([images, each(hessian, new)])
+        # Ritz values, ascending, and the vectors' coefficients as rows; none points away from the first start
+        projected = vectors @ images.T
+        values, turns = np.linalg.eigh(0.5 * (projected + projected.T))
+        turns = (turns * np.copysign(1.0, turns[:1])).T
         wanted = max(1, int(np.count_nonzero(values < below)))
-        forces = basis.forces(values, turns, max(len(starts), wanted))
-        new = basis.each(lambda force: basis.space.gradient(force)[0], forces)
+        count = max(len(starts), wanted)
+        # what the lowest pairs leave of (D²L − θ J) w
+        forces = turns[:count] @ images - values[:count, None] * (turns[:count] @ duals)
+        new = each(lambda force: space.gradient(force)[0], forces)
         residuals = np.sqrt(np.maximum(0.0, np.einsum("ij,ij->i", new, forces)))
         # residuals that are shorter than the largest Ritz value by so much are rounding errors
         far = residuals > max(tolerance, 1e-10 * np.abs(values).max(initial=0.0))
-        if len(basis) >= most or not far[:wanted].any():
-            return SoftModes(values, basis.combined(turns), residuals)
-        basis.extend((new[far] / residuals[far, None])[: most - len(basis)])
+        if len(vectors) >= most or not far[:wanted].any():
+            return SoftModes(values, np.reshape(turns @ vectors, (-1, n, m)), residuals)
+        new = (new[far] / residuals[far, None])[: most - len(vectors)]
 
 
 def smooth_starts(point: Point, rng: np.random.Generator, count: int = 8) -> FloatArray:
     """Gradients of random forces, in which soft modes have a large part on every mesh; shape (count, n, m)."""
     forces = rng.normal(size=(count, *point.vertices.shape))
     return np.stack([point.tangent_space.gradient(force)[0] for force in forces])
-
-
-class _Basis:
-    """A basis of a subspace of the tangent space, orthonormal in the metric, with its images; rows of n·m numbers."""
-
-    def __init__(self, point: Point) -> None:
-        self.space, self._hessian = point.tangent_space, lagrangian_hessian(point)
-        self._shape = point.vertices.shape
-        self._vectors, self._duals, self._images = np.empty((3, 0, point.vertices.size))
-
-    def __len__(self) -> int:
-        return len(self._vectors)
-
-    @property
-    def dimension(self) -> int:
-        (n, m), constraints = self._shape, self.space.constraints
-        return int(m * (n - len(constraints.pins)) - constraints.count)
-
-    def each(self, operator: LinearMap, rows: FloatArray) -> FloatArray:
-        """An operator on arrays of shape (n, m), row by row."""
-        return np.array([operator(row.reshape(self._shape)).ravel() for row in rows]).reshape(rows.shape)
-
-    def extend(self, new: FloatArray) -> None:
-        """Add what tangent vectors have that the basis has not."""
-        duals = self.each(self.space.apply, new)
-        for _ in range(2):  # once leaves rounding errors
-            part = new @ self._duals.T
-            new, duals = new - part @ self._vectors, duals - part @ self._duals
-            squares, turns = np.linalg.eigh(new @ duals.T)
-            # of squared lengths: vectors that add so little to the others are left out
-            kept = squares > 1e-10 * squares.max(initial=0.0)
-            turn = (turns[:, kept] / np.sqrt(squares[kept])).T
-            new, duals = turn @ new, turn @ duals
-        self._vectors, self._duals = np.vstack([self._vectors, new]), np.vstack([self._duals, duals])
-        self._images = np.vstack([self._images, self.each(self._hessian, new)])
-
-    def ritz(self) -> tuple[FloatArray, FloatArray]:
-        """Ritz values, ascending, and the vectors' coefficients as rows; none points away from the first start."""
-        projected = self._vectors @ self._images.T
-        values, turns = np.linalg.eigh(0.5 * (projected + projected.T))
-        return values, (turns * np.copysign(1.0, turns[:1])).T
-
-    def forces(self, values: FloatArray, turns: FloatArray, count: int) -> FloatArray:
-        """What the lowest Ritz pairs leave of (D²L − θ J) w."""
-        turns = turns[:count]
-        return np.asarray(turns @ self._images - values[:count, None] * (turns @ self._duals))
-
-    def combined(self, turns: FloatArray) -> FloatArray:
-        return np.reshape(turns @ self._vectors, (-1, *self._shape))

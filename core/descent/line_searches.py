@@ -243,14 +243,6 @@ class WeakWolfe:
         return NoStep.because(limited_by) if best is None else best
 
 
-@dataclass(frozen=True, eq=False)
-class Momentum:
-    """The point before, and Nesterov's sequence t_k."""
-
-    vertices: FloatArray
-    t: float
-
-
 @dataclass(frozen=True)
 class Accelerated:
     """Nesterov's accelerated gradient: y = x + β (x − x_last), then x_next = y − τ u(y).
@@ -265,10 +257,13 @@ class Accelerated:
     other_metrics: ClassVar[tuple[Metric, ...]] = ()
 
     def step(self, point: Point, state: SearchState) -> tuple[Step | NoStep, SearchState]:
-        """Extrapolate, then take a gradient step from there; the path has both legs."""
-        memory = Momentum(point.vertices, 1.0) if state.memory is None else state.memory
-        t = 0.5 * (1.0 + math.sqrt(1.0 + 4.0 * memory.t**2))
-        momentum = (memory.t - 1.0) / t * (point.vertices - memory.vertices)
+        """Extrapolate, then take a gradient step from there; the path has both legs.
+
+        The memory are the vertices before, and Nesterov's t_k.
+        """
+        before, last = (point.vertices, 1.0) if state.memory is None else state.memory
+        t = 0.5 * (1.0 + math.sqrt(1.0 + 4.0 * last**2))
+        momentum = (last - 1.0) / t * (point.vertices - before)
         part, _ = self.search.first(point, momentum, 1.0)
         end = point.vertices + part * momentum
         first = attempt(point, end, point.residual, lambda q: True) if part else Rejected()
@@ -279,4 +274,4 @@ class Accelerated:
         if isinstance(first, Leg):
             step = replace(step, legs=(first, *step.legs))
         rising = step.point.energy > point.energy
-        return step, SearchState(None if rising else Momentum(point.vertices, t), step.size)
+        return step, SearchState(None if rising else (point.vertices, t), step.size)

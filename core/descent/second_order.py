@@ -25,21 +25,12 @@ from ..base.types import FloatArray
 from ..energies.components import energy_scale
 from ..energies.energy import Approximate
 from ..solve.metrics import Metric, MoebiusMetric
-from ..solve.saddle import TangentSpace
 from ..solve.saddle.indefinite import Chains, FactorisedHessian
 from .directions import LimitedMemoryBFGS
 from .hessian import ASSEMBLED_SIZE, energy_hessian, lagrangian_hessian, lagrangian_matrix, projected_conjugate_gradient
 from .line_searches import NOTHING, Armijo, FirstTrial, LineSearch, on_target
 from .problem import Point
 from .step import Leg, NoStep, SearchState, Step, attempt, judged
-
-
-@dataclass(frozen=True, eq=False)
-class Region:
-    """The radius, and the last projected gradient (None at the start)."""
-
-    radius: float
-    gradient: FloatArray | None
 
 
 @checked_fields
@@ -74,24 +65,25 @@ class TrustRegion:
             )
 
     def step(self, point: Point, state: SearchState) -> tuple[Step | NoStep, SearchState]:
+        """Take one step; the memory is the radius, and the last projected gradient."""
         if not on_target(point):
             step = self.underway.along(point, -point.gradient, math.inf, state.last_step)
             return step, (SearchState(None, step.size) if isinstance(step, Step) else state)
-        region = Region(self.first_radius, None) if state.memory is None else state.memory
-        radius, limited_by = region.radius, None
+        radius, last = (self.first_radius, None) if state.memory is None else state.memory
+        space, limited_by = point.tangent_space, None
         # the model DE·s + ½ ⟨s, D²L s⟩ on the span of a few vectors, orthonormal in the metric
         hessian, vectors = lagrangian_hessian(point), [-point.gradient]
         threshold = self.newton_threshold * math.sqrt(energy_scale(point.problem.mesh, point.energy))
         if point.gradient_norm < threshold:
             # Newton's direction, superlinear: the inner tolerance goes to 0 with the gradient
-            right, space, inner = -point.derivative, point.tangent_space, min(0.1, point.gradient_norm / threshold)
-            vectors.append(projected_conjugate_gradient(hessian, right, space, inner, 200))
-        if region.gradient is not None:
-            vectors.append(point.transport(region.gradient))
+            inner = min(0.1, point.gradient_norm / threshold)
+            vectors.append(projected_conjugate_gradient(hessian, -point.derivative, space, inner, 200))
+        if last is not None:
+            vectors.append(point.transport(last))
         # Gram–Schmidt in the metric, twice for stability; vectors that add nothing new are left out.  What is left of a
         # nearly dependent vector is largely its rounding error, which need not be tangent: along its normal part the
         # energy changes as along no step.  So the rest is projected before it is made orthogonal once more.
-        space, rows = point.tangent_space, list[FloatArray]()
+        rows = list[FloatArray]()
         for vector in vectors:
             for least in (1e-8, 0.5):
                 size = space.norm(vector)
@@ -106,10 +98,16 @@ class TrustRegion:
         images = np.array([hessian(b) for b in basis])
         linear, quadratic = np.einsum("kij,ij->k", basis, point.derivative), np.einsum("kij,lij->kl", basis, images)
         quadratic = 0.5 * (quadratic + quadratic.T)
+        # reductions below some roundings of the energy cannot be measured: there the model is believed
+        rounding = 10.0 * ENERGY_ROUNDING * abs(point.energy)
+
+        def ratio(trial: Point, predicted: float) -> float:
+            return (point.energy - trial.energy + rounding) / (predicted + rounding)
+
         for _ in range(self.max_trials):
             c = _minimum_in_ball(quadratic, linear, radius)
             s = np.einsum("k,kij->ij", c, basis)
-            length = point.tangent_space.norm(s)
+            length = space.norm(s)
             if not np.max(np.abs(s)) > NOTHING:
                 break
             part, limited_by = self.first(point, s, 1.0)
@@ -117,31 +115,20 @@ class TrustRegion:
                 radius = max(part, 0.1) * length
                 c, s = part * c, part * s
             predicted = -float(linear @ c + 0.5 * c @ quadratic @ c)
-            acceptable = partial(self.acceptable, point, predicted)
+            acceptable = partial(lambda predicted, trial: ratio(trial, predicted) >= self.accept, predicted)
             trial = attempt(point, point.vertices + s, np.zeros_like(point.residual), acceptable)
             if isinstance(trial, Leg):
-                ratio = _ratio(point, trial.end, predicted)
-                if ratio < self.poor:
+                if ratio(trial.end, predicted) < self.poor:
                     radius *= 0.5
-                elif ratio > self.good and length > 0.8 * radius:
+                elif ratio(trial.end, predicted) > self.good and length > 0.8 * radius:
                     radius *= 2.0
-                return Step((trial,), 1.0, limited_by), SearchState(Region(radius, point.gradient), length)
+                return Step((trial,), 1.0, limited_by), SearchState((radius, point.gradient), length)
             limited_by = trial.in_the_way or limited_by
             if trial.proof is None:
                 radius = 0.4 * min(length, radius)
             else:
                 radius = self.first.collision_fraction * max(trial.proof.time, 0.1) * length
         return NoStep.because(limited_by), state
-
-    def acceptable(self, point: Point, predicted: float, trial: Point) -> bool:
-        """Whether enough of the predicted reduction, a positive number, is real."""
-        return _ratio(point, trial, predicted) >= self.accept
-
-
-def _ratio(point: Point, trial: Point, predicted: float) -> float:
-    # reductions below some roundings of the energy cannot be measured: there the model is believed
-    rounding = 10.0 * ENERGY_ROUNDING * abs(point.energy)
-    return (point.energy - trial.energy + rounding) / (predicted + rounding)
 
 
 def _minimum_in_ball(q: FloatArray, g: FloatArray, radius: float) -> FloatArray:
@@ -196,59 +183,47 @@ class BackwardEuler:
         return (self.preconditioner,)
 
     def step(self, point: Point, state: SearchState) -> tuple[Step | NoStep, SearchState]:
+        """Take one step; the memory is the last τ.
+
+        A share of the way to the target lengths is taken along, if they are not reached yet.  Feasibility is restored
+        in the preconditioner's metric: in a weak one like L² the shortest way back is too rough (footnote 7 of [RS21]).
+        """
         tau = self.first_step if state.memory is None else self.growth * state.memory
-        own, constraints = point.inner_product, point.tangent_space.constraints
-        preconditioner = self.preconditioner.at(point.curve)
-        share = 1.0
-        limited_by = None
+        own, flow = point.inner_product, point.tangent_space
+        preconditioner, share, limited_by = self.preconditioner.at(point.curve), 1.0, None
         for _ in range(self.armijo.max_trials):
-            space = preconditioner.plus(own, 1.0 / tau).tangent_space(constraints)
-            solved = self._solved(point, tau, share, space)
+            space = preconditioner.plus(own, 1.0 / tau).tangent_space(flow.constraints)
+            normal = self.armijo.lengths.at(point, space)
+            base = point.vertices + share * normal.longest * normal.full
+            level = (1.0 - share * normal.longest) * point.residual
+            w, first, last, solved = np.zeros_like(point.vertices), 0.0, math.inf, None
+            for _ in range(self.newton_iterations):  # for w + τ S_P DE(Q(w)) = 0
+                trial = point.retract(base + w, level, space)
+                if trial is None or not math.isfinite(trial.energy):
+                    break
+                right = -(trial.derivative + flow.apply(w) / tau)
+                size = math.sqrt(max(0.0, float(np.sum(right * space.gradient(right)[0]))))
+                first = first or size
+                if size <= self.newton_tolerance * first:
+                    solved = trial
+                if solved or not size < 2.0 * last:
+                    break
+                last = size
+                implicit = partial(lambda h, tau, v: h(v) + flow.apply(v) / tau, energy_hessian(trial), tau)
+                most, tolerance = self.krylov_iterations, self.krylov_tolerance
+                w += projected_conjugate_gradient(implicit, right, space, tolerance, most)
             if solved is not None:
                 slope = float(np.sum(point.derivative * (solved.vertices - point.vertices)))
                 if slope > 0.0 and share > self.armijo.lengths.least_share:
                     share *= 0.25  # the way to the target lengths costs more than the flow gains
                     continue
-                trial = judged(point, solved, partial(self.armijo.sufficient, point, slope, 0.0))
-                if isinstance(trial, Leg):
-                    return Step((trial,), tau, limited_by), SearchState(tau, tau)
-                limited_by = trial.in_the_way or limited_by
+                judgement = judged(point, solved, partial(self.armijo.sufficient, point, slope, 0.0))
+                if isinstance(judgement, Leg):
+                    return Step((judgement,), tau, limited_by), SearchState(tau, tau)
+                limited_by = judgement.in_the_way or limited_by
             tau *= 0.5
             share *= 0.5
         return NoStep.because(limited_by), state
-
-    def _solved(self, point: Point, tau: float, share: float, space: TangentSpace) -> Point | None:
-        """Solve for the next point, None if Newton's method does not get there.
-
-        ``share`` of the way to the target lengths is taken along, if they are not reached yet.  Feasibility is restored
-        in the preconditioner's metric: in a weak one like L² the shortest way back is too rough (footnote 7 of [RS21]).
-        """
-        normal = self.armijo.lengths.at(point, space)
-        base = point.vertices + share * normal.longest * normal.full
-        level = (1.0 - share * normal.longest) * point.residual
-        w = np.zeros_like(point.vertices)
-        first, last = 0.0, math.inf
-        for _ in range(self.newton_iterations):
-            trial = point.retract(base + w, level, space)
-            if trial is None or not math.isfinite(trial.energy):
-                return None
-            right = -(trial.derivative + point.tangent_space.apply(w) / tau)
-            size = math.sqrt(max(0.0, float(np.sum(right * space.gradient(right)[0]))))
-            first = first or size
-            if size <= self.newton_tolerance * first:
-                return trial
-            if not size < 2.0 * last:
-                return None
-            last = size
-            of_energy = energy_hessian(trial)
-            w += projected_conjugate_gradient(
-                lambda v, h=of_energy: h(v) + point.tangent_space.apply(v) / tau,  # type: ignore[misc]
-                right,
-                space,
-                self.krylov_tolerance,
-                self.krylov_iterations,
-            )
-        return None
 
 
 @checked_fields

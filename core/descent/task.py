@@ -16,11 +16,11 @@ from ..base.errors import CurveError, CurveOptionError, OptionError
 from ..base.messages import VERTEX, Message
 from ..base.types import FloatArray, frozen
 from ..collision import check_clear, check_embedded, check_gap, survives_rounding
+from ..collision.gap import written
 from ..curve import Curve, at_vertices, refine
 from ..curve.obstacle import MAX_COORDINATE, Obstacle
 from ..curve.pins import NO_PINS, Pins
 
-# of obstacles, in the program's units: beyond it, their repulsion is lost in the rounding of their corners
 _log = logging.getLogger(__name__)
 
 
@@ -29,9 +29,8 @@ def check_units(curve: Curve) -> None:
     sizes = np.abs(curve.vertices).max(axis=1)
     k = int(sizes.argmax())
     if sizes[k] > MAX_COORDINATE:
-        place = ", ".join(f"{x:.6g}" for x in curve.vertices[k])
-        vertex = Message(VERTEX, number=k + 1)
-        far = "{vertex}, ({place}), has a coordinate beyond {largest:g}; use a larger unit of length"
+        vertex, place = Message(VERTEX, number=k + 1), written(curve.vertices[k])
+        far = "{vertex}, {place}, has a coordinate beyond {largest:g}; use a larger unit of length"
         raise CurveError(Message(far, vertex=vertex, place=place, largest=MAX_COORDINATE), at_vertices(curve, k))
     width = float(np.ptp(curve.vertices, axis=0).max())
     if 0 < width < 1 / MAX_COORDINATE:
@@ -69,7 +68,7 @@ class Units:
         """An obstacle in the program's units; a CurveError if it is too large, or too far away, for the curve."""
         vertices = self.from_user(obstacle.vertices)
         reach = float(np.abs(vertices).max())
-        if reach > 1e12:
+        if reach > 1e12:  # beyond it, their repulsion is lost in the rounding of their corners
             far = "{obstacle} reaches some {reach:.0e} times the curve's length; cut off distant parts, or leave it out"
             raise CurveError(Message(far, obstacle=obstacle.title, reach=reach))
         return Obstacle(vertices, obstacle.faces, obstacle.name)

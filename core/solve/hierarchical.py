@@ -34,7 +34,6 @@ from .saddle.symbol import Circulants
 
 FarForm = tuple[RunningSum, sp.csr_array]
 MAX_VERTICES = 200_000  # some 3 GB, and half a minute a step
-EVEN_RATIO = 20.0  # of the longest edge of a component to its shortest, up to which Fourier transforms are faster
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +84,8 @@ class CompressedInnerProduct:
         """A function of the Laplacian along the components, and the coupling of whole components."""
         mesh, ell = self.curve.mesh, self.curve.edge_lengths
         starts = mesh.edge_offsets[:-1]
-        even = np.all(np.maximum.reduceat(ell, starts) <= EVEN_RATIO * np.minimum.reduceat(ell, starts))
+        # up to this ratio of a component's longest edge to its shortest, Fourier transforms are faster
+        even = np.all(np.maximum.reduceat(ell, starts) <= 20.0 * np.minimum.reduceat(ell, starts))
         along = Circulants if even and mesh.all_closed else Resolvents
         return TwoLevel(mesh, along(mesh, ell, self.apply), self.coupling, _indicators(self.curve).T @ self.vectors)
 

@@ -19,7 +19,6 @@ from .krylov import LinearMap, Model
 from .symbol import Parameter, modulated
 
 SPACING = 3.5  # of log σ: with 2.3 there is no iteration less, with 5 there are half as many more
-RESOLVED = 0.9  # share of the edges that are shorter than half of any wave tried
 
 
 class TwoLevel:
@@ -94,7 +93,8 @@ class Resolvents:
     def __init__(self, mesh: Mesh, lengths: FloatArray, apply: LinearMap) -> None:
         mass, d = 0.5 * mesh.scatter(lengths, lengths), mesh.difference
         parameter = Parameter.of_steps(mesh, mesh.at_tails(lengths))
-        symbol = parameter.symbol(apply, mass, np.pi / float(np.quantile(lengths, RESOLVED)))
+        # nine in ten edges are shorter than half of any wave tried
+        symbol = parameter.symbol(apply, mass, np.pi / float(np.quantile(lengths, 0.9)))
         least, largest = (2.0 * np.pi / float(parameter.periods.max())) ** 2, 4.0 / float(lengths.min()) ** 2
         sigma = np.exp(np.arange(np.log(least), np.log(largest) + SPACING, SPACING))
         self._mass, self._lengths = mass[:, None], lengths[:, None]

@@ -10,7 +10,6 @@ from ...base.types import FloatArray
 from ...curve import Mesh
 from .krylov import LinearMap
 
-FREQUENCIES = 12  # at which waves are tried, spread evenly on a logarithmic scale; more do not save an iteration
 LEAST = 1e-6  # modulated value, relative to the largest one: where edges double back it may be 0
 
 Symbol = Callable[[FloatArray], FloatArray]
@@ -49,7 +48,8 @@ class Parameter:
         is u to A u, (n, k) to (n, k), ``weights`` w has shape (n,).  A LinAlgError says if a quotient is not positive.
         """
         turn = 2.0 * np.pi / float(self.periods.max())
-        frequencies = turn * np.unique(np.rint(np.geomspace(1.0, max(1.0, highest / turn), FREQUENCIES)))
+        # more than twelve, spread evenly on a logarithmic scale, do not save an iteration
+        frequencies = turn * np.unique(np.rint(np.geomspace(1.0, max(1.0, highest / turn), 12)))
         waves = np.stack(self.waves(frequencies))
         images = np.stack([apply(wave) for wave in waves])
         quotients = np.sum(waves * images, axis=(0, 1)) / np.sum(weights[:, None] * waves**2, axis=(0, 1))

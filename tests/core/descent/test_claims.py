@@ -5,7 +5,6 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from dense_stability import lagrangian_hessian_matrix
 from descent_contracts import with_geometry
 from mobius_flow.core import METHODS, Curve, OptionError, RelaxOptions, Status, minimize, relax
 from mobius_flow.core.descent.geometries import Constrained
@@ -13,16 +12,10 @@ from mobius_flow.core.descent.hessian import lagrangian_hessian
 from mobius_flow.core.driver.moves.rest import stability
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.energies import ENERGIES, MoebiusEnergy
-from mobius_flow.core.knots import knot
+from mobius_flow.core.knots import knot, torus_knot
 from shapes import lattice_knot, torus_trefoil
 from taylor import taylor_slope
 from torus_energies import torus_knot_minimum
-
-
-def torus_knot(p: int, q: int, n: int) -> Curve:
-    t = 2 * np.pi * np.arange(n) / n
-    radius = 2 + np.cos(q * t)
-    return Curve(np.stack([radius * np.cos(p * t), radius * np.sin(p * t), np.sin(q * t)], axis=1))
 
 
 def point_at(curve: Curve, **options):
@@ -151,16 +144,6 @@ def test_lagrangian_hessian_has_slope_three_on_the_constraint_set():
     assert taylor_slope(along, wrong, largest=0.01, halvings=12) < 2.5
 
 
-def test_lagrangian_hessian_matrix_is_the_operator():
-    point = point_at(torus_trefoil(40))
-    v = np.random.default_rng(29).normal(size=point.vertices.shape)
-    matrix = lagrangian_hessian_matrix(point)
-    np.testing.assert_allclose(matrix, matrix.T, atol=1e-9 * np.abs(matrix).max())
-    np.testing.assert_allclose(
-        (matrix @ v.ravel()).reshape(v.shape), lagrangian_hessian(point)(v), atol=1e-10 * np.abs(matrix).max()
-    )
-
-
 def test_trefoil_is_a_minimum_with_four_flat_and_two_soft_modes(minimum):
     found = stability(point_at(minimum.curve))
     assert found.index == 0
@@ -217,10 +200,8 @@ def test_target_lengths_may_be_given_one_by_one():
 
 def test_an_energy_may_be_an_object():
     """The same run by name and by object."""
-    by_name = RelaxOptions(energy="edge", vertices=60, max_iterations=5)
-    by_object = RelaxOptions(energy=ENERGIES["edge"], vertices=60, max_iterations=5)
-    curve = torus_trefoil(60)
-    assert minimize(curve, by_name).energies == minimize(curve, by_object).energies
+    runs = [RelaxOptions(energy=energy, vertices=60, max_iterations=5) for energy in ("edge", ENERGIES["edge"])]
+    assert len({tuple(minimize(torus_trefoil(60), options).energies) for options in runs}) == 1
 
 
 @pytest.mark.parametrize(
@@ -236,13 +217,8 @@ def test_an_energy_may_be_an_object():
             {"edge_lengths": np.ones(59), "vertices": 60},
             "has 59 numbers, but the refined curve has 60 edges",
         ),
-        ({"energy": "gravity"}, "energy 'gravity' is unknown; choose one of moebius"),
-        ({"metric": "l7"}, "metric 'l7' is unknown; choose one of l2"),
-        ({"quadrature_points": 0}, "quadrature_points is 0"),
         ({"quadrature_points": 2, "metric": "l2"}, "has no such rule"),
-        ({"penalty": -1.0}, "penalty is -1"),
         ({"penalty": 5.0}, "has no penalty"),
-        ({"edge_lengths": "odd"}, "edge_lengths is 'odd'"),
         ({"method": "trust-region", "terms": [("bending", 0.1)]}, "second derivative"),
         ({"method": "penalty-cg", "stability": True}, "penalises lengths"),
     ],

@@ -46,7 +46,7 @@ def test_lbfgs_satisfies_the_secant_equation() -> None:
     point = step.point
     there, memory = rule.propose(point, memory)
     here, _ = rule.propose(first, memory)
-    ((s, y),) = memory.pairs
+    _, ((s, y),) = memory
     np.testing.assert_allclose(y, point.derivative - first.derivative)
     np.testing.assert_allclose(here - there, s, atol=1e-9 * np.abs(s).max())
 

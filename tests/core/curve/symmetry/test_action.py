@@ -4,12 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from dense_stability import dense_modes, lagrangian_hessian_matrix, tangent_basis
+from dense_stability import dense_modes, tangent_basis
 from descent_contracts import point_on
 from mobius_flow.core import Curve, RelaxOptions, minimize
 from mobius_flow.core.curve.refine import subdivide
 from mobius_flow.core.curve.symmetry import NO_SYMMETRY, Symmetry, symmetries
 from mobius_flow.core.descent import Point
+from mobius_flow.core.descent.hessian import lagrangian_matrix
 from mobius_flow.core.descent.second_order import Curvature
 from mobius_flow.core.driver.moves.remesh import split_edges
 from mobius_flow.core.driver.moves.rest import stability
@@ -104,12 +105,12 @@ def test_second_derivatives_are_those_of_symmetric_displacements(name: str) -> N
     assert basis.shape[1] == pytest.approx(tangent.shape[1] / len(symmetry), abs=4)
     gram = point.tangent_space.apply(basis.reshape(len(point.vertices), -1)).reshape(basis.shape)
     force, shift = RNG.normal(size=shape), 0.3
-    reduced = basis.T @ (lagrangian_hessian_matrix(point) @ basis + shift * gram)
+    reduced = basis.T @ (lagrangian_matrix(point) @ basis + shift * gram)
     expected = (basis @ np.linalg.solve(reduced, basis.T @ force.ravel())).reshape(shape)
     curvature = Curvature(point)
     solved = curvature.shifted(shift).solve(symmetry.mean(force))
     np.testing.assert_allclose(solved, expected, atol=1e-8 * np.abs(expected).max())
-    values = np.linalg.eigvals(np.linalg.solve(basis.T @ gram, basis.T @ lagrangian_hessian_matrix(point) @ basis))
+    values = np.linalg.eigvals(np.linalg.solve(basis.T @ gram, basis.T @ lagrangian_matrix(point) @ basis))
     values = np.sort(values.real[values.real < 0.9])  # of directions that break it, all are 1
     for k in np.argsort(np.diff(values))[-2:]:
         assert curvature.shifted(-0.5 * (values[k] + values[k + 1])).negative == k + 1
