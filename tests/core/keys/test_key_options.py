@@ -1,7 +1,5 @@
 """When keys are shown: even motion is even, frames are distinct in 32 bits, and what has no room is refused."""
 
-import re
-
 import numpy as np
 import pytest
 from families import family
@@ -44,15 +42,13 @@ def test_half_of_the_motion_is_travelled_in_the_middle_of_the_frames(motion, pac
     frames = Timing(pace=pace).frames(motion.course(keys))
     assert (frames[0], frames[-1]) == (1, 250)
     assert 1 / 3 < half_way(keys, frames) < 2 / 3
+    # what even timing is for: by iterate it is not so, and the test notices if nothing is made even
+    every = motion.keys(lambda *_: True)
+    assert half_way(every, Timing(pace=Pace.ITERATE).frames(motion.course(every))) < 1 / 4
 
 
-def test_by_iterate_it_does_not(motion):
-    """What even timing is for: the test above notices if nothing is made even."""
-    keys = motion.keys(lambda *_: True)
-    assert half_way(keys, Timing(pace=Pace.ITERATE).frames(motion.course(keys))) < 1 / 4
-
-
-def test_thinned_keys_are_passed_when_they_are_without_thinning(motion):
+def test_thinned_keys_are_passed_when_they_are_without_thinning_and_spread_over_the_frames(motion):
+    """Where an iterate takes no longer than that, keys of an even motion are about evenly far apart."""
     timing = Timing(pace=Pace.DISTANCE)
     every, few = motion.keys(lambda *_: True), motion.keys(lambda *_: True, 20)
     times = [key.time for key in every.keys]
@@ -60,93 +56,61 @@ def test_thinned_keys_are_passed_when_they_are_without_thinning(motion):
     assert len(few.keys) <= 20
     for key, frame in zip(few.keys, timing.frames(motion.course(few)), strict=True):
         assert frame == pytest.approx(frames[key.time], abs=1e-3)
-
-
-def test_thinned_keys_are_spread_over_the_frames(motion):
-    """Where an iterate takes no longer than that, keys of an even motion are about evenly far apart."""
     passed = motion.course(motion.keys(lambda *_: True, 12)).evenly
     assert np.diff(passed).max() < 1 / 11 + np.diff(motion._course.evenly).max()
 
 
 def course(distance, flow_time=None):
+    """One without drift."""
     distance = np.array(distance, dtype=float)
     flow_time = distance if flow_time is None else np.array(flow_time, dtype=float)
-    return Course(
-        np.arange(len(distance), dtype=float), distance, flow_time, 1e4 * distance, 0.0 * distance
-    )  # no drift
+    return Course(np.arange(len(distance), dtype=float), distance, flow_time, 1e4 * distance, 0.0 * distance)
 
 
-@pytest.mark.parametrize(
-    ("pace", "expected"),
-    [
-        (Pace.ITERATE, [0, 0.5, 1]),
-        (Pace.DISTANCE, [0, 0.75, 1]),
-        (Pace.FLOW_TIME, [0, 0.1, 1]),
-    ],
-)
-def test_what_passes_evenly(pace, expected):
-    assert course([0, 3, 4], [0, 1, 10]).share(pace) == pytest.approx(expected)
-
-
-def test_an_even_motion_sets_off_and_comes_to_rest_gently():
-    """Full speed in between, a fifth of it or less at both ends; the middle is reached in the middle."""
+def test_what_passes_evenly():
+    """An even motion sets off and comes to rest gently: full speed in between, a fifth of it or less at both ends."""
+    given = course([0, 3, 4], [0, 1, 10])
+    for pace, shares in ((Pace.ITERATE, [0, 0.5, 1]), (Pace.DISTANCE, [0, 0.75, 1]), (Pace.FLOW_TIME, [0, 0.1, 1])):
+        assert given.share(pace) == pytest.approx(shares)
     share = course(np.linspace(0, 1, 1001)).share(Pace.EVEN)
     speed = 1e-3 / np.diff(share)
     assert share[500] == pytest.approx(0.5, abs=1e-3)
     assert max(speed[0], speed[-1]) < 0.2 * speed[500]
     assert np.diff(speed[100:900]) == pytest.approx(0, abs=1e-6)
+    # drift without a fall of the energy takes fewer frames
+    distance = np.arange(11.0)
+    falls = (distance, np.minimum(distance, 2.0))
+    plain, drifting = (Course(distance, distance, distance, fall, 0.0 * distance).share(Pace.EVEN) for fall in falls)
+    assert drifting[2] > 1.5 * plain[2]
+    assert (np.diff(drifting) > 0).all()
 
 
-def test_drift_without_a_fall_of_the_energy_takes_fewer_frames():
-    distance, fall = np.arange(11.0), np.minimum(np.arange(11.0), 2.0)
-    plain = Course(distance, distance, distance, distance, 0.0 * distance)
-    drifting = Course(distance, distance, distance, fall, 0.0 * distance)
-    assert drifting.share(Pace.EVEN)[2] > 1.5 * plain.share(Pace.EVEN)[2]
-    assert (np.diff(drifting.share(Pace.EVEN)) > 0).all()
+ITERATE = Pace.ITERATE
+RESTS = {"start_frame": 11, "length": 100, "hold_start": 5, "hold_end": 8}
+FRAMES = [  # of a timing the first and the last frame of the motion, and of the scene
+    *(({"pace": pace} | RESTS, (16, 102), (11, 110)) for pace in LENGTHS),
+    (RESTS | {"pace": ITERATE, "frames_per_iterate": 2.5}, (16, 23.5), (11, 32)),
+    (RESTS | {"loop": True}, (16, 53), (11, 110)),
+    ({"length": 100, "loop": True}, (1, 51), (1, 100)),
+    ({}, (1, 250), (1, 250)),
+]
 
 
-def test_flow_time_is_the_sum_of_the_steps():
-    iterates = list(relax(knot("3_1"), RelaxOptions(method="flow-moebius", max_iterations=5)))
-    motion = Recording(Link((Placement(np.eye(3), np.zeros(3)),), (1,)))
-    for iterate in iterates:
-        motion.add(iterate)
-    passed = motion.course(motion.keys(lambda *_: True)).flow_time
-    np.testing.assert_allclose(passed, np.cumsum([0.0, *(iterate.step_size for iterate in iterates[1:])]))
-
-
-@pytest.mark.parametrize("pace", LENGTHS)
-def test_length_and_rests(pace):
-    timing = Timing(pace=pace, start_frame=11, length=100, hold_start=5, hold_end=8)
+@pytest.mark.parametrize(("values", "motion", "scene"), FRAMES)
+def test_lengths_rests_and_ways_back(values, motion, scene):
+    timing = Timing(**values)
     frames = timing.frames(course([0, 1, 2, 10]))
-    assert (frames[0], frames[-1]) == (16, 102)
-    assert timing.scene_range(frames) == (11, 110)
-
-
-def test_there_and_back_takes_the_length():
-    timing = Timing(start_frame=11, length=100, hold_start=5, hold_end=8, loop=True)
-    frames = timing.frames(course([0, 1, 2, 10]))
-    assert (frames[0], frames[-1]) == (16, 53)
-    np.testing.assert_allclose(timing.way_back(frames), 122 - frames[::-1])
-    assert timing.scene_range(frames) == (11, 110)
-    at_once = Timing(length=100, loop=True)
-    frames = at_once.frames(course([0, 1, 2, 10]))
-    assert (frames[-1], at_once.way_back(frames)[-1], len(at_once.way_back(frames))) == (51, 101, 3)
-    assert not len(Timing().way_back(frames))
+    assert (frames[0], frames[-1]) == motion
+    assert timing.scene_range(frames) == scene
+    back = timing.way_back(frames)
+    assert len(back) == (0 if not timing.loop else 4 if timing.hold_end else 3)
+    np.testing.assert_allclose(back, (2 * (motion[1] + timing.hold_end) - frames[::-1])[4 - len(back) :])
 
 
 def test_a_way_that_is_hardly_one_is_short():
     timing = Timing(length=200, hold_end=10)
-    assert timing.shortened(1.0) == timing
-    assert timing.shortened(0.0).length == 12
-    assert timing.shortened(0.05).length == 62
+    assert [timing.shortened(way).length for way in (1.0, 0.0, 0.05)] == [200, 12, 62]
     assert Timing(pace=Pace.ITERATE).shortened(0.0).length == 250
-
-
-def test_by_iterate_the_length_follows():
-    timing = Timing(pace=Pace.ITERATE, start_frame=11, frames_per_iterate=2.5, hold_start=5, hold_end=8)
-    frames = timing.frames(course([0, 1, 2, 10]))
-    assert frames == pytest.approx([16, 18.5, 21, 23.5])
-    assert timing.scene_range(frames) == (11, 32)
 
 
 @pytest.mark.parametrize("pace", Pace)
@@ -177,33 +141,21 @@ def test_keys_that_all_fall_on_one_frame_begin_there():
     assert (np.diff(frames.astype(np.float32)) > 0).all()
 
 
-@pytest.mark.parametrize(
-    ("values", "said"),
-    [
-        (
-            {"length": 20, "hold_start": 10, "hold_end": 10},
-            "Length is 20 frames, which leaves none to move in",
-        ),
-        ({"length": 1}, "it must be at least 2"),
-        ({"length": 23, "hold_end": 11, "loop": True}, "it must be at least 24"),
-        ({"hold_end": -1}, "Hold at Start and Hold at End must be 0 frames or more"),
-        ({"start_frame": float("nan")}, "Start Frame is nan"),
-        ({"frames_per_iterate": 0.0}, "Frames/Iterate is 0; it must be from 0.1 to 10000"),
-    ],
-)
+LATE = {"start_frame": LAST_FRAME - 250}
+REFUSED = [
+    ({"length": 20, "hold_start": 10, "hold_end": 10}, "Length is 20 frames, which leaves none to move in"),
+    ({"length": 1}, "it must be at least 2"),
+    ({"length": 23, "hold_end": 11, "loop": True}, "it must be at least 24"),
+    ({"hold_end": -1}, "Hold at Start and Hold at End must be 0 frames or more"),
+    ({"start_frame": float("nan")}, "Start Frame is nan"),
+    ({"frames_per_iterate": 0.0}, "Frames/Iterate is 0; it must be from 0.1 to 10000"),
+    (LATE | {"pace": ITERATE}, "The animation would go on to frame 1049324, but .*Frames/Iterate or Max Iter"),
+    (LATE | {"length": 1000}, "The animation would go on to frame 1049323, .*a smaller Start Frame or Length"),
+    (LATE | {"length": 252, "hold_end": 9}, "would go on to frame 1048575, but Blender's last is 1048574"),
+]
+
+
+@pytest.mark.parametrize(("values", "said"), REFUSED)
 def test_what_is_out_of_range_is_refused(values, said):
-    with pytest.raises(OptionError, match=re.escape(said)):
-        Timing(**values)
-
-
-@pytest.mark.parametrize(
-    ("values", "said"),
-    [
-        ({"pace": Pace.ITERATE}, "The animation would go on to frame 1049324, but .*Frames/Iterate or Max Iter"),
-        ({"length": 1000}, "The animation would go on to frame 1049323, .*a smaller Start Frame or Length"),
-        ({"length": 252, "hold_end": 9}, "would go on to frame 1048575, but Blender's last is 1048574"),
-    ],
-)
-def test_frames_beyond_the_last_are_refused(values, said):
     with pytest.raises(OptionError, match=said):
-        Timing(start_frame=LAST_FRAME - 250, **values).check_room(1000)
+        Timing(**values).check_room(1000)

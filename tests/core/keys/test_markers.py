@@ -35,38 +35,41 @@ def test_points_that_are_added_are_on_the_edges_of_all_keys(finer, limit):
     assert lengths[0] == pytest.approx(lengths[1], rel=1e-6)
     assert {tuple(point) for point in stored.astype(np.float32)} <= {tuple(point) for point in keys.keys[0].points}
     assert motion.start.mesh == end.mesh
-    course = motion.course(keys)
-    assert (np.diff(course.distance) >= 0).all()
-
-
-def test_splits_move_nothing(finer):
-    motion = followed(finer)
-    keys = motion.keys(is_free).keys
+    every = motion.keys(lambda *_: True).keys
     change = next(k for k, each in enumerate(finer) if len(each.curve) > 40)
-    shift = np.abs(keys[change].points - keys[change - 1].points).max()
-    assert shift < 1e-6 * np.abs(keys[change].points).max()
+    shift = np.abs(every[change].points - every[change - 1].points).max()
+    assert shift < 1e-6 * np.abs(every[change].points).max()  # splits move nothing
+    other = Recording(at_rest(1))
+    other.add(finer[-1])
+    with pytest.raises(MobiusFlowError, match="keyframes cannot follow a change to another curve: only 0 vertices"):
+        other.add(finer[0])
 
 
-@pytest.fixture(scope="module")
-def untangled():
-    """Strand moves, which put vertices on edges and leave others out, and then a flow."""
-    iterates = list(relax(knot("goeritz"), RelaxOptions(untangle="always", max_iterations=4)))
-    assert len({len(each.curve) for each in iterates}) > 10
-    return iterates
+UNEVEN = subdivide(torus_trefoil(60), np.where(np.arange(60) < 12, 20, 2))
+RUNS = {  # strand moves put vertices on edges and leave others out
+    "strand moves": (knot("goeritz"), {"untangle": "always", "max_iterations": 4}, [None, 40]),
+    "an adaptive mesh": (UNEVEN, {"mesh": "adaptive", "max_iterations": 8}, [None]),
+}
 
 
-@pytest.mark.parametrize("limit", [None, 40])
-def test_strand_moves_are_keyed(untangled, limit):
-    """Every vertex of every shape is a point of its key, and the others are on its edges."""
-    motion = followed(untangled)
-    keys = motion.keys(is_free, limit)
-    assert_proved(keys, motion.start.mesh)
-    iterates = {each.index: each.curve for each in untangled}
-    for key in (key for key in keys.keys if key.time in iterates):
-        curve, points = iterates[key.time], Curve(key.points.astype(np.float64))
-        assert {tuple(vertex) for vertex in curve.vertices.astype(np.float32)} <= {tuple(p) for p in key.points}
-        assert points.length == pytest.approx(curve.length, rel=1e-5)
-    assert len(motion.start) < 2 * max(len(each.curve) for each in untangled)
+@pytest.mark.parametrize("name", RUNS)
+def test_strand_moves_are_keyed(name):
+    """Every vertex of every shape is a point of its key, and the others are on its edges; no change is a motion."""
+    curve, values, limits = RUNS[name]
+    iterates = list(relax(curve, RelaxOptions(**values)))
+    assert len({len(each.curve) for each in iterates}) > 1
+    motion, curves = followed(iterates), {each.index: each.curve for each in iterates}
+    assert len(motion.start) < 2 * max(map(len, curves.values()))
+    for limit in limits:
+        keys = motion.keys(is_free, limit)
+        assert_proved(keys, motion.start.mesh)
+        for key in (key for key in keys.keys if key.time in curves):
+            curve, points = curves[key.time], Curve(key.points.astype(np.float64))
+            assert {tuple(vertex) for vertex in curve.vertices.astype(np.float32)} <= {tuple(p) for p in key.points}
+            assert points.length == pytest.approx(curve.length, rel=1e-5)
+    keys = motion.keys(lambda *_: True)
+    way = dict(zip([key.time for key in keys.keys], motion.course(keys).distance, strict=True))
+    assert all(way[each.index] == way[each.index - 1] for each in iterates[1:] if not each.path)
 
 
 def test_the_first_marker_may_come_to_lie_between_new_vertices():
@@ -82,30 +85,6 @@ def test_the_first_marker_may_come_to_lie_between_new_vertices():
         np.testing.assert_allclose(shape[0], hexagon[0], atol=1e-12)
         assert Curve(shape).length == pytest.approx(Curve(hexagon).length)
     np.testing.assert_allclose(shapes[1], shapes[2], atol=1e-12)
-
-
-def test_nothing_moves_while_the_mesh_changes(untangled):
-    motion = followed(untangled)
-    keys = motion.keys(is_free)
-    way = dict(zip([key.time for key in keys.keys], motion.course(keys).distance, strict=True))
-    changes = [each.index for each in untangled[1:] if not each.path]
-    assert len(changes) > 10
-    assert all(way[index] == way[index - 1] for index in changes)
-
-
-def test_an_adaptive_mesh_is_keyed():
-    uneven = subdivide(torus_trefoil(60), np.where(np.arange(60) < 12, 20, 2))
-    iterates = list(relax(uneven, RelaxOptions(mesh="adaptive", max_iterations=8)))
-    assert len(iterates[-1].curve) < len(iterates[0].curve)
-    motion = followed(iterates)
-    assert_proved(motion.keys(is_free), motion.start.mesh)
-
-
-def test_another_curve_cannot_be_followed(finer):
-    motion = Recording(at_rest(1))
-    motion.add(finer[-1])
-    with pytest.raises(MobiusFlowError, match="keyframes cannot follow a change to another curve: only 0 vertices"):
-        motion.add(finer[0])
 
 
 def test_pins_of_a_refined_mesh_keep_the_numbers_of_its_coarse_keys():

@@ -7,6 +7,7 @@ import shutil
 import struct
 import subprocess
 import sys
+from itertools import pairwise
 from types import SimpleNamespace
 
 import numpy as np
@@ -59,15 +60,12 @@ def test_motions_have_one_mesh_and_their_ends(recorded):
     first = np.load(recorded)["stage_000"][0]
     gaps = np.linalg.norm(shown.curves[0].vertices[:, None] - first, axis=2).min(axis=1)
     assert gaps.max() < np.linalg.norm(np.diff(first, axis=0), axis=1).max()
-    steps = [
-        np.linalg.norm(b.vertices - a.vertices, axis=1).max()
-        for a, b in zip(shown.curves, shown.curves[1:], strict=False)
-    ]
+    steps = [np.linalg.norm(b.vertices - a.vertices, axis=1).max() for a, b in pairwise(shown.curves)]
     assert max(steps) < 0.5 * np.ptp(first, axis=0).max()  # no point jumps along the curve
     assert len(motion(recorded, 500).curves) > 7
 
 
-def test_gltf_is_read_by_others(recorded):
+def test_gltf_is_read_by_others(recorded, tmp_path):
     trimesh = pytest.importorskip("trimesh")
     shown = motion(recorded, 5)
     data = animation(shown)
@@ -78,12 +76,8 @@ def test_gltf_is_read_by_others(recorded):
     assert [len(mesh["primitives"][0]["targets"]) for mesh in document["meshes"]] == [len(shown.curves) - 1] * 2
     assert len(document["animations"][0]["channels"]) == 2
     assert struct.unpack("<I", data[8:12])[0] == len(data)
-
-
-def test_blender_reads_the_frames_as_shape_keys(recorded, tmp_path):
-    bpy = pytest.importorskip("bpy")
-    shown = motion(recorded, 5)
-    (tmp_path / "a.glb").write_bytes(animation(shown))
+    bpy = pytest.importorskip("bpy")  # which reads the frames as shape keys
+    (tmp_path / "a.glb").write_bytes(data)
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.import_scene.gltf(filepath=str(tmp_path / "a.glb"))
     meshes = [each for each in bpy.data.objects if each.type == "MESH"]
@@ -140,6 +134,8 @@ def test_a_browser_draws_the_page_without_a_network(recorded, tmp_path):
 @pytest.mark.parametrize("mirror", [1.0, -1.0])
 def test_a_drawing_shows_what_is_in_front(mirror):
     """Its crossings, of lines that come later over earlier ones, have the signs of the curve's."""
+    shades = re.findall(r"rgb\((\d+),(\d+),(\d+)\)", drawing(knot("hopf")))
+    assert {int(blue) > int(red) for red, _, blue in shades} == {True, False}  # components have colours of their own
     curve = knot("3_1")
     curve = curve.with_vertices(curve.vertices * [1.0, 1.0, mirror])
     numbers = re.findall(r'x1="(\S+)" y1="(\S+)" x2="(\S+)" y2="(\S+)" stroke="rgb', drawing(curve))
@@ -153,11 +149,6 @@ def test_a_drawing_shows_what_is_in_front(mirror):
         signs += np.sign(cross[(s > 0.1) & (s < 0.9) & (t > 0.1) & (t < 0.9)]).tolist()
     assert signs
     assert set(signs) == {np.sign(writhe_and_crossings(curve)[0])}
-
-
-def test_components_have_colours_of_their_own():
-    shades = re.findall(r"rgb\((\d+),(\d+),(\d+)\)", drawing(knot("hopf")))
-    assert {int(blue) > int(red) for red, _, blue in shades} == {True, False}
 
 
 def test_notebooks_get_a_picture_beside_the_figure(monkeypatch):
