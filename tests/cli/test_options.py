@@ -9,10 +9,9 @@ from pathlib import Path
 import pytest
 from mobius_flow.cli import main
 from mobius_flow.cli import options as relax_options
-from mobius_flow.core import OptionError, RelaxOptions, read_curve, write_curve
+from mobius_flow.core import OptionError, RelaxOptions, read_curve
 from mobius_flow.core.base.arguments import declared, option
 from option_values import unlike_default
-from shapes import torus_trefoil
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -105,11 +104,10 @@ def test_bounds_hold_before_a_file_is_read(words, said, tmp_path, capsys):
 
 
 @pytest.mark.parametrize("word", ["--mesh=finer", "--mesh=fixed", "--mesh=adaptive", "--untangle=always"])
-def test_keyframes_follow_all_changes_of_mesh(word, tmp_path):
+@pytest.mark.usefixtures("room")
+def test_keyframes_follow_all_changes_of_mesh(word, run):
     pytest.importorskip("bpy")
-    write_curve(tmp_path / "a.txt", torus_trefoil(60))
-    words = ["--quiet", word, "--max-iterations=1"]
-    assert main(["relax", str(tmp_path / "a.txt"), str(tmp_path / "o.blend"), *words]) == 0
+    assert run("relax", "trefoil.txt", "o.blend", "--quiet", word, "--max-iterations=1")[0] == 0
 
 
 def test_options_of_the_subcommand_itself_are_not_the_relaxations():
@@ -119,19 +117,11 @@ def test_options_of_the_subcommand_itself_are_not_the_relaxations():
     assert relax_options.from_arguments(parser.parse_args(["--time-limit", "5"])).time_limit is None
 
 
-def test_tangents_without_pins_are_refused(tmp_path, capsys):
-    write_curve(tmp_path / "a.txt", torus_trefoil(30))
-    assert main(["relax", str(tmp_path / "a.txt"), str(tmp_path / "o.txt"), "--pin-tangents"]) == 2
-    assert "pin_tangents pins the neighbours of pins, but there are none; give pins too" in capsys.readouterr().err
-
-
-def test_a_time_limit_ends_like_an_interrupt(tmp_path):
-    write_curve(tmp_path / "a.txt", torus_trefoil(60))
-    out, report, trajectory = (str(tmp_path / name) for name in ("o.txt", "r.json", "t.npz"))
-    words = ["relax", str(tmp_path / "a.txt"), out, "--report", report, "--trajectory", trajectory]
-    assert main([*words, "--time-limit", "1e-6", "--vertices", "60"]) == 0
-    found = json.loads(Path(report).read_text())
-    assert found["status"] == "time_limit"
-    assert found["options"]["time_limit"] == 1e-6
-    assert len(read_curve(out)) == 60
-    assert main(["verify", trajectory]) == 0
+@pytest.mark.usefixtures("room")
+def test_a_time_limit_ends_like_an_interrupt(run):
+    words = "relax trefoil.txt o.txt --report r.json --trajectory t.npz --time-limit 1e-6 --vertices 60"
+    assert run(*words.split())[0] == 0
+    found = json.loads(Path("r.json").read_text())
+    assert (found["status"], found["options"]["time_limit"]) == ("time_limit", 1e-6)
+    assert len(read_curve("o.txt")) == 60
+    assert run("verify", "t.npz")[0] == 0

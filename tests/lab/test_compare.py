@@ -4,11 +4,11 @@ import csv
 import json
 import time
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
-from mobius_flow.cli import main
-from mobius_flow.core import METHODS, RelaxOptions, write_curve
+from mobius_flow.core import METHODS, RelaxOptions
 from mobius_flow.core.curve.measures import writhe_and_crossings
 from mobius_flow.core.driver.run import Run
 from mobius_flow.lab.compare.command import WRITERS, usual
@@ -95,21 +95,15 @@ def _writhe_sign(segments):
     return int(signs[0])
 
 
-def test_a_strip_has_a_row_for_each_method(tmp_path, capsys):
+@pytest.mark.usefixtures("room")
+def test_a_strip_has_a_row_for_each_method_and_ends_with_its_last_stage(run):
     pytest.importorskip("matplotlib")
-    write_curve(tmp_path / "in.txt", torus_trefoil(40))
-    words = ["compare", tmp_path / "in.txt", "-o", tmp_path / "s.png", "--methods", "cg,flow-l2", "--vertices", "40"]
-    assert main([str(word) for word in [*words, "--strip", "2,0,9", "--max-iterations", "3"]]) == 0
-    assert (tmp_path / "s.png").stat().st_size > 5000
-    assert [line.split()[1:4] for line in capsys.readouterr().out.splitlines()[1:]] == 2 * [["iteration", "limit", "3"]]
-
-
-def test_a_strip_ends_with_its_last_stage(tmp_path, capsys):
-    pytest.importorskip("matplotlib")
-    write_curve(tmp_path / "in.txt", torus_trefoil(40))
-    words = ["compare", tmp_path / "in.txt", "-o", tmp_path / "s.png", "--methods", "cg", "--strip", "2,0"]
-    assert main([str(word) for word in words]) == 0
-    assert " iteration limit           2 " in capsys.readouterr().out
+    words = "compare trefoil.txt -o s.png --methods cg,flow-l2 --strip 2,0,9 --max-iterations 3"
+    shown = run(*words.split())[1]
+    assert Path("s.png").stat().st_size > 5000
+    assert [line.split()[1:4] for line in shown.splitlines()[1:]] == 2 * [["iteration", "limit", "3"]]
+    shown = run(*["compare", "trefoil.txt", "-o", "s.png", "--methods", "cg", "--strip", "2,0"])[1]
+    assert " iteration limit           2 " in shown
 
 
 def test_a_strip_shows_the_end_where_a_stage_was_not_reached(tmp_path):
@@ -119,19 +113,16 @@ def test_a_strip_shows_the_end_where_a_stage_was_not_reached(tmp_path):
     assert (tmp_path / "s.svg").stat().st_size > 5000
 
 
-def test_what_is_compared_is_announced_and_a_table_needs_no_file(tmp_path, monkeypatch, capsys):
-    write_curve(tmp_path / "in.txt", torus_trefoil(20))
-    named = ", ".join(usual())
-    words = ["compare", str(tmp_path / "in.txt"), "--vertices", "20", "--max-iterations", "1"]
-    assert main([*words, "--time-limit", "7"]) == 0
-    shown = capsys.readouterr()
+@pytest.mark.usefixtures("room")
+def test_what_is_compared_is_announced_and_a_table_needs_no_file(run):
+    words = ["compare", "trefoil.txt", "--max-iterations", "1"]
+    _, shown, said = run(*words, "--time-limit", "7")
     every = f"--methods '*' takes all {len(METHODS)}"
-    assert shown.err == f"comparing {named}: at most 7 s each, {7 * len(usual())} s in all; {every}\n"
-    assert [line.split()[0] for line in shown.out.splitlines()] == ["method", *usual()]
-    assert main([*words, "--methods", "*", "-o", str(tmp_path / "c.csv")]) == 0
-    shown = capsys.readouterr()
-    assert [line.split()[0] for line in shown.out.splitlines()[1:]] == list(METHODS)
-    assert shown.err.endswith(f"✓ wrote       {tmp_path}/c.csv\n")
+    assert said == f"comparing {', '.join(usual())}: at most 7 s each, {7 * len(usual())} s in all; {every}\n"
+    assert [line.split()[0] for line in shown.splitlines()] == ["method", *usual()]
+    _, shown, said = run(*words, "--methods", "*", "-o", "c.csv")
+    assert [line.split()[0] for line in shown.splitlines()[1:]] == list(METHODS)
+    assert said.endswith("✓ wrote       c.csv\n")
 
 
 def test_the_time_limit_is_the_clocks(monkeypatch):
@@ -144,18 +135,16 @@ def test_the_time_limit_is_the_clocks(monkeypatch):
     assert run.seconds[-1] < 0.3
 
 
+@pytest.mark.usefixtures("room")
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["--strip", "0,x", "-o", "s.png"], "strip has 'x'; give numbers of iterations, such as 0,10,50"),
-        (["--strip", "0,5", "-o", "s.csv"], "s.csv: a strip is a picture; let OUT end in .png or .svg"),
-        (["--time-limit", "0", "-o", "s.csv"], "time_limit is 0.0; it must be a finite number above 0"),
-        (["--time-limit", "inf", "-o", "s.csv"], "time_limit is inf; it must be a finite number above 0"),
+        ("--strip 0,x -o s.png", "strip has 'x'; give numbers of iterations, such as 0,10,50"),
+        ("--strip 0,5 -o s.csv", "s.csv: a strip is a picture; let OUT end in .png or .svg"),
+        ("--time-limit 0 -o s.csv", "time_limit is 0.0; it must be a finite number above 0"),
+        ("--time-limit inf -o s.csv", "time_limit is inf; it must be a finite number above 0"),
     ],
 )
-def test_what_cannot_be_is_refused(words, said, tmp_path, monkeypatch, capsys):
+def test_what_cannot_be_is_refused(words, said, refused):
     pytest.importorskip("matplotlib")
-    monkeypatch.chdir(tmp_path)
-    write_curve("in.txt", torus_trefoil(20))
-    assert main(["compare", "in.txt", *words]) == 2
-    assert said in capsys.readouterr().err
+    assert said in refused("compare", "trefoil.txt", *words.split())

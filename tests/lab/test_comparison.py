@@ -8,7 +8,7 @@ from changed_moves import change
 from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, minimize, relax
 from mobius_flow.core.driver.moves import CoarseStart
 from mobius_flow.core.knots import knot
-from mobius_flow.lab.compare.comparison import History, compare
+from mobius_flow.lab.compare.comparison import compare
 from shapes import torus_trefoil
 from tasks import wanted
 
@@ -16,12 +16,12 @@ from tasks import wanted
 UNEVEN = Curve(np.delete(torus_trefoil(80).vertices, slice(1, 40, 2), axis=0))
 
 
-def alone(curve: Curve, method: str, stages: tuple[int, ...] = (), **options: object) -> History:
+def alone(curve, method, stages=(), **options):
     (history,) = compare(curve, [method], RelaxOptions(**{"vertices": 60} | options), 60.0, stages)
     return history
 
 
-def test_steps_are_compared_on_one_mesh(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_steps_are_compared_on_one_mesh(monkeypatch):
     """Also of curves that `relax` would begin with fewer vertices, or untangle."""
     change(monkeypatch, CoarseStart, min_vertices=100)
     options = RelaxOptions(vertices=600, max_iterations=40)
@@ -31,7 +31,7 @@ def test_steps_are_compared_on_one_mesh(monkeypatch: pytest.MonkeyPatch) -> None
     assert alone(knot("tuzun-sikora"), "lbfgs", max_iterations=2, vertices=None).iterations == 2
 
 
-def test_methods_are_compared_as_they_are() -> None:
+def test_methods_are_compared_as_they_are():
     """L-BFGS alone, without the Newton steps that it ends with elsewhere."""
     history = alone(torus_trefoil(60), "lbfgs", tolerance=1e-4)
     usual = minimize(torus_trefoil(60), RelaxOptions(vertices=60, mesh="fixed", edge_lengths="keep"))
@@ -39,14 +39,14 @@ def test_methods_are_compared_as_they_are() -> None:
     assert history.gradient_norm[-1] > 1e3 * usual.last.gradient_norm
 
 
-def test_tasks_are_compared_with_their_pins() -> None:
+def test_tasks_are_compared_with_their_pins():
     pins = {"pins": (3, 20, 41), "pin_tangents": True}
     task, options = wanted(torus_trefoil(60), **pins, vertices=100, max_iterations=4, edge_lengths="keep")
     (history,) = compare(task, ["lbfgs"], options, 60.0)
     assert history.energy == minimize(task, options).energies
 
 
-def test_methods_are_compared_in_several_metrics() -> None:
+def test_methods_are_compared_in_several_metrics():
     """Names are patterns, too; a metric that is the method's own is not said."""
     methods = ["flow-h*", "cg", "penalty-cg:h[12]", "paper:*2"]
     found = compare(torus_trefoil(20), methods, RelaxOptions(vertices=20, max_iterations=0), 60.0)
@@ -56,7 +56,7 @@ def test_methods_are_compared_in_several_metrics() -> None:
     assert [(each.label, each.kind) for each in found] == list(zip(labels, kinds, strict=True))
 
 
-def test_lengths_stay_and_penalties_are_left_out() -> None:
+def test_lengths_stay_and_penalties_are_left_out():
     history = alone(UNEVEN, "flow-l2", (0, 3), max_iterations=3)
     np.testing.assert_allclose(history.stages[3].edge_lengths, history.stages[0].edge_lengths, rtol=1e-9)
     assert history.rises == 0
@@ -66,7 +66,7 @@ def test_lengths_stay_and_penalties_are_left_out() -> None:
     assert start.energy > penalised.energy[0] + 1.0
 
 
-def test_curves_of_some_iterates_are_kept() -> None:
+def test_curves_of_some_iterates_are_kept():
     history = alone(torus_trefoil(60), "cg", (0, 2, 99), max_iterations=3)
     iterates = list(
         relax(torus_trefoil(60), RelaxOptions(method="cg", vertices=60, max_iterations=3, edge_lengths="keep"))
@@ -76,7 +76,7 @@ def test_curves_of_some_iterates_are_kept() -> None:
         np.testing.assert_array_equal(curve.vertices, iterates[k].curve.vertices)
 
 
-def test_it_ends_at_the_time_limit() -> None:
+def test_it_ends_at_the_time_limit():
     (history,) = compare(torus_trefoil(60), ["flow-l2"], RelaxOptions(vertices=60, tolerance=1e-12), 1e-9)
     assert history.status == "time_limit"
     assert len(history.energy) == len(history.seconds) == 1
@@ -99,6 +99,6 @@ TAKES_OTHER_STEPS = ({"hops": 3}, {"mesh": "finer"}, {"stability": True}, {"time
     ],
     ids=str,
 )
-def test_what_cannot_be_compared_is_refused(methods: list[str], options: dict[str, object], said: str) -> None:
+def test_what_cannot_be_compared_is_refused(methods, options, said):
     with pytest.raises(MobiusFlowError, match=said):
         compare(torus_trefoil(20), methods, RelaxOptions(**options), 60.0)

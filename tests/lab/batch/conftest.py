@@ -4,9 +4,9 @@ import csv
 
 import pytest
 from mobius_flow.cli import main
+from mobius_flow.core import write_curve
 from mobius_flow.lab.batch import sandbox
-
-Rows = list[dict[str, str]]
+from shapes import regular_polygon
 
 
 @pytest.fixture(scope="session")
@@ -28,7 +28,24 @@ def batch(scheduler, tmp_path):
     def run(*words, status=0):
         out = tmp_path / "out"
         assert main(["batch", *map(str, words), "-o", str(out), "--scheduler", scheduler]) == status
-        with (out / "results.csv").open(encoding="utf-8", newline="") as stream:
-            return list(csv.DictReader(stream))
+        return table(out)
 
     return run
+
+
+def table(out):
+    """The rows of a batch's table."""
+    with (out / "results.csv").open(encoding="utf-8", newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+@pytest.fixture
+def rows_of():
+    return table
+
+
+@pytest.fixture
+def ring(tmp_path):
+    path = tmp_path / "ring.txt"
+    write_curve(path, regular_polygon(12))
+    return path

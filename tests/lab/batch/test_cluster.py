@@ -1,6 +1,5 @@
 """Batches on clusters: the default one, and one whose processes are started by hand."""
 
-import csv
 import os
 import re
 import signal
@@ -21,11 +20,6 @@ psutil = pytest.importorskip("psutil")  # which Dask needs too
 PATIENCE = 300.0  # seconds
 
 
-def table(path):
-    with (path / "results.csv").open(encoding="utf-8", newline="") as stream:
-        return list(csv.DictReader(stream))
-
-
 @pytest.fixture
 def rings(tmp_path):
     place = tmp_path / "in"
@@ -35,13 +29,13 @@ def rings(tmp_path):
     return place
 
 
-def test_this_machine_s_cores_with_one_blas_thread_each(rings, tmp_path, monkeypatch, capfd):
+def test_this_machine_s_cores_with_one_blas_thread_each(rings, tmp_path, monkeypatch, capfd, rows_of):
     monkeypatch.setenv("OPENBLAS_NUM_THREADS", "7")
     assert main(["batch", str(rings), "-o", str(tmp_path / "out"), "--max-iterations", "1", "--vertices", "20"]) == 0
     said = capfd.readouterr()
     assert "\n✓ 8 runs      8 iteration limit\n" in said.out
     assert said.err == "8 runs\n"
-    assert len(table(tmp_path / "out")) == 8
+    assert len(rows_of(tmp_path / "out")) == 8
     assert '"blas_threads": 1,' in (tmp_path / "out/ring3/report.json").read_text()
 
 
@@ -75,7 +69,7 @@ def wait_for_one(out):
 
 
 @pytest.mark.slow
-def test_a_worker_that_is_killed_costs_no_row(port, rings, tmp_path):
+def test_a_worker_that_is_killed_costs_no_row(port, rings, tmp_path, rows_of):
     out = tmp_path / "out"
     words = ["batch", str(rings), "-o", str(out), "--scheduler", f"tcp://127.0.0.1:{port}"]
     program = [sys.executable, "-m", "mobius_flow", *words, "--vertices", "60", "--tolerance", "1e-9"]
@@ -87,12 +81,12 @@ def test_a_worker_that_is_killed_costs_no_row(port, rings, tmp_path):
     assert "\n✓ 8 runs " in said
     assert "failed" not in said
     assert complained == ""
-    assert [row["name"] for row in table(out)] == [f"ring{k}" for k in range(8)]
+    assert [row["name"] for row in rows_of(out)] == [f"ring{k}" for k in range(8)]
     assert {path.name for path in out.iterdir()} == {*(f"ring{k}" for k in range(8)), "results.csv", "results.parquet"}
 
 
 @pytest.mark.slow
-def test_an_interrupt_leaves_nothing_on_the_cluster(port, rings, tmp_path):
+def test_an_interrupt_leaves_nothing_on_the_cluster(port, rings, tmp_path, rows_of):
     out, address = tmp_path / "out", f"tcp://127.0.0.1:{port}"
     words = ["batch", str(rings), "7_1..8_21", "-o", str(out), "--scheduler", address]
     with cluster(port, 1, tmp_path) as processes, running([sys.executable, "-m", "mobius_flow", *words]) as process:
@@ -100,7 +94,7 @@ def test_an_interrupt_leaves_nothing_on_the_cluster(port, rings, tmp_path):
         process.send_signal(signal.SIGINT)
         said = process.communicate()
         assert (process.returncode, *said) == (130, "", "mobius-flow: interrupted\n")
-        done = [row["status"] for row in table(out)]
+        done = [row["status"] for row in rows_of(out)]
         assert done
         assert "failed" not in done
         with distributed.Client(address) as client:
@@ -116,7 +110,7 @@ def test_an_interrupt_leaves_nothing_on_the_cluster(port, rings, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_scheduler_that_is_killed_costs_no_result(port, rings, tmp_path):
+def test_a_scheduler_that_is_killed_costs_no_result(port, rings, tmp_path, rows_of):
     out = tmp_path / "out"
     words = ["batch", str(rings), "-o", str(out), "--vertices", "60", "--tolerance", "1e-9"]
     program = [sys.executable, "-m", "mobius_flow", *words, "--scheduler", f"tcp://127.0.0.1:{port}"]
@@ -126,18 +120,18 @@ def test_a_scheduler_that_is_killed_costs_no_result(port, rings, tmp_path):
         said = process.communicate()
     assert said == ("", "mobius-flow: the Dask scheduler is lost; give the same command again to go on\n")
     assert process.returncode == 2
-    done = {row["name"]: row for row in table(out)}
+    done = {row["name"]: row for row in rows_of(out)}
     assert 0 < len(done) < 8
     assert "failed" not in {row["status"] for row in done.values()}
     assert main(words) == 0
-    rows = {row["name"]: row for row in table(out)}
+    rows = {row["name"]: row for row in rows_of(out)}
     assert len(rows) == 8
     assert [rows[name] for name in done] == list(done.values()), "what was done is not done again"
     assert not list(out.glob(".*"))
 
 
 @pytest.mark.slow
-def test_a_command_that_is_killed_costs_nothing(port, rings, tmp_path):
+def test_a_command_that_is_killed_costs_nothing(port, rings, tmp_path, rows_of):
     """What its runs under way come to on the cluster is found by the same command, and not done again."""
     out = tmp_path / "out"
     words = ["batch", str(rings), "-o", str(out), "--scheduler", f"tcp://127.0.0.1:{port}"]
@@ -151,7 +145,7 @@ def test_a_command_that_is_killed_costs_nothing(port, rings, tmp_path):
     assert again.returncode == 0
     assert "\n✓ 8 runs " in again.stdout
     assert {path: path.stat().st_mtime_ns for path in done} == done
-    assert len(table(out)) == 8
+    assert len(rows_of(out)) == 8
 
 
 @pytest.mark.slow

@@ -1,6 +1,5 @@
 """A batch replaces its own files only, listens to nobody, and leaves nothing behind."""
 
-import csv
 import hashlib
 import json
 import os
@@ -9,9 +8,8 @@ import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Callable
 from contextlib import ExitStack, contextmanager, nullcontext
-from pathlib import Path
+from functools import partial
 
 import numpy as np
 import pytest
@@ -60,10 +58,6 @@ def moved_and_linked(path):
     path.symlink_to(path.parents[1] / "elsewhere")
 
 
-def with_a_note_in_the_table(path):
-    path.write_text(path.read_text().replace("stopped at", "discuss with Anna: stopped at"))
-
-
 def with_a_column(path):
     import pyarrow as pa
     import pyarrow.parquet as pq
@@ -72,20 +66,19 @@ def with_a_column(path):
     pq.write_table(table.append_column("remark", pa.array(["mine"])), path)
 
 
+def with_a_note(path):
+    path.write_text(path.read_text().replace("stopped at", "discuss with Anna: stopped at"))
+
+
 def with_a_remark(path):
     path.write_text(json.dumps(json.loads(path.read_text()) | {"remark": "mine"}))
 
 
-def someone_s_project(path):
+def emptied(path, **files):
     shutil.rmtree(path)
     path.mkdir()
-    (path / "thesis.tex").write_text("x")
-    (path / "report.json").write_text('{"row": {}, "recipe": {}}')
-
-
-def emptied(path):
-    shutil.rmtree(path)
-    path.mkdir()
+    for name, text in files.items():
+        (path / name.replace("_", ".")).write_text(text)
 
 
 def a_pipe(path):
@@ -93,8 +86,11 @@ def a_pipe(path):
     os.mkfifo(path)
 
 
-FOREIGN: dict[str, tuple[str, Callable[[Path], object]]] = {
-    "a folder with a thesis and a report": ("out/ring", someone_s_project),
+FOREIGN = {
+    "a folder with a thesis and a report": (
+        "out/ring",
+        partial(emptied, thesis_tex="x", report_json='{"row": {}, "recipe": {}}'),
+    ),
     "an empty folder": ("out/ring", emptied),
     "a file in place of a folder": ("out/ring", lambda path: replaced_by(path, "mine")),
     "results behind a link": ("out/ring", moved_and_linked),
@@ -105,7 +101,7 @@ FOREIGN: dict[str, tuple[str, Callable[[Path], object]]] = {
     "a report with a remark": ("out/ring/report.json", with_a_remark),
     "a report that is a pipe": ("out/ring/report.json", a_pipe),
     "someone's table": ("out/results.csv", lambda path: replaced_by(path, "name,energy\n3_1,74\n")),
-    "a table with a note": ("out/results.csv", with_a_note_in_the_table),
+    "a table with a note": ("out/results.csv", with_a_note),
     "a table that is a link": ("out/results.csv", moved_and_linked),
     "a table that is a pipe": ("out/results.csv", a_pipe),
     "someone's Parquet table": ("out/results.parquet", lambda path: replaced_by(path, "PAR1")),
@@ -126,17 +122,14 @@ def everything(place):
 
 @pytest.mark.skipif(os.name != "posix", reason="links and pipes")
 @pytest.mark.parametrize(("path", "spoil"), FOREIGN.values(), ids=FOREIGN)
-def test_what_is_not_its_own_is_refused_before_any_work(path, spoil, place, capsys):
+def test_what_is_not_its_own_is_refused_before_any_work(path, spoil, place, refused):
     spoil(place / path)
     if path == "out/results.csv" and (place / path).is_symlink():
         (place / "elsewhere").write_text("mine")
     before = everything(place)
-    assert main(["batch", str(place / "ring.txt"), "-o", str(place / "out"), *OTHERWISE]) == 2
-    said = capsys.readouterr()
-    assert said.out == ""
-    assert said.err.startswith((f"mobius-flow: {place / path}: ", f"mobius-flow: {place / 'out/ring'}: "))
-    assert said.err.count("\n") == 1
-    assert "; move it, or name another directory" in said.err or path == "out"
+    said = refused("batch", place / "ring.txt", "-o", place / "out", *OTHERWISE)
+    assert said.startswith((f"mobius-flow: {place / path}: ", f"mobius-flow: {place / 'out/ring'}: "))
+    assert "; move it, or name another directory" in said or path == "out"
     assert everything(place) == before
 
 
@@ -196,14 +189,13 @@ def test_results_that_are_called_like_unfinished_ones_are_not_swept_away(place):
     assert len(os.listdir(place / "out" / name)) == 3
 
 
-def test_no_cell_is_a_formula(results, tmp_path):
+def test_no_cell_is_a_formula(results, tmp_path, rows_of):
     names = ["=1+1", "-2", "+3", "@SUM(A1)", "\t=1", "＝1"]
     for name in names:
         shutil.copy(results / "ring.txt", tmp_path / f"{name}.txt")
         (tmp_path / f"{name}2.txt").write_text("=1+1\n")  # is refused
     assert main(["batch", str(tmp_path), "-o", str(tmp_path / "out"), "--quiet", *QUICK]) == 0
-    with (tmp_path / "out/results.csv").open(encoding="utf-8", newline="") as stream:
-        rows = list(csv.DictReader(stream))
+    rows = rows_of(tmp_path / "out")
     texts = [text for row in rows for text in row.values() if text and not re.fullmatch(r"-?[0-9.e+-]+", text)]
     assert not [text for text in texts if text[0] in "=+-@\t\r\n＝"]
     assert {row["name"] for row in rows if row["status"] == "converged"} == {f"_{name}" for name in names}
@@ -211,27 +203,19 @@ def test_no_cell_is_a_formula(results, tmp_path):
     assert read_curve(tmp_path / "out/_=1+1/curve.txt")
 
 
-def test_a_curve_has_a_head(results):
+def test_a_curve_has_a_head(results, rows_of):
     first, second, _ = (results / "out/ring/curve.txt").read_text(encoding="utf-8").split("\n", 2)
-    with (results / "out/results.csv").open(encoding="utf-8", newline="") as stream:
-        (row,) = csv.DictReader(stream)
+    (row,) = rows_of(results / "out")
     assert first == f"# ring: unknot, Möbius energy {float(row['energy']):.9g}, converged"
     assert second == f"# mobius-flow {row['version']} batch, options {row['options']}"
     assert row["input_sha256"] == hashlib.sha256((results / "ring.txt").read_bytes()).hexdigest()
 
 
 def test_a_curve_in_four_dimensions_is_refused_at_once(tmp_path, monkeypatch):
-
     write_curve(tmp_path / "a.json", Curve(np.pad(regular_polygon(12).vertices, ((0, 0), (0, 1)))))
     monkeypatch.setattr(single, "minimize", lambda *_: pytest.fail("work for nothing"))
-    (job,) = jobs(
-        inputs([str(tmp_path / "a.json")]),
-        1,
-        tmp_path / "out",
-        RelaxOptions(),
-        {"avoid": [], "pins": [], "pin_tangents": False},
-        False,
-    )
+    still = {"avoid": [], "pins": [], "pin_tangents": False}
+    (job,) = jobs(inputs([str(tmp_path / "a.json")]), 1, tmp_path / "out", RelaxOptions(), still, False)
     row = single.relaxed(job)
     assert row.failed
     assert row.message.startswith(f"{tmp_path / 'a.json'}: the curve is in dimension 4, and curve.txt holds")
