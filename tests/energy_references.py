@@ -80,23 +80,23 @@ def inverse_square_integral(*points: Sequence[float | mp.mpf]) -> mp.mpf:
     points and at the lines' closest approach, geometrically refined towards each.
     """
     x0, x1, y0, y1 = ([mp.mpf(c) for c in p] for p in points)
-    e, f, between = _minus(x1, x0), _minus(y1, y0), _minus(x0, y0)
-    ee, ff, ef = _dot(e, e), _dot(f, f), _dot(e, f)
+    e, f, between = minus(x1, x0), minus(y1, y0), minus(x0, y0)
+    ee, ff, ef = mp.fdot(e, e), mp.fdot(f, f), mp.fdot(e, f)
     width = mp.sqrt(ff)
 
     def inner(s: mp.mpf) -> mp.mpf:
         z = [b + s * c for b, c in zip(between, e, strict=True)]
-        foot = _dot(z, f) / width
-        h2 = _dot(z, z) - foot**2
+        foot = mp.fdot(z, f) / width
+        h2 = mp.fdot(z, z) - foot**2
         if h2 < mp.mpf(10) ** -36:
             return (1 / (foot - width) - 1 / foot) / width
         h = mp.sqrt(h2)
         return (mp.atan(foot / h) - mp.atan((foot - width) / h)) / (h * width)
 
-    centres = [_dot(_minus(y, x0), e) / ee for y in (y0, y1)]
+    centres = [mp.fdot(minus(y, x0), e) / ee for y in (y0, y1)]
     determinant = ee * ff - ef**2
     if determinant > mp.mpf(10) ** -30 * ee * ff:
-        centres.append((ef * _dot(f, between) - ff * _dot(e, between)) / determinant)
+        centres.append((ef * mp.fdot(f, between) - ff * mp.fdot(e, between)) / determinant)
     breaks = {mp.mpf(0), mp.mpf(1)}
     for centre in centres:
         middle = min(max(centre, mp.mpf(0)), mp.mpf(1))
@@ -117,9 +117,5 @@ def _legendre() -> list[tuple[mp.mpf, mp.mpf]]:
     return [(mp.mpf(str(x)), mp.mpf(str(w))) for x, w in zip(points, weights, strict=True)]
 
 
-def _dot(a: list[mp.mpf], b: list[mp.mpf]) -> mp.mpf:
-    return mp.fsum(p * q for p, q in zip(a, b, strict=True))
-
-
-def _minus(a: list[mp.mpf], b: list[mp.mpf]) -> list[mp.mpf]:
+def minus(a: list[mp.mpf], b: list[mp.mpf]) -> list[mp.mpf]:
     return [p - q for p, q in zip(a, b, strict=True)]

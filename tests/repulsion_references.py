@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import mpmath as mp
 import numpy as np
+from energy_references import minus
 from mobius_flow.core import Curve
 from mobius_flow.core.curve.obstacle import Obstacle
 from mobius_flow.core.energies.repulsion import Repulsion
@@ -29,10 +30,10 @@ def solid_angle_potential(corners: np.ndarray, x: Vector) -> mp.mpf:
     """Ω/h by the angles between the planes through x and the triangle's sides (Girard), with as many digits as set."""
     seen = [[mp.mpf(float(c)) - xi for c, xi in zip(corner, x, strict=True)] for corner in corners]
     normals = [_unit(_cross(seen[i], seen[(i + 1) % 3])) for i in range(3)]
-    excess = mp.fsum(mp.acos(-_dot(normals[i], normals[i - 1])) for i in range(3)) - mp.pi
+    excess = mp.fsum(mp.acos(-mp.fdot(normals[i], normals[i - 1])) for i in range(3)) - mp.pi
     a, b, c = ([mp.mpf(float(component)) for component in corner] for corner in corners)
-    normal = _unit(_cross(_minus(b, a), _minus(c, a)))
-    return excess / abs(_dot(normal, seen[0]))
+    normal = _unit(_cross(minus(b, a), minus(c, a)))
+    return excess / abs(mp.fdot(normal, seen[0]))
 
 
 def edge_integral(corners: np.ndarray, start: np.ndarray, end: np.ndarray, breaks: list[float]) -> float:
@@ -49,7 +50,7 @@ def edge_integral(corners: np.ndarray, start: np.ndarray, end: np.ndarray, break
                 t = (low + high) / 2 + (high - low) / 2 * u
                 x = [a + t * b for a, b in zip(x0, e, strict=True)]
                 total += (high - low) / 2 * weight * solid_angle_potential(corners, x)
-        return float(total * mp.sqrt(_dot(e, e)))
+        return float(total * mp.sqrt(mp.fdot(e, e)))
 
 
 def repulsion(obstacle: Obstacle, theta: float = 0.0) -> Repulsion:
@@ -92,14 +93,6 @@ def _cross(a: Vector, b: Vector) -> Vector:
     return [a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(3)]
 
 
-def _dot(a: Vector, b: Vector) -> mp.mpf:
-    return mp.fsum(p * q for p, q in zip(a, b, strict=True))
-
-
-def _minus(a: Vector, b: Vector) -> Vector:
-    return [p - q for p, q in zip(a, b, strict=True)]
-
-
 def _unit(a: Vector) -> Vector:
-    length = mp.sqrt(_dot(a, a))
+    length = mp.sqrt(mp.fdot(a, a))
     return [p / length for p in a]

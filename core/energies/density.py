@@ -103,40 +103,39 @@ class PointPairs:
     """
 
     def __init__(self, x: PointSet, y: PointSet, arcs: Arcs, tile: Tile) -> None:
-        self._x, self._y, self._arcs, self._tile = x, y, arcs, tile
+        self._arcs, self._tile, self._places = arcs, tile, (x.t, y.t)
+        self._x, self._tau_x = x.x[tile.rows], x.tau[tile.rows]
+        self._y, self._tau_y = y.x[tile.columns], y.tau[tile.columns]
 
     @cached_property
     def r2(self) -> FloatArray:
         """|x − y|², from differences: strands may be close."""
-        x, y = self._x.x[self._tile.rows], self._y.x[self._tile.columns]
-        r2 = np.asarray(cdist(x.real, y.real, "sqeuclidean"))
-        if np.iscomplexobj(x):
-            r2 = r2 + 2j * half_changes(x, y)
+        r2 = np.asarray(cdist(self._x.real, self._y.real, "sqeuclidean"))
+        if np.iscomplexobj(self._x):
+            r2 = r2 + 2j * half_changes(self._x, self._y)
         r2[self._tile.excluded] = 1.0
         return r2
 
     @cached_property
     def a(self) -> FloatArray:
-        x, tau = self._x.x[self._tile.rows], self._x.tau[self._tile.rows]
-        a = np.einsum("ij,ij->i", x, tau)[:, None] - tau @ self._y.x[self._tile.columns].T
+        a = np.einsum("ij,ij->i", self._x, self._tau_x)[:, None] - self._tau_x @ self._y.T
         a[self._tile.excluded] = 0.0
         return np.asarray(a)
 
     @cached_property
     def b(self) -> FloatArray:
-        y, tau = self._y.x[self._tile.columns], self._y.tau[self._tile.columns]
-        b = self._x.x[self._tile.rows] @ tau.T - np.einsum("ij,ij->i", y, tau)
+        b = self._x @ self._tau_y.T - np.einsum("ij,ij->i", self._y, self._tau_y)
         b[self._tile.excluded] = 0.0
         return np.asarray(b)
 
     @cached_property
     def c(self) -> FloatArray:
-        return np.asarray(self._x.tau[self._tile.rows] @ self._y.tau[self._tile.columns].T)
+        return np.asarray(self._tau_x @ self._tau_y.T)
 
     @cached_property
     def rho(self) -> FloatArray:
         """Distance ϱ along the curve; inf between components."""
-        return self._arcs.distances(self._tile, self._x.t, self._y.t)
+        return self._arcs.distances(self._tile, *self._places)
 
 
 class Partials(NamedTuple):

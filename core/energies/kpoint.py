@@ -25,24 +25,15 @@ from .quadrature import Rule
 class KPointEnergy:
     """The energy of a density F by a quadrature rule.
 
-    Parameters
-    ----------
-    name, description
-        As shown to users.
-    density
-        F, a function of pairs of points of the curve.
-    rule
-        The quadrature points on every edge.
-    arc_derivative
-        Whether the derivative includes that of ϱ.  Without it, it is right only in directions that keep every edge
-        length, so for gradients projected onto that constraint (footnote 5 of [RS21]).
+    Without the derivative of ϱ, that of the energy is right only in directions that keep every edge length, so for
+    gradients projected onto that constraint (footnote 5 of [RS21]).
     """
 
-    name: str
+    name: str  #: as shown to users, like the description
     description: str
-    density: Density
-    rule: Rule
-    arc_derivative: bool = True
+    density: Density  #: F, a function of pairs of points of the curve
+    rule: Rule  #: the quadrature points on every edge
+    arc_derivative: bool = True  #: whether the derivative includes that of ϱ
     contains_midpoint_pairs = False
 
     @property

@@ -44,20 +44,11 @@ class Objective:
     A term has a name, a value and a derivative (`Term`). Other features of the objective depend on the abilities of its
     terms: a second derivative (`LocalTerm`), stiffness for the metric (`Stiff`), a clearance (`Confining`), an
     attribute ``scale_exponent`` or ``moebius_invariant``.
-
-    Parameters
-    ----------
-    energy
-        The energy of the curve alone, by default `MoebiusEnergy`.
-    barrier
-        The term that makes it infinite where edges touch; None leaves the energy as it is.
-    further
-        All other terms with their weights, such as the repulsion of obstacles.
     """
 
-    energy: Energy = field(default_factory=MoebiusEnergy)
-    barrier: Barrier | None = field(default_factory=Barrier)
-    further: tuple[Weighted, ...] = ()
+    energy: Energy = field(default_factory=MoebiusEnergy)  #: of the curve alone
+    barrier: Barrier | None = field(default_factory=Barrier)  #: infinite where edges touch; None for none
+    further: tuple[Weighted, ...] = ()  #: all other terms with their weights, such as the repulsion of obstacles
 
     name = "objective"
 

@@ -52,9 +52,8 @@ class Repulsion:
 
     def frozen_at(self, curve: Curve) -> "Repulsion":
         """The smooth function given by the schedule of ``curve``, or by this repulsion's own if it suits."""
-        if self.schedule is not None and self.schedule.suits(curve, self.clusters, KEPT):
-            return self
-        return replace(self, schedule=_schedule(curve, self.clusters, self.theta))
+        schedule = self._schedule(curve, KEPT)
+        return self if schedule is self.schedule else replace(self, schedule=schedule)
 
     def value(self, curve: Curve) -> float:
         return self.value_and_derivative(curve)[0]
@@ -90,9 +89,9 @@ class Repulsion:
         """The mean values of Φ on every edge, shape (edges,)."""
         return np.asarray(self._integrals(self._schedule(curve), *_ends(curve, curve.vertices))[0])
 
-    def _schedule(self, curve: Curve) -> Schedule:
+    def _schedule(self, curve: Curve, slack: float = OUTDATED) -> Schedule:
         """The schedule in use at a curve: this repulsion's own, or the curve's."""
-        if self.schedule is not None and self.schedule.suits(curve, self.clusters, OUTDATED):
+        if self.schedule is not None and self.schedule.suits(curve, self.clusters, slack):
             return self.schedule
         return _schedule(curve, self.clusters, self.theta)
 

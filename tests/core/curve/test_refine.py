@@ -1,9 +1,11 @@
-"""Refinement changes the mesh and not the curve."""
+"""Refinement changes the mesh and not the curve; arcs closed far away have the knots that one sees."""
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, OptionError
-from mobius_flow.core.curve.refine import DEFAULT_VERTICES, refine, subdivide
+from mobius_flow.core import Curve, Mesh, OptionError
+from mobius_flow.core.collision import check_embedded
+from mobius_flow.core.curve.refine import DEFAULT_VERTICES, closed_far_away, refine, subdivide
+from mobius_flow.core.knots import knot, knot_type
 from shapes import hopf_link, lattice_knot, regular_polygon
 
 
@@ -116,3 +118,25 @@ def test_many_components_share_the_vertices(count, gap, most):
     pentagon = regular_polygon(5).vertices
     link = Curve.from_components([pentagon + gap * np.array([k % 40, k // 40, 0]) for k in range(count)])
     assert len(link) <= len(refine(link)) <= most
+
+
+def test_an_overhand_knot_is_a_trefoil():
+    closed = closed_far_away(knot("overhand", 60))
+    assert closed.mesh.all_closed
+    assert set(knot_type(closed).names) <= {"3_1", "m3_1"}
+
+
+def test_what_is_closed_stays_and_arcs_do_not_meet_far_away():
+    rng = np.random.default_rng(21)
+    parts = [rng.normal(size=(6, 3)) for _ in range(4)] + [5 + np.eye(3)]
+    closed = closed_far_away(Curve.from_components(parts, [False] * 4 + [True]))
+    check_embedded(closed)
+    assert np.array_equal(closed.components[-1], parts[-1])
+    for part, before in zip(closed.components, parts, strict=True):
+        assert np.array_equal(part[: len(before)], before)
+
+
+@pytest.mark.parametrize("bent", [0.0, 0.1])
+def test_straight_arcs_have_ends_that_are_opposite(bent):
+    arc = Curve([[-1.0, 0, 0], [0, bent, 0], [1, 0, 0]], Mesh((3,), (False,)))
+    assert knot_type(closed_far_away(arc)).names == ("0_1",)

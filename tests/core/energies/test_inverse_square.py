@@ -6,7 +6,7 @@ import pytest
 from energy_references import inverse_square_integral
 from families import crossed
 from mobius_flow.core.energies.edge_pairs import EdgePairs, change, stepped
-from mobius_flow.core.energies.inverse_square import inverse_square, moments
+from mobius_flow.core.energies.inverse_square import inverse_square
 
 Points = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
@@ -80,16 +80,3 @@ def test_derivatives(shape: str, gap: float) -> None:
     assert jet.first[0].real @ direction == pytest.approx(float(first), rel=1e-6)
     assert change(jet.value)[0] == pytest.approx(float(first), rel=1e-6)
     assert change(jet.first)[0] @ direction == pytest.approx(float(second), rel=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("h", "a", "b"), [(0.3, -1, 2), (1e-6, -1, 2), (0.2, 0.5, 1), (0.0, 0.5, 1), (2, 1, 1.5), (1, 1e-3, 9)]
-)
-def test_moments(h: float, a: float, b: float) -> None:
-    result = moments(np.array([h * h]), np.array([float(a)]), np.array([float(b)]))
-    for (n, k), value in zip(((1, 0), (2, 0), (2, 1), (2, 2)), result, strict=True):
-        cuts = sorted({mp.mpf(a), mp.mpf(b), *(mp.mpf(c) for c in (-10 * h, 0, 10 * h) if a < c < b)})
-        with mp.workdps(20):
-            exact = mp.quad(lambda w, n=n, k=k: w**k / (mp.mpf(h) ** 2 + w**2) ** n, cuts)
-            size = mp.quad(lambda w, n=n, k=k: abs(w) ** k / (mp.mpf(h) ** 2 + w**2) ** n, cuts)
-        assert abs(value[0] - float(exact)) < 1e-12 * float(size), (n, k)

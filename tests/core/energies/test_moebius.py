@@ -1,4 +1,8 @@
-"""The default energy: its known values, and energy per length."""
+"""The default energy: its known values, energy per length, and another program, Surface Evolver."""
+
+import shutil
+import subprocess
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,6 +12,7 @@ from shapes import regular_polygon, torus_trefoil
 from smooth_curves import SMOOTH_CURVES
 
 ENERGY = MoebiusEnergy()
+EVOLVER = shutil.which("evolver")
 
 
 @pytest.mark.parametrize("n", [3, 4, 5, 6, 7, 17, 64, 301, 1000])
@@ -68,3 +73,43 @@ def test_energy_per_length(n: int) -> None:
     missing = rows - MoebiusEnergy(pairs).row_energies(curve, some)
     assert np.flatnonzero(missing).tolist() == [1, 2, 3]
     assert missing[1] == pytest.approx(missing[3])
+
+
+def equilateral(curve: Curve) -> Curve:
+    """The same kind of polygon with equal edges, by Newton's method on the lengths."""
+    n, edges = len(curve), np.arange(len(curve))
+    for _ in range(30):
+        tau = curve.edge_vectors / curve.edge_lengths[:, None]
+        rows = np.zeros((n, *curve.vertices.shape))
+        rows[edges, curve.mesh.tails] -= tau
+        rows[edges, curve.mesh.heads] += tau
+        excess = curve.edge_lengths.mean() - curve.edge_lengths
+        move = np.linalg.lstsq(rows.reshape(n, -1), excess, rcond=None)[0]
+        curve = curve.with_vertices(curve.vertices + move.reshape(curve.vertices.shape))
+    assert np.ptp(curve.edge_lengths) < 1e-13
+    return curve
+
+
+def evolver_energy(curve: Curve, folder: Path) -> float:
+    """What its method circle_knot_energy says."""
+    mesh = curve.mesh
+    lines = ["STRING", "space_dimension 3", "quantity knot energy method circle_knot_energy global", "vertices"]
+    lines += [f"{k + 1} {x!r} {y!r} {z!r}" for k, (x, y, z) in enumerate(curve.vertices.tolist())]
+    lines += ["edges"]
+    lines += [f"{k + 1} {mesh.tails[k] + 1} {mesh.heads[k] + 1}" for k in range(len(curve))]
+    source = folder / "knot.fe"
+    source.write_text("\n".join(lines) + "\n")
+    command = [str(EVOLVER), str(source)]
+    script = 'printf "VALUE %20.15g\\n", knot.value\nq\nq\n'
+    answer = subprocess.run(command, input=script, capture_output=True, text=True, timeout=60, check=False)
+    values = [line.split()[1] for line in answer.stdout.splitlines() if line.startswith("VALUE")]
+    assert len(values) == 1, answer.stdout
+    return float(values[0])
+
+
+@pytest.mark.skipif(EVOLVER is None, reason="Surface Evolver (evolver) is not installed")
+@pytest.mark.parametrize("n", [17, 40, 120])
+@pytest.mark.parametrize("name", ["wave", "trefoil", "figure-eight"])
+def test_surface_evolver_agrees(name: str, n: int, tmp_path: Path) -> None:
+    curve = equilateral(SMOOTH_CURVES[name].polygon(n))
+    assert MoebiusEnergy().value(curve) == pytest.approx(4 + evolver_energy(curve, tmp_path), rel=1e-10)
