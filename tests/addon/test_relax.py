@@ -1,4 +1,4 @@
-"""The operator does in Blender what the library does outside."""
+"""The operator does in Blender what the library does outside: relax, grow, pack, balance and leave saddles."""
 
 import bpy
 import numpy as np
@@ -6,7 +6,15 @@ import pytest
 import threadpoolctl
 from blender_scenes import add_curve, add_hopf_link, add_trefoil, evaluated, in_world, relax, stored, values
 from mathutils import Euler, Matrix, Vector
+from mobius_flow.addon.curves import pins
+from mobius_flow.addon.curves.recorded import BakedKeys
+from mobius_flow.addon.curves.splines import box
+from mobius_flow.addon.curves.surroundings import Surroundings
+from mobius_flow.addon.live.requirements import avoided
 from mobius_flow.core import Curve, MoebiusEnergy, RelaxOptions, minimize
+from mobius_flow.core.collision.embedded import clears
+from mobius_flow.core.curve.measures import bending
+from mobius_flow.core.knots import torus_knot
 from shapes import regular_polygon
 
 BOTTOM = {"max_iterations": 25}
@@ -110,3 +118,104 @@ def test_a_link_keeps_its_splines_and_everything_else():
     assert all(spline.use_cyclic_u and spline.type == "POLY" for spline in data.splines)
     assert (data.bevel_depth, data.bevel_resolution, data.resolution_u) == (0.125, 3, 5)
     assert data.name == obj.name == "Knot"
+
+
+GROWING = {"grow": 1.2, "max_iterations": 8}
+
+
+def add_ring():
+    return add_curve([regular_polygon(40).vertices * [1.0, 0.8, 1.0]])
+
+
+@pytest.mark.parametrize("size", ["LENGTH", "BOX"])
+def test_keys_grow_and_are_proved_unless_their_size_is_kept(size):
+    obj = add_ring()
+    relax(**GROWING, keep_size=size)
+    keys = BakedKeys([obj])
+    assert keys.unproved == 0
+    if size == "LENGTH":
+        lengths = [curve.length for curve in keys.curves]
+        assert lengths[-1] == pytest.approx(1.2 * lengths[0], rel=1e-3)
+    else:
+        boxes = [np.ptp(curve.vertices, axis=0).max() for curve in keys.curves]
+        np.testing.assert_allclose(boxes, boxes[0], rtol=1e-5)
+
+
+def add_ball():
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=2, radius=1.3)
+    ball = bpy.context.object
+    ball.select_set(False)
+    bpy.context.scene.mobius_flow_surroundings.container = ball
+    return ball
+
+
+def test_a_curve_is_packed_into_its_container():
+    obj, ball = add_ring(), add_ball()
+    obj.select_set(True)
+    bpy.context.view_layer.objects.active = obj
+    assert bpy.ops.curve.mobius_flow_pack(max_iterations=20, vertices=60) == {"FINISHED"}
+    keys = BakedKeys([obj])
+    lengths = [curve.length for curve in keys.curves]
+    assert lengths[-1] > 1.2 * lengths[0]
+    assert keys.unproved == 0
+    assert clears(keys.curves[-1], Surroundings.of([ball], []).obstacles, 0.0)
+    low, high = box(ball)
+    assert all((low < each.vertices).all() and (each.vertices < high).all() for each in keys.curves)
+
+
+def test_what_lies_in_the_container_never_touches_it_whatever_is_pressed():
+    obj, ball = add_ring(), add_ball()
+    obj.select_set(True)
+    assert avoided(bpy.context) == [ball]
+    assert avoided(bpy.context, "") == []
+    obj.select_set(False)
+    assert avoided(bpy.context) == []
+    obj.select_set(True)
+    ball.hide_set(True)
+    assert avoided(bpy.context) == []
+    ball.hide_set(False)
+    for x in (-2.0, 2.0):
+        obj.location.x = x
+        bpy.context.view_layer.update()
+        assert avoided(bpy.context) == []
+
+
+def add_unbalanced(n):
+    curve = minimize(torus_knot(2, 3, n), RelaxOptions(vertices=n)).curve
+    away = curve.vertices - np.array([0.9, 0.4, 0.9])  # an inversion near the knot
+    return add_curve([3 * away / np.square(away).sum(axis=1, keepdims=True)])
+
+
+def test_grab_ends_balanced_unless_something_is_in_the_way(capfd):
+    """A knot that was pulled hard would stay small on a large ring."""
+    obj = add_unbalanced(60)
+    assert bpy.ops.curve.mobius_flow_grab(vertices=60) == {"FINISHED"}
+    assert "balanced: bending reduced" in capfd.readouterr().out
+    bpy.ops.curve.mobius_flow_clear()
+    pins.pin(obj.data.splines[0], np.arange(60) == 7)
+    assert bpy.ops.curve.mobius_flow_grab(vertices=60) == {"FINISHED"}
+    assert "balance" not in capfd.readouterr().out
+
+
+@pytest.mark.slow
+def test_a_balanced_curve_goes_on_from_its_animation():
+    add_unbalanced(100)
+    obj = relax(vertices=100)
+    keys = BakedKeys([obj])
+    there, unbalanced = len(keys.frames), bending(keys.curves[-1])
+    assert bpy.ops.curve.mobius_flow_continue(balance=True, fit_bevel=False) == {"FINISHED"}
+    keys = BakedKeys([obj])
+    assert len(keys.frames) > there + 5, "the way has keys"
+    assert keys.unproved == 0
+    assert bending(keys.curves[-1]) < 0.95 * unbalanced
+    assert not bpy.context.scene.mobius_flow.balance
+
+
+def test_a_saddle_is_told_and_left(capfd):
+    add_curve([torus_knot(3, 4, 120).vertices])
+    obj = relax(vertices=120, stability=True)
+    assert "the energy is not least here" in capfd.readouterr().out
+    there = len(BakedKeys([obj]).frames)
+    assert bpy.ops.curve.mobius_flow_continue(escape_saddles=True, fit_bevel=False) == {"FINISHED"}
+    assert len(BakedKeys([obj]).frames) > there + 5
+    assert "every small change of shape raises the energy" in capfd.readouterr().out

@@ -4,7 +4,6 @@ import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_curve, add_hopf_link, add_trefoil, contents, linked, relax, sentence, show
-from mobius_flow.addon.curves import splines
 from shapes import torus_trefoil
 
 
@@ -45,11 +44,6 @@ def of_type(kind):
     show(bpy.data.objects.new("Words", bpy.data.curves.new("Words", kind)))
 
 
-def shared_data():
-    obj = add_trefoil()
-    bpy.context.scene.collection.objects.link(bpy.data.objects.new("Other", obj.data))
-
-
 def zero_parent():
     obj = add_trefoil()
     obj.parent = bpy.data.objects.new("Parent", None)
@@ -81,38 +75,29 @@ CASES = [
     (not_finite, "Point 7 of spline 1 of 'Knot' is not finite"),
     (infinite_in_second, "Point 3 of spline 2 of 'Knot' is not finite"),
     (absurdly_far, "Point 3 of spline 2 of 'Knot' is not finite, or further away"),
-    (lambda: add_trefoil().select_set(False), "Select a curve object first"),
-    (lambda: None, "Select a curve object first"),
     (mesh, "'Mesh' is of type Mesh"),
-    (lambda: show(bpy.data.objects.new("Axes", None)), "'Axes' is of type Empty"),
     (lambda: of_type("FONT"), "'Words' is of type Text"),
     (lambda: of_type("SURFACE"), "'Words' is of type Surface"),
     (lambda: add_trefoil().hide_set(True), "'Knot' is hidden"),
     (lambda: setattr(add_trefoil(), "hide_viewport", True), "'Knot' is hidden"),
-    (shared_data, "'Knot' shares its curve data 'Knot' with other objects"),
     (lambda: setattr(add_trefoil(), "scale", (1, 0, 1)), "scaled to nothing"),
     (zero_parent, "scaled to nothing"),
     (lambda: add_curve([TREFOIL[:1]], cyclic=False), "Spline 1 of 'Knot' has fewer than 2 points"),
     (lambda: add_curve([TREFOIL], kind="BEZIER"), "is a Bézier spline"),
     (lambda: add_curve([TREFOIL], kind="NURBS"), "is a NURBS spline"),
     (lambda: add_trefoil().shape_key_add(name="Basis"), "has shape keys"),
-    (lambda: relaxed().shape_key_add(name="Mine"), OTHER_KEYS),
     (lambda: relaxed().data.shape_keys.driver_add("eval_time"), OTHER_KEYS),
     (another_action, OTHER_KEYS),
     (lambda: relaxed().data.splines[0].points.add(1), OTHER_KEYS),
     (lambda: relaxed(keyframes="FCURVES").data.keyframe_insert("bevel_depth", frame=1), OTHER_KEYS),
     (animated, "is animated"),
     (lambda: add_trefoil().data.driver_add("splines[0].points[3].co", 1), "are driven"),
-    (lambda: setattr(add_trefoil().data, "dimensions", "2D"), "2D"),
-    (lambda: add_trefoil() and bpy.ops.object.mode_set(mode="EDIT"), "being edited"),
     (lambda: add_curve([TREFOIL, [[9, 9, 9]]], kind="BEZIER"), "Spline 2 of 'Knot' has fewer than 2 points"),
     (
         lambda: add_curve([TREFOIL, [[9, 9, 9], [9, 9, 8]]], kind="NURBS"),
         "Spline 2 of 'Knot' has fewer than 3 points",
     ),
-    (lambda: add_curve([[[0, 0, 0], [2, 2, 0], [2, 0, 0], [0, 2, 0]]]), "touch"),
     (lambda: add_curve([np.insert(FINE, 4, FINE[4], axis=0)]), ""),
-    (lambda: add_curve([FINE, FINE]), "touch"),
 ]
 
 
@@ -158,8 +143,7 @@ def test_a_stray_smooth_spline_changes_nothing(kind, count):
 
 def test_splines_that_are_not_drawn_are_refused(monkeypatch):
     add_curve([torus_trefoil(9).vertices, torus_trefoil(9).vertices + 9], kind="NURBS")
-    drawn = splines._drawn
-    monkeypatch.setattr(splines, "_drawn", lambda data: drawn(data)[1:])
+    monkeypatch.setattr(np, "setdiff1d", lambda *_: np.array([0]))  # as if all that is drawn were one chain
     assert "draws nothing for" in refused(sample_splines=True)
 
 
