@@ -68,9 +68,7 @@ def test_a_run_that_is_cut_short_has_all_vertices(least: int, limit: int, monkey
     change(monkeypatch, CoarseStart, min_iterations=least)
     options = RelaxOptions(vertices=600, max_iterations=limit, tolerance=1e-9, method="flow-h1")
     result = minimize(torus_trefoil(600), options)
-    assert result.status is Status.ITERATION_LIMIT
-    assert len(result.energies) == limit + 1
-    assert len(result.curve) == 600
+    assert (result.status, len(result.energies), len(result.curve)) == (Status.ITERATION_LIMIT, limit + 1, 600)
     assert result.certified
     assert result.last.energy < 1.0005 * result.energies[0]
 
