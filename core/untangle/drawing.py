@@ -37,28 +37,14 @@ class UnclearError(ArithmeticError):
 
 @dataclass(frozen=True, eq=False)
 class PlaneDrawing:
-    """The diagram of a curve as seen along the third axis.
-
-    Attributes
-    ----------
-    mesh, points
-        The curve in the frame, shape (n, 3).
-    crossings
-        The crossings of its edges, which are numbered by their tails here.
-    heights
-        The heights of both edges at each crossing; shape (2, k).
-    diagram
-        The diagram, with places where the curve is held among its passes.
-    at
-        Where each pass is: the tail of its edge plus a fraction.
-    """
+    """The diagram of a curve as seen along the third axis, with places where it is held among its passes."""
 
     mesh: Mesh
-    points: FloatArray
-    crossings: PlaneCrossings
-    heights: FloatArray
+    points: FloatArray  # the vertices in the frame, shape (n, 3)
+    crossings: PlaneCrossings  # of the edges, which are numbered by their tails here
+    heights: FloatArray  # of both edges at each crossing; shape (2, k)
     diagram: Diagram
-    at: list[float]
+    at: list[float]  # where each pass is: the tail of its edge plus a fraction
 
     @classmethod
     def of(cls, mesh: Mesh, points: FloatArray, held: BoolArray) -> "PlaneDrawing":

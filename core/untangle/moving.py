@@ -9,6 +9,7 @@ import numpy as np
 from ..base.deadline import check_time
 from ..base.types import BoolArray, FloatArray, IntArray
 from ..collision import is_free, minimal_gap, survives_rounding
+from ..collision.motion import walk
 from ..curve import Curve, Mesh
 from ..curve.obstacle import Obstacle
 
@@ -22,21 +23,11 @@ class ViewCount(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Stage:
-    """Motions on one mesh; they start where the previous stage ends, except for vertices on straight edges.
+    """Motions on one mesh; they start where the previous stage ends, except for vertices on straight edges."""
 
-    Attributes
-    ----------
-    start
-        The curve where they begin, in the user's units.
-    path
-        The vertices at the end of each leg, shapes (n, 3); empty where only the mesh changes.
-    seen
-        What is seen at the end of the last stage of a move, or before the first one; None in between.
-    """
-
-    start: Curve
-    path: tuple[FloatArray, ...] = ()
-    seen: ViewCount | None = None
+    start: Curve  # where they begin, in the user's units
+    path: tuple[FloatArray, ...] = ()  # the vertices at the end of each leg, (n, 3); empty where only the mesh changes
+    seen: ViewCount | None = None  # at the end of the last stage of a move, or before the first one; None in between
 
     @property
     def end(self) -> Curve:
@@ -47,34 +38,17 @@ class Stage:
 class MovingCurve:
     """A curve's vertices in the user's doubles, bit for bit those that were proved, and in a frame for planning.
 
-    Parameters
-    ----------
-    curve
-        Embedded polygons in space.
-    held
-        Vertices that neither move nor vanish.
-    obstacles
-        What edges must not meet.
-
-    Attributes
-    ----------
-    stages
-        All motions that have not been taken.
-    moves
-        How many strand moves have been made.
-    held
-        Whether each vertex is held; shape (n,).
-    frame
-        A rotation; the third of its columns points to the eye.
+    It is made of embedded polygons in space, vertices ``held`` that neither move nor vanish, as ends do not, and
+    obstacles that edges must not meet.
     """
 
     def __init__(self, curve: Curve, held: IntArray, obstacles: Sequence[Obstacle] = ()) -> None:
         self.curve, self.obstacles = curve, tuple(obstacles)
-        self.held: BoolArray = np.zeros(len(curve), dtype=bool)
+        self.held: BoolArray = np.zeros(len(curve), dtype=bool)  # whether each vertex is; shape (n,)
         self.held[held] = self.held[curve.mesh.ends] = True
-        self.frame: FloatArray = np.eye(3)
-        self.stages: list[Stage] = []
-        self.moves = 0
+        self.frame: FloatArray = np.eye(3)  # a rotation; the third of its columns points to the eye
+        self.stages: list[Stage] = []  # all motions that have not been taken
+        self.moves = 0  # how many strand moves have been made
 
     @property
     def mesh(self) -> Mesh:
@@ -102,16 +76,11 @@ class MovingCurve:
 
     def follow(self, vertices: IntArray, targets: Callable[[int], FloatArray], count: int) -> bool:
         """Move some vertices through targets 1, 2, … to the last, in as few motions as possible, if these are free."""
-        done, stride = 0, count
-        while done < count:
-            further = min(done + stride, count)
-            if self.move(vertices, targets(further)):
-                done, stride = further, 2 * stride
-            elif stride == 1:
-                return False
-            else:
-                stride //= 2
-        return True
+
+        def moved(at: float, stride: float) -> bool | None:
+            return self.move(vertices, targets(min(int(at + stride), count))) or None
+
+        return max((place for place, _ in walk(moved, count, count, 1.0)), default=0.0) >= count
 
     def straighten(self, vertices: IntArray, parts: FloatArray) -> bool:
         """Move some vertices to given parts of the way between their neighbours, which stay, if that is proved free."""
