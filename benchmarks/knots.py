@@ -18,7 +18,6 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from hard_curves import hard_unknot, lattice_knot, lattice_unknot, rope, spiral, uneven
@@ -27,8 +26,6 @@ from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, Status, minim
 from mobius_flow.core.knots import HARD_UNKNOTS, KNOTS, knot, scramble, torus_knot
 from mobius_flow.core.knots.diagrams import quick_invariants
 from speed import machine
-
-CIRCLE = 4.02  # energy below which an unknot counts as a circle
 
 Curves = Mapping[str, Callable[[], Curve]]
 HARD: Curves = {
@@ -75,20 +72,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
         rows = [row(name, curves[name](), wanted, width, product) for name in names]
     except MobiusFlowError as error:
         parser.error(str(error))
-    _print_summary(rows)
-    return 0 if all(each.good for each in rows) else 1
+    good, *figures = zip(*rows, strict=True)
+    for title, values in zip(("dgemms", "above, in %"), figures, strict=True):
+        if known := [value for value in values if np.isfinite(value)]:
+            median, most, worst = np.percentile(known, [50, 95, 100])
+            print(f"{title}: median {median:.3g}, 95 % up to {most:.3g}, worst {worst:.3g}, of {len(known)}")
+    return 0 if all(good) else 1
 
 
-class Row(NamedTuple):
-    """The result for a curve: whether it is right, what it cost, and how far it is above the least energy."""
+def row(name: str, curve: Curve, options: RelaxOptions, width: int, product: float) -> tuple[bool, float, float]:
+    """Relax a curve and print the result: whether it is right, what it cost, and how far it is above the least energy.
 
-    good: bool
-    products: float
-    above: float
-
-
-def row(name: str, curve: Curve, options: RelaxOptions, width: int, product: float) -> Row:
-    """Relax a curve and print the result; ``product`` is the time of a product of matrices, in seconds."""
+    ``product`` is the time of a product of matrices, in seconds.
+    """
     began = time.process_time()
     result = minimize(curve, options)
     seconds = time.process_time() - began
@@ -105,17 +101,8 @@ def row(name: str, curve: Curve, options: RelaxOptions, width: int, product: flo
         f"{'yes' if result.certified else 'NO':9}  {result.status.value}",
         flush=True,
     )
-    round_circle = not name.startswith("unknot") or result.final_energy < CIRCLE
-    return Row(before == after and result.certified and round_circle, seconds / product, above)
-
-
-def _print_summary(rows: Sequence[Row]) -> None:
-    """Median, 95th percentile and maximum of the numbers in rows."""
-    for title, values in (("dgemms", [each.products for each in rows]), ("above, in %", [each.above for each in rows])):
-        known = [value for value in values if np.isfinite(value)]
-        if known:
-            median, most, worst = np.percentile(known, [50, 95, 100])
-            print(f"{title}: median {median:.3g}, 95 % up to {most:.3g}, worst {worst:.3g}, of {len(known)}")
+    round_circle = not name.startswith("unknot") or result.final_energy < 4.02
+    return before == after and result.certified and round_circle, seconds / product, above
 
 
 if __name__ == "__main__":

@@ -69,11 +69,6 @@ def add_pair(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--avoid", metavar="MESH.obj", action="append", default=[], help=text)
 
 
-def inputs(options: argparse.Namespace) -> dict[str, str]:
-    """The files that are read, by their names on the command line."""
-    return {"A": options.a, "B": options.b, **{f"--avoid {path}": path for path in options.avoid}}
-
-
 def read_pair(options: argparse.Namespace, wanted: RelaxOptions) -> tuple[tuple[CurveFile, Task], ...]:
     """Both curves with their files, and what they avoid; raises CurveFileError if one cannot be relaxed."""
     if options.a == options.b == curves.STREAM:
@@ -91,7 +86,7 @@ def _run(options: argparse.Namespace) -> int:
     """Find the motion, write every requested output, and return the exit status."""
     check_output(options.output, options.format, options.look, options.loop or options.constant_radius)
     wanted = relax_options.from_arguments(options)
-    check_places(inputs(options), places(options))
+    check_places(relax_options.inputs(options, A=options.a, B=options.b), places(options))
     (file, task), (other, goal) = read_pair(options, wanted)
     check_holds(options.output, options.format, file.curve)
     settings = vars(wanted.resolved) | {"avoid": [each.name for each in task.obstacles]}

@@ -26,7 +26,6 @@ GROUPS = {  # of options, by the title that the help gives them
     "mesh and lengths": ("mesh", "edge_lengths", "grow"),
     "at rest, and beyond": ("balance", "stability", "escape_saddles", "hops", "seed", "symmetry"),
 }
-_OFFERED = "offered"  # the options' names, in a namespace
 
 
 def add_to(parser: argparse.ArgumentParser, *, without: Collection[str] = ()) -> None:
@@ -49,14 +48,14 @@ def add_to(parser: argparse.ArgumentParser, *, without: Collection[str] = ()) ->
                     text += f" (default: {option.automatic or option.default})"
                     declared_as |= {"metavar": option.metavar, "type": option.kind}
                 group.add_argument(flag(option), help=text, **declared_as)
-    parser.set_defaults(**{_OFFERED: list(offered)})
+    parser.set_defaults(offered=list(offered))
 
 
 def from_arguments(arguments: argparse.Namespace) -> RelaxOptions:
     """The options; raises OptionError if one is out of range."""
     wanted: dict[str, Any] = {}
     for option in declared(RelaxOptions):
-        if option.name in getattr(arguments, _OFFERED):
+        if option.name in arguments.offered:
             value = getattr(arguments, option.name)
             words = (item for word in value for item in option.read(word)) if option.repeated else ()
             wanted[option.name] = tuple(words) if option.repeated else value
@@ -107,9 +106,9 @@ def listed(text: str, least: int, refusal: str) -> list[int]:
     return [int(word[:20]) for word in words]
 
 
-def inputs(arguments: argparse.Namespace) -> dict[str, str]:
-    """The files that are read, by their names on the command line."""
-    return {"IN": arguments.input, **{f"--avoid {path}": path for path in arguments.avoid}}
+def inputs(arguments: argparse.Namespace, **paths: str) -> dict[str, str]:
+    """The files that are read, by their names on the command line: the one that is the input, or some others."""
+    return (paths or {"IN": arguments.input}) | {f"--avoid {path}": path for path in arguments.avoid}
 
 
 def flag(option: Option) -> str:

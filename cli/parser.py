@@ -22,7 +22,6 @@ COMMANDS = {  # the module of each, which has add_COMMAND(parser), and what it d
     "view": ("view", "show a curve or a motion in a browser, or make a solid of it"),
     "knot": ("knot", "write a named knot"),
 }
-NOT_INSTALLED = "batch, atlas, gallery, compare and methods need an installation: python -m pip install ."
 SHELLS = ("bash", "zsh", "fish")
 Group = argparse._ArgumentGroup
 _EPILOG = """\
@@ -210,14 +209,14 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     if not words or words[0] not in COMMANDS:
         for name, entry in joined().items():
             try:  # loaded, unless it is another one that is asked for
-                summary = (
-                    "" if words and words[0] in joined() else str(entry.load().__doc__).splitlines()[0].rstrip(".")
-                )
+                told = words and words[0] in joined()
+                summary = "" if told else str(entry.load().__doc__).splitlines()[0].rstrip(".")
                 subparsers.add_parser(name, command=name, help=summary[:1].lower() + summary[1:])
             except Exception as error:  # whatever another package's code may raise
                 _leave_out(entry, error)
         if not any(entry.value.startswith("mobius_flow.lab.") for entry in joined().values()):
-            logging.getLogger(__name__).warning(NOT_INSTALLED)
+            missing = "batch, atlas, gallery, compare and methods need an installation: python -m pip install ."
+            logging.getLogger(__name__).warning(missing)
     found = top.parse_args(arguments)
     if found.command is None:
         top.print_help()

@@ -35,10 +35,6 @@ from .progress import progress
 from .terminal import GREEN, RED, YELLOW, command, digits, power, quoted, report
 
 EXIT_STATUS = dict.fromkeys(Status, 0) | {Status.STALLED: 1, Status.INTERRUPTED: 130}
-_PLAYED = {
-    "--loop": "play the relaxation there and back",
-    "--constant-radius": "draw the tube as thick throughout as where there is least room",
-}
 _EPILOG = """\
 examples:
   mobius-flow relax knot.txt relaxed.obj --report report.json --trajectory path.npz
@@ -85,8 +81,10 @@ def add_outputs(parser: argparse.ArgumentParser) -> None:
         parser.add_argument(name, type=lambda path: as_device.get(path, path), metavar=metavar, help=text)
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     films = further(parser, "films and pictures")
-    for name, text in _PLAYED.items():
-        films.add_argument(name, action="store_true", help=f"{text} (.mp4 and .blend)")
+    text = "play the relaxation there and back (.mp4 and .blend)"
+    films.add_argument("--loop", action="store_true", help=text)
+    text = "draw the tube as thick throughout as where there is least room (.mp4 and .blend)"
+    films.add_argument("--constant-radius", action="store_true", help=text)
     text = (
         f"stage and material of a scene, film or picture: {', '.join(name.lower() for name in LOOKS)} (default: "
         f"{DEFAULT.lower()}; films are then drawn plainly, in a tenth of the time)"

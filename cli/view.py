@@ -1,15 +1,14 @@
 """``mobius-flow view``: a curve or a trajectory as a page to look at, a solid to print, or a surface that moves."""
 
 import argparse
-from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from ..core import MobiusFlowError
 from ..core.base.errors import wrong_suffix
 from ..core.keys.solids import animation, solid
-from ..core.keys.view import FRAMES, Motion, motion, page, still
+from ..core.keys.view import FRAMES, motion, page, still
 from . import curves
-from .places import check_places, writing
+from .places import VIEWED, check_places, writing
 from .terminal import say_written
 
 _EPILOG = """\
@@ -26,25 +25,11 @@ An .html page holds all that it needs and works offline; trajectories have a sli
 exit status: 0, or 2 on bad input or bad options, or where OUT cannot be written
 """
 
-Write = Callable[[Motion, float | None, str], bytes]
-
-
-def _solid(kind: str) -> Write:
-    return lambda shown, width, _: solid(shown.curves[-1], kind, width)
-
-
-WRITERS: Mapping[str, Write] = {
-    ".html": lambda shown, width, title: page(shown, width and 0.5 * width, title).encode(),
-    ".stl": _solid("stl"),
-    ".3mf": _solid("3mf"),
-    ".glb": lambda shown, width, _: animation(shown, width and 0.5 * width),
-}
-
 
 def add_view(parser: argparse.ArgumentParser) -> None:
     parser.description, parser.epilog = "Show a curve or a trajectory, or make a solid of it.", _EPILOG
     curves.add_input(parser, "curve, or trajectory (.npz)")
-    parser.add_argument("output", metavar="OUT", help=f"what to write, by suffix: {', '.join(WRITERS)}")
+    parser.add_argument("output", metavar="OUT", help=f"what to write, by suffix: {', '.join(VIEWED)}")
     text = "width of the tubes, in the curve's units (default: what is well seen; for solids nine tenths of the widest)"
     parser.add_argument("--width", type=float, metavar="W", help=text)
     text = f"frames of a trajectory that are shown, about as far apart, 2 to 1000 (default: {FRAMES})"
@@ -54,8 +39,8 @@ def add_view(parser: argparse.ArgumentParser) -> None:
 
 def _run(options: argparse.Namespace) -> int:
     suffix = Path(options.output).suffix.lower()
-    if suffix not in WRITERS:
-        raise MobiusFlowError(f"{options.output}: {wrong_suffix(Path(options.output), WRITERS, 'pictures')}")
+    if suffix not in VIEWED:
+        raise MobiusFlowError(f"{options.output}: {wrong_suffix(Path(options.output), VIEWED, 'pictures')}")
     if not 2 <= options.frames <= 1000:
         raise MobiusFlowError(f"frames is {options.frames}; give 2 to 1000")
     if options.width is not None and not 0.0 < options.width < float("inf"):
@@ -66,8 +51,14 @@ def _run(options: argparse.Namespace) -> int:
     else:
         with curves.measured(options.input, options.format) as curve:
             shown = still(curve)
-    written = WRITERS[suffix](shown, options.width, Path(options.input).stem)
+    radius = options.width and 0.5 * options.width
+    if suffix == ".html":
+        made = page(shown, radius, Path(options.input).stem).encode()
+    elif suffix == ".glb":
+        made = animation(shown, radius)
+    else:
+        made = solid(shown.curves[-1], suffix[1:], options.width)
     with writing(options.output) as temporary:
-        temporary.write_bytes(written)
+        temporary.write_bytes(made)
     say_written(options.output)
     return 0

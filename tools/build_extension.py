@@ -52,7 +52,15 @@ def main() -> int:
 def build(platform: str, output: Path, wheels: Path, debian: bool = False) -> Path:
     """Build and validate the zip of one platform and return its path."""
     version = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))["version"]
-    tools = _tools()
+    # Blender's extension tool, of the installed module, and of the program on the path
+    spec = importlib.util.find_spec("bpy")
+    places = spec.submodule_search_locations if spec else None
+    scripts = [path for place in places or () for path in Path(place).glob("*/scripts/addons_core/bl_pkg/cli/*_ext.py")]
+    tools = [[sys.executable, str(path)] for path in scripts[:1]]
+    if shutil.which("blender"):
+        tools.append(["blender", "--command", "extension"])
+    if not tools:
+        sys.exit("neither the bpy module nor blender is installed; pip install bpy")
     target = output / f"mobius_flow-{version}-{platform.replace('-', '_')}.zip"
     with tempfile.TemporaryDirectory() as room:
         stage = Path(room) / "mobius_flow"
@@ -115,19 +123,6 @@ def _stage(stage: Path, platform: str, wheels: list[Path]) -> None:
         lines[0] += f'\nwebsite = "{website}"'
     lines[0] += f'\nplatforms = ["{platform}"]\nwheels = [\n{names},\n]\n'
     manifest.write_text("\n[".join(lines), encoding="utf-8")
-
-
-def _tools() -> list[list[str]]:
-    """Commands of Blender's extension tool: of the installed module, and of the program on the path."""
-    spec = importlib.util.find_spec("bpy")
-    places = spec.submodule_search_locations if spec else None
-    scripts = [path for place in places or () for path in Path(place).glob("*/scripts/addons_core/bl_pkg/cli/*_ext.py")]
-    tools = [[sys.executable, str(path)] for path in scripts[:1]]
-    if shutil.which("blender"):
-        tools.append(["blender", "--command", "extension"])
-    if not tools:
-        sys.exit("neither the bpy module nor blender is installed; pip install bpy")
-    return tools
 
 
 def _run(command: list[str]) -> None:

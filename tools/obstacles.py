@@ -3,6 +3,7 @@
 python tools/obstacles.py
 """
 
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +24,7 @@ def grid(points: FloatArray, wrap: tuple[bool, bool], name: str) -> Obstacle:
 
 def torus(large: float = 2.0, small: float = 0.8, around: int = 48, across: int = 20) -> Obstacle:
     """A closed tube around the unit circle times ``large``."""
-    u, v = np.meshgrid(_angles(around), _angles(across), indexing="ij")
+    u, v = np.meshgrid(2 * np.pi * np.arange(around) / around, 2 * np.pi * np.arange(across) / across, indexing="ij")
     radius = large + small * np.cos(v)
     points = np.stack([radius * np.cos(u), radius * np.sin(u), small * np.sin(v)], axis=-1)
     return grid(points, (True, True), "torus")
@@ -33,7 +34,7 @@ def cup(radius: float = 1.0, height: float = 1.6, around: int = 32) -> Obstacle:
     """A round cup, open at the top: bottom and wall are one profile turned about the z-axis."""
     profile = np.array([[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [1.0, 0.4], [1.0, 0.8], [1.0, 1.2], [1.0, 1.6]])
     r, z = radius * profile[:, :1], height / 1.6 * profile[:, 1:]
-    t = _angles(around)
+    t = 2 * np.pi * np.arange(around) / around
     points = np.stack([r * np.cos(t), r * np.sin(t), np.broadcast_to(z, (len(r), around))], axis=-1)
     return grid(points, (False, True), "cup")
 
@@ -44,8 +45,8 @@ def icosphere(radius: float = 1.5, halvings: int = 3) -> Obstacle:
     signs = np.array([[0.0, s, t * golden] for s in (-1, 1) for t in (-1, 1)])
     points = np.concatenate([np.roll(signs, k, axis=1) for k in range(3)])
     near = np.linalg.norm(points[:, None] - points, axis=2) < 2.1
-    corners = [points[[a, b, c]] for a in range(12) for b in range(a) for c in range(b) if _all_near(near, a, b, c)]
-    triangles = np.array(corners)
+    threes = sorted(combinations(range(12), 3), key=lambda three: three[::-1])
+    triangles = np.array([points[[c, b, a]] for a, b, c in threes if near[a, b] and near[b, c] and near[c, a]])
     for _ in range(halvings):
         x, y, z = triangles.transpose(1, 0, 2)
         xy, yz, zx = 0.5 * (x + y), 0.5 * (y + z), 0.5 * (z + x)
@@ -57,10 +58,10 @@ def icosphere(radius: float = 1.5, halvings: int = 3) -> Obstacle:
 
 def cells(shape: IntArray, size: float, name: str) -> Obstacle:
     """The surface of a union of cubes around the origin, given by a mask of shape (i, j, k)."""
-    squares = []
+    squares, turn = [], np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])  # one side of the unit cube
     for axis, side in ((axis, side) for axis in range(3) for side in (-1, 1)):
         bare = shape & ~np.roll(np.pad(shape, 1), -side, axis)[1:-1, 1:-1, 1:-1]
-        squares.append(np.argwhere(bare)[:, None] + _square(axis, side))
+        squares.append(np.argwhere(bare)[:, None] + np.insert(turn, axis, 0.5 * side, axis=1))
     corners = np.concatenate(squares) - 0.5 * (np.array(shape.shape) - 1.0)
     return soup(size * corners[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3, 3), name)
 
@@ -90,20 +91,6 @@ def write(obstacle: Obstacle) -> None:
     faces = ["f " + " ".join(str(k + 1) for k in face) for face in obstacle.faces.tolist()]
     TARGET.mkdir(exist_ok=True)
     (TARGET / f"{obstacle.name}.obj").write_text("\n".join([*vertices, *faces]) + "\n", encoding="utf-8")
-
-
-def _angles(count: int) -> FloatArray:
-    return 2.0 * np.pi * np.arange(count) / count
-
-
-def _all_near(near: IntArray, a: int, b: int, c: int) -> bool:
-    return bool(near[a, b] and near[b, c] and near[c, a])
-
-
-def _square(axis: int, side: int) -> FloatArray:
-    """Corners of one side of the unit cube around the origin, in order; shape (4, 3)."""
-    turn = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])
-    return np.insert(turn, axis, 0.5 * side, axis=1)
 
 
 OBSTACLES = (box, torus, icosphere, cup, h_duct)

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from commands import PROGRAM, SHORT
 from mobius_flow import __version__
-from mobius_flow.cli import places, view
 from mobius_flow.core import METHODS, read_curve, write_curve
 from mobius_flow.core.descent import Method
 from mobius_flow.core.driver.info import measure
@@ -127,10 +126,6 @@ def test_knots_that_no_command_reads_are_not_written(run, refused):
     assert not Path("k.txt").exists()
     assert run("knot", "T(300,301)", "k.txt", "--vertices", 200_000)[0] == 0
     assert len(read_curve("k.txt")) == 200_000
-
-
-def test_what_relax_does_not_write_view_does():
-    assert set(places.VIEWED) == set(view.WRITERS)
 
 
 def test_version(run):
