@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from knot_diagrams import diagram
 from knot_type import UNKNOT, knot_invariants
-from mobius_flow.core import Curve, CurveError, Status, minimize
+from mobius_flow.core import Curve, CurveError
 from mobius_flow.core.collision import check_embedded, minimal_gap
 from mobius_flow.core.knots import HARD_UNKNOTS, braid_closure, diagram_knot, knot
 from mobius_flow.core.knots.braids import braid_diagram
@@ -87,18 +87,6 @@ def test_links_codes_that_fall_apart_and_nugatory_crossings() -> None:
     assert [knot_invariants(part) for part in two.components] == 2 * [knot_invariants(knot("3_1").vertices)]
     assert np.ptp(two.vertices, axis=0).max() == pytest.approx(2.0)
     assert len(diagram_knot([(1, 2, 2, 3), (3, 1, 4, 4)])) == 12
-
-
-@pytest.mark.parametrize(
-    "name",
-    ["culprit", "goeritz", *(pytest.param(name, marks=pytest.mark.slow) for name in ("thistlethwaite", "ochiai-1"))],
-)
-def test_they_relax_to_the_circle(name: str) -> None:
-    result = minimize(knot(name))
-    assert result.status is Status.CONVERGED
-    assert result.energies[-1] < 4.01
-    assert result.certified
-    assert isinstance(result.curve, Curve)
 
 
 RNG = np.random.default_rng(23)
