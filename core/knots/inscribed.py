@@ -16,16 +16,16 @@ from ..curve.refine import arc_lengths, subdivide
 MAX_VERTICES = 400_000  # of any knot that is made: twice what any command takes
 
 
-def inscribed(curve: Curve, vertices: int | None, least: int = 120) -> Curve:
+def inscribed(curve: Curve, vertices: int | None) -> Curve:
     """Inscribe a polygon with equal steps along the components of a smooth link, which is proved to be isotopic.
 
     The given polygons have enough vertices to represent the smooth curves.  By default edges are shorter than
-    strands are apart, and there are at least ``least``.  Raises CurveError if the curve meets itself, or nearly does,
+    strands are apart, and there are at least 120.  Raises CurveError if the curve meets itself, or nearly does,
     or the vertices are too few or too many.
     """
     gap = nearest_strands(curve, 2.0)  # between vertices twice as far apart along the curve, also across a bend
     if vertices is None:
-        vertices = max(least, math.ceil(curve.length / (0.5 * gap)) if gap > 0 else MAX_VERTICES + 1)
+        vertices = max(120, math.ceil(curve.length / (0.5 * gap)) if gap > 0 else MAX_VERTICES + 1)
     sizes = shares(vertices, curve.component_lengths)
     at = [(part, arc_steps(part), n) for part, n in zip(curve.components, sizes, strict=True)]
     coarse, fine = (  # four times as many vertices represent the smooth curve

@@ -16,7 +16,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from itertools import islice
-from typing import NamedTuple, cast
+from typing import Any, NamedTuple, cast
 
 from ...base.arguments import check_known
 from ...base.errors import CurveError
@@ -90,13 +90,13 @@ def unwrapped(rows: Nested) -> Nested:
     return rows
 
 
-def components(rows: Nested) -> list[list[int | str]]:
-    """Lists without brackets, one for each component or crossing; raises CurveError for lists deeper down."""
+def components(rows: Nested) -> list[list[Any]]:
+    """Numbers, or signed passes, in lists for each component or crossing; CurveError for lists deeper down."""
     rows = unwrapped(rows)
     parts = [rows] if _is_flat(rows) else [[row] if isinstance(row, int | str) else unwrapped(row) for row in rows]
     if not all(map(_is_flat, parts)):
         raise CurveError("brackets of the code are not where they should be: write numbers, or lists of numbers")
-    return [list(cast(Sequence[int | str], part)) for part in parts]
+    return list(map(list, parts))
 
 
 def _is_flat(rows: Nested) -> bool:
@@ -135,7 +135,7 @@ def diagram_from_code(text: str, kind: str | None = None) -> Diagram:
     if not kind:  # a list without words before it
         if not text.lstrip().startswith(_BRACKETS):
             raise CurveError("the code does not say what it is; begin it with PD:, DT: or Gauss:")
-        parts = _parts(_without_flips(unwrapped(nested(text)))[0])
+        parts = components(_without_flips(unwrapped(nested(text)))[0])
         numbers = [number for part in parts for number in part]
         if len(set(map(abs, numbers))) == len(numbers):
             kind = "dt"
@@ -162,11 +162,6 @@ def _begun(text: str) -> tuple[str, int] | None:
     return None
 
 
-def _parts(rows: Nested) -> list[list[int]]:
-    """Numbers in lists, one for each component or crossing."""
-    return [[int(each) for each in part] for part in components(rows)]
-
-
 def check_count(crossings: int) -> None:
     """Raise a CurveError if there are too many crossings to be relaxed in minutes."""
     if crossings > MAX_CROSSINGS:
@@ -187,8 +182,8 @@ def _dowker_thistlethwaite(text: str) -> Diagram:
     if spelling := _SPELLING.fullmatch(text):
         # letters count crossings, components and the crossings of each; then comes the code
         values = [ord(letter.lower()) - 96 if letter.islower() else 64 - ord(letter) for letter in spelling[1]]
-        crossings, components = (*values, 0, 0)[:2]
-        sizes, code = values[2 : 2 + components], values[2 + max(components, 0) :]
+        crossings, count = (*values, 0, 0)[:2]
+        sizes, code = values[2 : 2 + count], values[2 + max(count, 0) :]
         if min(sizes, default=0) < 1 or len(code) != crossings or sum(sizes) != crossings:
             raise CurveError(
                 "letters of a DT code count its crossings, its components and the crossings of each, and give then a "
@@ -198,7 +193,7 @@ def _dowker_thistlethwaite(text: str) -> Diagram:
         parts, flips = [[next(evens) for _ in range(size)] for size in sizes], list(map(int, spelling[2] or ""))
     else:
         rows, flips = _without_flips(unwrapped(nested(text)))
-        parts = _parts(rows)
+        parts = components(rows)
     numbers = [number for part in parts for number in part]
     check_count(len(numbers))
     seen: set[int] = set()
