@@ -20,7 +20,7 @@ def case() -> Steps:
     seconds = time.perf_counter() - started
     yield from is_("done")
     count = latest.last.index
-    assert len(obj().data.shape_keys.key_blocks) == count + 1
+    assert len(obj().data.shape_keys.key_blocks) > count, "every iterate is a key, and there are others in between"
     yield from picture("speed-1-relaxed")
 
     settings = addon("properties")
