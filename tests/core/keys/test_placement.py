@@ -111,16 +111,14 @@ def test_axes_made_orthonormal():
     assert axes[2] @ np.array([0.1, 0.0, 3.0]) == pytest.approx(np.hypot(0.1, 3.0))
 
 
-def test_level_drawings_keep_their_coordinates():
-    curve = regular_polygon(30)
-    curve = curve.with_vertices(curve.vertices + np.array([3, 4, 5]))
-    plane = DrawingPlane.of(curve)
-    assert plane.flattened(curve).vertices == pytest.approx(curve.vertices[:, :2])
-    assert plane.raised(np.array([[1.0, 2.0, 3.0]])) == pytest.approx(np.array([[1.0, 2.0, 8.0]]))
-
-
 @pytest.mark.parametrize("seed", range(4))
-def test_drawings_are_flattened_and_raised_again(seed):
+def test_drawings_are_flattened_and_raised_again_and_level_ones_keep_their_coordinates(seed):
+    level = regular_polygon(30).with_vertices(regular_polygon(30).vertices + np.array([3, 4, 5]))
+    plane = DrawingPlane.of(level)
+    assert plane.flattened(level).vertices == pytest.approx(level.vertices[:, :2])
+    assert plane.raised(np.array([[1.0, 2.0, 3.0]])) == pytest.approx(np.array([[1.0, 2.0, 8.0]]))
+    with pytest.raises(CurveError, match="not flat"):
+        DrawingPlane.of(torus_trefoil(40))
     curve = Curve(regular_polygon(30).vertices @ rotation(seed) + [1, 2, 3])
     plane = DrawingPlane.of(curve)
     flat = plane.flattened(curve).vertices
@@ -130,22 +128,16 @@ def test_drawings_are_flattened_and_raised_again(seed):
     assert plane.axes[2][abs(plane.axes[2]).argmax()] > 0
 
 
-def test_what_is_not_flat_is_refused():
-    with pytest.raises(CurveError, match="not flat"):
-        DrawingPlane.of(torus_trefoil(40))
-
-
-@pytest.mark.parametrize(("measure", "value"), [("LENGTH", 200 * 2 * np.sin(np.pi / 200)), ("BOX", 2), ("RADIUS", 1)])
-def test_sizes_of_a_circle(measure, value):
-    assert Measure[measure].of(regular_polygon(200)) == pytest.approx(value, rel=1e-3)
-
-
 def given(size, curve, measure=Measure.LENGTH):
     return curve.with_vertices(Similarity.giving(measure, size, curve).of(curve.vertices))
 
 
+CIRCLE = {Measure.LENGTH: 200 * 2 * np.sin(np.pi / 200), Measure.BOX: 2, Measure.RADIUS: 1}
+
+
 @pytest.mark.parametrize("measure", Measure)
 def test_sizes_scale_see_neither_places_nor_vertices_on_edges_and_can_be_given(measure):
+    assert measure.of(regular_polygon(200)) == pytest.approx(CIRCLE[measure], rel=1e-3)
     big, small = torus_trefoil(40), hopf_link(30)
     moved = big.with_vertices(3.0 * big.vertices + np.array([1.0, -7.0, 5.0]))
     assert measure.of(moved) == pytest.approx(3.0 * measure.of(big))
