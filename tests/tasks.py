@@ -5,7 +5,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from mobius_flow.core import Curve, Iterate, RelaxOptions, Result, Task, Trajectory, minimize
-from mobius_flow.core.proof import verify
+from mobius_flow.core.proof import Verdict, verify
 
 
 def wanted(curve: Curve, **settings: Any) -> tuple[Task, RelaxOptions]:
@@ -25,8 +25,8 @@ def proved(curve: Curve, **settings: Any) -> tuple[Result, list[Iterate]]:
     return result, iterates
 
 
-def check(iterates: list[Iterate], task: Task | None = None) -> None:
-    """Have the independent check accept the iterates of a run."""
+def check(iterates: list[Iterate], task: Task | None = None) -> Verdict:
+    """Have the independent check accept the iterates of a run; return its verdict."""
     trajectory = Trajectory(obstacles=() if task is None else task.obstacles)
     for iterate in iterates:
         trajectory.add(iterate)
@@ -35,3 +35,4 @@ def check(iterates: list[Iterate], task: Task | None = None) -> None:
         verdict = verify(Path(room, "T.npz"))
     assert verdict.accepted, str(verdict)
     assert verdict.obstacles == (0 if task is None else len(task.obstacles))
+    return verdict
