@@ -4,10 +4,9 @@ from collections.abc import Mapping
 
 from ..base.plugins import Table
 from .barrier import Barrier
-from .densities import EDGE_ENERGY, TANGENT_POINT_ENERGY, VERTEX_ENERGY, moebius_kpoint
 from .density import Density
 from .energy import Assembled, Energy, Stiff, Term, TwiceDifferentiable, is_moebius_invariant
-from .kpoint import KPointEnergy
+from .kpoint import EDGE_ENERGY, TANGENT_POINT_ENERGY, VERTEX_ENERGY, KPointEnergy, moebius_kpoint
 from .moebius import MoebiusEnergy
 from .objective import Objective, Weighted
 from .pull import Bending

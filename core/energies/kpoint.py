@@ -9,15 +9,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.arguments import checked_fields
+from ..base.arguments import checked, checked_fields
 from ..base.types import FloatArray
 from ..curve import Curve
 from ..curve.distances import points_at
 from .components import ComponentShares
-from .density import Arcs, Density, PointPairs, PointSet
+from .density import ArcDensity, Arcs, Density, IshizekiNagasawaDensity, PointPairs, PointSet, TangentPointDensity
 from .edge_pairs import SteppedCurve, Tile, change, pair_tiles
 from .energy import is_moebius_invariant
-from .quadrature import Rule
+from .quadrature import ENDS, MIDPOINT, TAIL, Rule
 
 
 @checked_fields
@@ -130,3 +130,37 @@ def _differences(weights: FloatArray, x: FloatArray, y: FloatArray) -> tuple[Flo
     by_row = weights.sum(axis=1)[:, None] * x - weights @ y
     by_column = weights.T @ x - weights.sum(axis=0)[:, None] * y
     return by_row, by_column
+
+
+VERTEX_ENERGY, EDGE_ENERGY = (
+    KPointEnergy(
+        name=name,
+        description=f"{name} energy of Kusner and Sullivan: 1/r² − 1/ϱ² at the edges' {points}",
+        density=ArcDensity(),
+        rule=rule,
+    )
+    for name, points, rule in (("vertex", "tails", TAIL), ("edge", "midpoints", MIDPOINT))
+)
+"""One point per edge: R. Kusner and J. Sullivan, Möbius energies for knots and links (1997); Section 6.1.1 of [RS21].
+
+On equilateral polygons the vertex energy Γ-converges to the Möbius energy: S. Scholtes, Discrete Möbius energy (2014).
+"""
+
+
+@checked
+def moebius_kpoint(points: int) -> KPointEnergy:
+    """The Möbius energy by the Gauss rule with ``points`` points per edge, eq. (40); OptionError below 1."""
+    return KPointEnergy(
+        name=f"moebius-k{points}",
+        description=f"Möbius energy without arc distances, {points} Gauss points per edge",
+        density=IshizekiNagasawaDensity(),
+        rule=Rule.gauss(points),
+    )
+
+
+TANGENT_POINT_ENERGY = KPointEnergy(
+    name="tangent-point",
+    description="tangent-point energy with exponents 3 and 6, at the edges' end points",
+    density=TangentPointDensity(),
+    rule=ENDS,
+)

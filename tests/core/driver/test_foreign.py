@@ -9,8 +9,7 @@ import scipy.sparse as sp
 from mobius_flow.core import Curve, OptionError, RelaxOptions, relax
 from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.energies import ENERGIES, KPointEnergy
-from mobius_flow.core.energies.densities import TangentPointDensity
-from mobius_flow.core.energies.density import Partials, PointPairs
+from mobius_flow.core.energies.density import Partials, PointPairs, TangentPointDensity
 from mobius_flow.core.energies.quadrature import ENDS
 from mobius_flow.core.solve.constraints import BLOCKS
 from mobius_flow.core.solve.constraints.barycenters import Barycenters

@@ -11,14 +11,9 @@ from mobius_flow.core.base.errors import OptionError
 from mobius_flow.core.descent.hessian import lagrangian_hessian
 from mobius_flow.core.energies import KPointEnergy, Rule, moebius_kpoint
 from mobius_flow.core.energies.barrier import exact
-from mobius_flow.core.energies.densities import (
-    EDGE_ENERGY,
-    VERTEX_ENERGY,
-    ArcDensity,
-    IshizekiNagasawaDensity,
-    TangentPointDensity,
-)
+from mobius_flow.core.energies.density import ArcDensity, IshizekiNagasawaDensity, TangentPointDensity
 from mobius_flow.core.energies.edge_pairs import EdgePairs
+from mobius_flow.core.energies.kpoint import EDGE_ENERGY, VERTEX_ENERGY
 from mobius_flow.core.solve.constraints import Constraints
 from mobius_flow.core.solve.metrics import MoebiusMetric
 from shapes import hopf_link, regular_polygon

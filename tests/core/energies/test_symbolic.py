@@ -8,8 +8,15 @@ import pytest
 import sympy as sp
 from energy_references import disjoint_pairs
 from mobius_flow.core import Curve, MoebiusEnergy
-from mobius_flow.core.energies.densities import ArcDensity, IshizekiNagasawaDensity, TangentPointDensity
-from mobius_flow.core.energies.density import Arcs, Density, PointPairs, PointSet
+from mobius_flow.core.energies.density import (
+    ArcDensity,
+    Arcs,
+    Density,
+    IshizekiNagasawaDensity,
+    PointPairs,
+    PointSet,
+    TangentPointDensity,
+)
 from mobius_flow.core.energies.edge_pairs import pair_tiles
 from smooth_curves import random_polygon
 
