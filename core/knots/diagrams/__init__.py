@@ -14,5 +14,4 @@ from .invariants import (
     unsigned_linking,
 )
 from .projection import views
-from .realize import realized
 from .rerouting import factors, is_least, shuffled_down, simplified, simplifying
