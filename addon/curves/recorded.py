@@ -140,7 +140,6 @@ class BakedKeys:
     """
 
     def __init__(self, objects: Sequence[bpy.types.Object]) -> None:
-        self._objects = objects
         splines = [spline for obj in objects for spline in obj.data.splines]
         flags = tuple(flag for obj in objects for flag in closed(obj.data))
         self.mesh = Mesh(tuple(len(each.points) for each in splines), flags)
@@ -160,31 +159,6 @@ class BakedKeys:
         shown = ([place.to_world(sizes[k % len(sizes)].of(p[s])) for place, s, sizes in pieces] for k, p in stored)
         return [Curve(np.concatenate(world), self.mesh) for world in shown]
 
-    def resize(self, changes: Sequence[Similarity]) -> None:
-        """Show the keys in other sizes: by similarities of the world, on top of those that they have."""
-        pieces = zip(self._objects, self.link.placements, self.link.slices(self.mesh), self.sizes, strict=True)
-        for obj, place, s, shown in pieces:
-            local = [place.similarity(change) for change in changes]
-            if obj.data.shape_keys:
-                bake.resize(obj, [more.after(size) for more, size in zip(local, shown, strict=True)])
-            else:  # only points are keyed
-                frames = [more.of(frame[s].astype(np.float64)) for more, frame in zip(local, self.frames, strict=True)]
-                _move_keys(obj.data, [frame.astype(np.float32) for frame in frames])
-                bake.scale_bevel(obj.data, changes[-1].factor)
-                bake.update(obj.data)
-
-    def turn(self, turn: Turn) -> None:
-        """Turn the keyed points themselves, of a single object."""
-        (obj,), (place,), (shown,) = self._objects, self.link.placements, self.sizes
-        local = [place.to_local(turn.of(place.to_world(frame.astype(np.float64)))) for frame in self.frames]
-        _move_keys(obj.data, [points.astype(np.float32) for points in local])
-        if obj.data.shape_keys:
-            world = [place.in_world(size) for size in shown]
-            about = [turn.of(each.shift / (1.0 - each.factor)) if each.factor != 1.0 else each.shift for each in world]
-            turned = [Similarity.about(c, each.factor) for c, each in zip(about, world, strict=True)]
-            bake.resize(obj, [place.similarity(each) for each in turned])
-        bake.update(obj.data)
-
     @property
     def unproved(self) -> int:
         """Number of straight motions from key to key, as stored, that are not proved free of contact."""
@@ -200,8 +174,20 @@ def keep_size(objects: Sequence[bpy.types.Object], measure: Measure, reference: 
     """
     if any(pins.count(obj.data) for obj in objects):
         raise MobiusFlowError(Message("Scaling would move pinned points; unpin them first"))
-    curves = (keys := BakedKeys(objects)).curves
-    keys.resize([Similarity.giving(measure, measure.of(curves[reference]), curve) for curve in curves])
+    keys = BakedKeys(objects)
+    curves = keys.curves
+    changes = [Similarity.giving(measure, measure.of(curves[reference]), curve) for curve in curves]
+    for obj, place, s, shown in zip(
+        objects, keys.link.placements, keys.link.slices(keys.mesh), keys.sizes, strict=True
+    ):
+        local = [place.similarity(change) for change in changes]
+        if obj.data.shape_keys:
+            bake.resize(obj, [more.after(size) for more, size in zip(local, shown, strict=True)])
+        else:  # only points are keyed
+            frames = [more.of(frame[s].astype(np.float64)) for more, frame in zip(local, keys.frames, strict=True)]
+            _move_keys(obj.data, [frame.astype(np.float32) for frame in frames])
+            bake.scale_bevel(obj.data, changes[-1].factor)
+            bake.update(obj.data)
     return BakedKeys(objects)
 
 
@@ -269,13 +255,23 @@ def _turn(objects: Sequence[bpy.types.Object], wanted: FloatArray) -> int:
             raise MobiusFlowError(Message("{why}; remove that, or bake it and turn it alone", why=why))
         if bake.is_edited(objects[0].data):
             raise MobiusFlowError(Message("{why}, and its keys were edited; undo one or the other", why=why))
-        BakedKeys(objects).turn(turn)
+        # the keyed points themselves are turned, and the places where they are shown in other sizes
+        (obj,), keys = objects, BakedKeys(objects)
+        (place,), (shown,) = keys.link.placements, keys.sizes
+        local = [place.to_local(turn.of(place.to_world(frame.astype(np.float64)))) for frame in keys.frames]
+        _move_keys(obj.data, [points.astype(np.float32) for points in local])
+        if obj.data.shape_keys:
+            world = [place.in_world(size) for size in shown]
+            about = [turn.of(each.shift / (1.0 - each.factor)) if each.factor != 1.0 else each.shift for each in world]
+            turned = [Similarity.about(c, each.factor) for c, each in zip(about, world, strict=True)]
+            bake.resize(obj, [place.similarity(each) for each in turned])
+        bake.update(obj.data)
         return BakedKeys(objects).unproved
     for obj in objects:
         suspend(obj)
-    turned = {obj: Matrix(turn.matrix.tolist()) @ obj.matrix_world for obj in objects}
+    there = {obj: Matrix(turn.matrix.tolist()) @ obj.matrix_world for obj in objects}
     for obj in sorted(objects, key=lambda each: sum(1 for _ in _ancestors(each))):  # parents carry their children along
-        obj.matrix_world = turned[obj]
+        obj.matrix_world = there[obj]
         bpy.context.view_layer.update()
     for obj in objects:
         resume(obj)

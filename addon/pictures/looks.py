@@ -16,7 +16,6 @@ class Look:
     palette: tuple[Tint, ...]  # of components; after the last they begin again
     gradient: tuple[Tint, ...]  # along a single component, round and round; the palette's first if empty
     floor: Tint
-    exposure: float = 0.0
     bounces: int = 3
     samples: int = 32
 

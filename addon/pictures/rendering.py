@@ -37,7 +37,7 @@ def look_fine(scene: bpy.types.Scene, look: Look, samples: int | None = None) ->
     scene.render.engine = "CYCLES"
     scene.view_settings.view_transform = "AgX"
     scene.view_settings.look = "AgX - Medium High Contrast"
-    scene.view_settings.exposure = look.exposure
+    scene.view_settings.exposure = 0.0
     cycles.samples = samples or look.samples
     cycles.adaptive_threshold = 0.05
     cycles.max_bounces = cycles.transmission_bounces = look.bounces
