@@ -104,38 +104,33 @@ def is_plain(value: object, kind: object) -> bool:
     return isinstance(value, _PLAIN.get(kind, ())) and isinstance(value, bool | np.bool_) == (kind is bool)
 
 
-@cache
-def _hints(function: Callable[..., object]) -> dict[str, Any]:
-    return get_type_hints(function)
+_hints = cache(get_type_hints)
 
 
 @cache
-def _spelt_out(hint: Any) -> Any:
-    """Resolve an alias, such as NDArray from NumPy 2.5 on."""
-    return getattr(get_origin(hint) or hint, "__value__", hint)
+def _parts(hint: Any) -> tuple[Any, tuple[Any, ...]]:
+    """Its origin, or the hint itself, and what is in brackets; aliases, such as NDArray from NumPy 2.5 on, resolved."""
+    hint = getattr(get_origin(hint) or hint, "__value__", hint)
+    return get_origin(hint) or hint, get_args(hint)
 
 
 def _fits(value: Any, hint: Any) -> bool:
-    hint = _spelt_out(hint)
-    origin, inner = get_origin(hint), get_args(hint)
-    if origin in (Union, types.UnionType):
+    kind, inner = _parts(hint)
+    if kind in (Union, types.UnionType):
         return any(_fits(value, each) for each in inner)
-    if origin is Callable:
+    if kind is Callable:
         return callable(value)
-    if origin in (tuple, list, Sequence):
-        wanted = inner if _is_of_fixed_length(hint) or not is_list(value) else inner[:1] * len(value)
-        return is_list(value) and len(value) == len(wanted) and all(map(_fits, value, wanted))
-    kind = origin or hint
+    if kind in (tuple, list, Sequence) and inner:
+        if not is_list(value):
+            return False
+        wanted = inner if kind is tuple and ... not in inner else inner[:1] * len(value)
+        return len(value) == len(wanted) and all(map(_fits, value, wanted))
     if kind in _PLAIN:
         return is_plain(value, kind) and not (isinstance(value, Integral) and abs(int(value)) >= _BELOW[kind])
     if not isinstance(kind, type) or kind.__module__ == "typing" or getattr(kind, "_is_protocol", False):
         at_run_time = getattr(kind, "_is_runtime_protocol", False)
         return not at_run_time or (isinstance(value, kind) and not isinstance(value, type))
     return isinstance(value, kind)
-
-
-def _is_of_fixed_length(hint: Any) -> bool:
-    return get_origin(hint) is tuple and ... not in get_args(hint)
 
 
 def _described(value: Any) -> str:
@@ -146,13 +141,11 @@ def _described(value: Any) -> str:
 
 
 def _wanted(hint: Any) -> str:
-    hint = _spelt_out(hint)
-    origin, inner = get_origin(hint), get_args(hint)
-    if origin in (Union, types.UnionType):
+    kind, inner = _parts(hint)
+    if kind in (Union, types.UnionType):
         return " or ".join(dict.fromkeys(map(_wanted, inner)))
-    kind = origin or hint
-    if origin in (tuple, list, Sequence):
-        count = f" of {len(inner)}" if _is_of_fixed_length(hint) else ""
+    if kind in (tuple, list, Sequence) and inner:
+        count = f" of {len(inner)}" if kind is tuple and ... not in inner else ""
         return f"{WORDS.get(kind, 'a list')}{count}, each {_wanted(inner[0])}"
     name = getattr(kind, "__name__", str(kind))
     return WORDS.get(kind) or f"{'an' if name[0] in 'AEIO' else 'a'} {name}"

@@ -8,7 +8,7 @@ import threading
 from collections.abc import Generator, Iterator
 from contextlib import closing, contextmanager
 from functools import cached_property
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
 import numpy.linalg  # noqa: F401 (loads NumPy's BLAS)
 import scipy.linalg  # noqa: F401 (loads SciPy's)
@@ -18,13 +18,6 @@ THREADS = 1  # of each pool while the library works
 
 _Yielded = TypeVar("_Yielded")
 _Returned = TypeVar("_Returned")
-
-
-class _Held(NamedTuple):
-    """A pool that is held: by how many blocks, and its own number of threads."""
-
-    blocks: int
-    threads: int
 
 
 class BlasPools:
@@ -37,7 +30,8 @@ class BlasPools:
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
-        self._held: dict[tuple[str, int | None], _Held] = {}
+        # of each pool that is held: by how many blocks, and its own number of threads
+        self._held: dict[tuple[str, int | None], tuple[int, int]] = {}
 
     @cached_property
     def _controller(self) -> ThreadpoolController:
@@ -50,7 +44,7 @@ class BlasPools:
             for library in self._controller.lib_controllers:
                 pool = _pool(library)
                 blocks, threads = self._held.get(pool) or (0, library.num_threads)
-                self._held[pool] = _Held(blocks + 1, threads)
+                self._held[pool] = blocks + 1, threads
                 if not blocks:
                     library.set_num_threads(THREADS)
         try:
@@ -60,7 +54,7 @@ class BlasPools:
                 for library in self._controller.lib_controllers:
                     blocks, threads = self._held.pop(pool := _pool(library))
                     if blocks > 1:
-                        self._held[pool] = _Held(blocks - 1, threads)
+                        self._held[pool] = blocks - 1, threads
                     else:
                         library.set_num_threads(threads)
 

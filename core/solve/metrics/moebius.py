@@ -142,18 +142,29 @@ class MoebiusMetric:
         return replace(self, rule=rule)
 
     def at(self, curve: Curve) -> InnerProduct:
-        mesh, slope, weights = curve.mesh, Stencil.slope(curve), _PairWeights(curve, self)
-        points = list(zip(self.rule.points, self.rule.weights, strict=True))
-        form = DifferenceForm(mesh)
+        mesh, slope, rule, form = curve.mesh, Stencil.slope(curve), self.rule, DifferenceForm(curve.mesh)
+        ell, width = mesh.at_tails(curve.edge_lengths), mesh.at_tails(curve.edge_lengths, 1.0)
+        points = {t: mesh.at_tails(points_at(curve, t), curve.vertices) for t in rule.points}
         for stripe in stripes(mesh):
-            for (t_i, omega_i), (t_j, omega_j) in product(points, repeat=2):
-                inverse, density = weights.at(t_i, t_j, stripe)
-                inverse *= omega_i * omega_j
-                density *= omega_i * omega_j
+            rows, columns = stripe.rows, stripe.columns
+            for (t_i, omega_i), (t_j, omega_j) in product(zip(rule.points, rule.weights, strict=True), repeat=2):
+                # term 1, ω_i ω_j ℓ_I ℓ_J/r², and term 2, that times 1/r² − 1/ϱ², where arrays are used again;
+                # 0 where closures meet, as r is infinite there, and where no edge begins, whose ℓ is 0
+                rho = arc_distances(curve, t_i, t_j, rows, columns)
+                r2 = cdist(points[t_i][rows], points[t_j][columns], "sqeuclidean")
+                nearest = self.least_distance * np.add.outer(width[rows], width[columns])
+                np.maximum(rho, nearest, out=rho)
+                np.maximum(r2, np.square(nearest, out=nearest), out=r2)
+                stripe.exclude_neighbours(mesh, r2)
+                density = np.divide(1.0, r2, out=r2)
+                inverse = np.multiply.outer(omega_i * omega_j * ell[rows], ell[columns])
+                inverse *= density
+                density -= np.divide(1.0, np.square(rho, out=rho), out=rho)
+                density *= inverse
                 form.add(stripe, inverse, slope, slope)
                 form.add(stripe, density, Stencil.value(mesh, t_i), Stencil.value(mesh, t_j))
-        gram, arcs = form.assembled(), stiffness(curve, curve.mesh.arc_edges).tocoo()
-        gram[arcs.coords] += arcs.data
+        gram, arcs = form.assembled(), stiffness(curve, mesh.arc_edges).tocoo()
+        gram[arcs.coords] += arcs.data  # term 4, and term 3
         return DenseInnerProduct(blas.dsyr(1.0, lumped_mass(curve), a=gram, lower=1, overwrite_a=1))
 
 
@@ -171,32 +182,6 @@ def pair_kernels(curve: Curve, i: IntArray, j: IntArray) -> PairKernels:
     inverse = 1.0 / np.maximum(np.einsum("km,km->k", chord, chord), nearest)
     rho = arc_distance_of_pairs(curve, i, j, 0.5)
     return PairKernels(inverse, inverse * (inverse - 1.0 / np.maximum(rho * rho, nearest)))
-
-
-class _PairWeights:
-    """ℓ_I ℓ_J/r² and ℓ_I ℓ_J/r² (1/r² − 1/ϱ²), 0 where closures meet and where no edge begins."""
-
-    def __init__(self, curve: Curve, metric: MoebiusMetric) -> None:
-        mesh = curve.mesh
-        self._curve, self._least = curve, metric.least_distance
-        self._ell, self._width = mesh.at_tails(curve.edge_lengths), mesh.at_tails(curve.edge_lengths, 1.0)
-        self._points = {t: mesh.at_tails(points_at(curve, t), curve.vertices) for t in metric.rule.points}
-
-    def at(self, t_i: float, t_j: float, stripe: Stripe) -> tuple[FloatArray, FloatArray]:
-        """Both for a stripe, taken at t_i of edges I and t_j of edges J; shapes (rows, columns)."""
-        rows, columns = stripe.rows, stripe.columns
-        rho = arc_distances(self._curve, t_i, t_j, rows, columns)
-        r2 = cdist(self._points[t_i][rows], self._points[t_j][columns], "sqeuclidean")
-        nearest = self._least * np.add.outer(self._width[rows], self._width[columns])
-        np.maximum(rho, nearest, out=rho)
-        np.maximum(r2, np.square(nearest, out=nearest), out=r2)
-        stripe.exclude_neighbours(self._curve.mesh, r2)
-        s = np.divide(1.0, r2, out=r2)
-        inverse = np.multiply.outer(self._ell[rows], self._ell[columns])
-        inverse *= s
-        s -= np.divide(1.0, np.square(rho, out=rho), out=rho)
-        s *= inverse  # 0 for neighbours
-        return inverse, s
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Fifty trajectories in which a strand moves through another between two frames: each is refused, at that leg.
+"""Fifty trajectories in which a strand moves through another between two frames: each is refused at that leg, no sooner.
 
 Every frame of them is an embedded polygon, so only the motion between two frames is wrong; and that it is wrong is
 known from elsewhere: the knots before and after have different signatures.
@@ -85,15 +85,6 @@ def mutated(stages: Stages, rng: np.random.Generator) -> tuple[Stages, int, int]
             changed = np.concatenate([frames[: frame + 1], [curve.vertices for curve in after]])
             return [*stages[:stage], (mesh, changed), *stages[stage + 1 :]], stage, frame
     raise AssertionError("no strand could be moved through another")
-
-
-@pytest.mark.parametrize("name", RUNS)
-def test_the_runs_themselves_are_accepted(tmp_path: Path, name: str) -> None:
-    stages = run(name)
-    verdict = verdict_on(tmp_path, stages)
-    assert verdict.accepted, str(verdict)
-    assert verdict.legs == sum(len(frames) - 1 for _, frames in stages) > 2
-    assert (len(stages) > 1) == (RUNS[name][1].mesh == "adaptive")
 
 
 @pytest.mark.parametrize("seed", SEEDS)
