@@ -4,7 +4,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.arguments import checked_fields, number
 from ..base.errors import OptionError
 from ..base.types import FloatArray
 from ..curve import Curve
@@ -15,20 +14,19 @@ from ..solve.saddle import TangentSpace
 from .problem import Point, Problem
 
 
-@checked_fields
 @dataclass(frozen=True)
 class Constrained:
     """The manifold {Φ = 0}, to which (42) of [RS21] leads back after a step."""
 
     # of lengths, a relative error, and of barycenters: far below any gap that can be proved
-    tolerance: float = number(1e-11, most=1)
-    max_iterations: int = number(15)  # of the modified Newton method (42), and of Newton's for what it leaves over
+    tolerance: float = 1e-11
+    max_iterations: int = 15  # of the modified Newton method (42), and of Newton's for what it leaves over
     # change of an edge vector, relative to its length, up to which `TangentSpace.restoration` is as good as the
     # shortest way back in the metric, and far cheaper. Larger corrections should know where other strands are, not
     # turn edges that are much shorter than others, and not cost the energy the step has gained
-    small: float = number(1e-3)
+    small: float = 1e-3
     # least rate of both; where it is slower, a shorter step is cheaper than more iterations
-    contraction: float = number(0.6, most=1)
+    contraction: float = 0.6
     prescribes = True
 
     def value_and_derivative(self, problem: Problem, curve: Curve) -> tuple[float, FloatArray]:
@@ -75,7 +73,6 @@ class Constrained:
         raise OptionError(f"penalty is {penalty}; the method keeps lengths and has no penalty")
 
 
-@checked_fields
 @dataclass(frozen=True)
 class Penalised:
     """All polygons that are where their pins are; lengths cost α Σ ℓ⁰ log(ℓ/ℓ⁰)², as in Section 6.4 of [RS21].
@@ -83,7 +80,7 @@ class Penalised:
     The metric is J + α DΦᵀ I_{L²} DΦ, or J alone where footnote 8 leaves the extension out.
     """
 
-    penalty: float = number(1000.0)  # α
+    penalty: float = 1000.0  # α
     prescribes = False
 
     def value_and_derivative(self, problem: Problem, curve: Curve) -> tuple[float, FloatArray]:

@@ -3,12 +3,10 @@
 import math
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import ClassVar, Protocol
+from typing import ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
-from ..base.arguments import checked_fields, number
-from ..base.errors import OptionError
 from ..base.tolerances import ENERGY_ROUNDING
 from ..base.types import FloatArray
 from ..collision import Contact
@@ -22,14 +20,13 @@ from .step import Leg, NoStep, Rejected, SearchState, Step, attempt, leg
 NOTHING = 1e-15  # displacement, in the program's units, that changes no coordinate
 
 
-@checked_fields
 @dataclass(frozen=True)
 class FirstTrial:
     """The first step size worth trying (Section 6.3 of [RS21])."""
 
-    collision_fraction: float = number(2.0 / 3.0, most=1)  # of the first step with a contact: the paper's 2/3
-    max_displacement: float = number(0.5)  # of any vertex, in the program's units, in which a component is 4 to 8 long
-    growth: float = number(4.0, above=1)  # the first trial is at most this many times the last accepted step
+    collision_fraction: float = 2.0 / 3.0  # of the first step with a contact: the paper's 2/3
+    max_displacement: float = 0.5  # of any vertex, in the program's units, in which a component is 4 to 8 long
+    growth: float = 4.0  # the first trial is at most this many times the last accepted step
 
     def __call__(self, point: Point, direction: FloatArray, longest: float) -> tuple[float, Contact | None]:
         """The first trial τ ≤ ``longest`` along a direction, and the contact that limits it, if any.
@@ -51,8 +48,7 @@ def on_target(point: Point) -> bool:
     return point.infeasibility <= 1e-7  # error below which a curve counts as being on the constraints
 
 
-@dataclass(frozen=True, eq=False)
-class NormalStep:
+class NormalStep(NamedTuple):
     """The way to the targets of the constraints from one point."""
 
     full: FloatArray  # −C^† Φ, the displacement that reaches them to first order; shape (n, m)
@@ -62,31 +58,15 @@ class NormalStep:
     # the energy that all of it may cost where there is nothing left to gain: there the first order says nothing
     allowance: float
 
-    def share(self, gain: float) -> float:
-        """The share to take along with a tangential step that gains so much energy.
 
-        It costs at most half the gain, so that the objective goes down; but where there is nothing left to gain the
-        lengths go on, slowly, all the same.
-        """
-        affordable = 0.5 * max(gain, self.allowance)
-        if self.longest * self.cost <= affordable:
-            return self.longest
-        return max(affordable / self.cost, self.least)
-
-    def slack(self, share: float, gain: float) -> float:
-        """By how much a step with such a share may miss its prediction."""
-        return share * max(0.0, self.allowance - gain)
-
-
-@checked_fields
 @dataclass(frozen=True)
 class TowardsTargets:
     """How fast lengths go to their targets."""
 
-    length_change: float = number(0.25)  # largest logarithmic change of an edge length in one step
-    least_share: float = number(0.01, most=1)  # of that step, taken even where it costs more energy than can be gained
+    length_change: float = 0.25  # largest logarithmic change of an edge length in one step
+    least_share: float = 0.01  # of that step, taken even where it costs more energy than can be gained
     # part of the energy, by its scale, that reaching the targets may cost where there is nothing left to gain
-    allowance: float = number(1e-3, most=1)
+    allowance: float = 1e-3
 
     def at(self, point: Point, space: TangentSpace) -> NormalStep:
         """The normal step at a point, none if it is on target; ``space`` gives the pseudo-inverse."""
@@ -106,7 +86,6 @@ class AlongLine(Protocol):
         """Find a step along a descent direction, with its own and the last accepted step size; see `Armijo.along`."""
 
 
-@checked_fields
 @dataclass(frozen=True)
 class LineSearch:
     """Direction × search."""
@@ -115,7 +94,7 @@ class LineSearch:
     search: AlongLine
     # number of steps that a metric is made for, unless contact limits one of them: building and inverting it is most
     # of the work, and a few steps on it is a metric all the same
-    metric_steps: int = number(1)
+    metric_steps: int = 1
     second_order: ClassVar[bool] = False
     other_metrics: ClassVar[tuple[Metric, ...]] = ()
 
@@ -132,15 +111,14 @@ class LineSearch:
         return step, SearchState(memory, step.size)
 
 
-@checked_fields
 @dataclass(frozen=True)
 class Armijo:
     """Shrink the first trial until the energy goes down enough and the motion is proved."""
 
-    decrease: float = number(0.5, most=1)  # required fraction of the predicted decrease: the paper's ½
+    decrease: float = 0.5  # required fraction of the predicted decrease: the paper's ½
     first: FirstTrial = field(default_factory=FirstTrial)
     lengths: TowardsTargets = field(default_factory=TowardsTargets)  # how fast lengths go to their targets
-    max_trials: int = number(40)
+    max_trials: int = 40
 
     def along(self, point: Point, direction: FloatArray, natural: float, last: float) -> Step | NoStep:
         """Find a step along a tangent direction with DE·direction < 0; shape (n, m).
@@ -160,13 +138,19 @@ class Armijo:
         slope_along = float(np.sum(point.derivative * direction))
         shrink = 1.0
         for _ in range(self.max_trials):
-            share = normal.share(-shrink * tau * slope_along) * min(1.0, 4.0 * shrink)
+            # the share of the normal step to take along costs at most half of what the tangential one gains, so that
+            # the objective goes down; but where there is nothing left to gain lengths go on, slowly, all the same
+            gain = -shrink * tau * slope_along
+            affordable, share = 0.5 * max(gain, normal.allowance), normal.longest
+            if share * normal.cost > affordable:
+                share = max(affordable / normal.cost, normal.least)
+            share *= min(1.0, 4.0 * shrink)
             move = shrink * tau * direction + share * normal.full
-            slope = shrink * tau * slope_along + share * normal.cost
+            slope = share * normal.cost - gain
             if not np.max(np.abs(move)) > NOTHING:
                 break
             level = (1.0 - share) * point.residual
-            slack = normal.slack(share, -shrink * tau * slope_along)
+            slack = share * max(0.0, normal.allowance - gain)  # by how much the step may miss its prediction
             trial = attempt(point, point.vertices + move, level, partial(self.sufficient, point, slope, slack))
             if isinstance(trial, Leg):
                 return Step((trial,), shrink * tau, limited_by)
@@ -190,7 +174,6 @@ class Armijo:
         return trial.energy - point.energy <= wanted + slack + ENERGY_ROUNDING * abs(point.energy)
 
 
-@checked_fields
 @dataclass(frozen=True)
 class WeakWolfe:
     """Widen or halve a bracket until the energy goes down enough and its slope has become flat enough.
@@ -201,16 +184,12 @@ class WeakWolfe:
 
     # decrease, curvature: c₁ < c₂ of the two conditions, for which [RS21] has no numbers. On a parabola they accept
     # steps of 1 − c₂ to 2 (1 − c₁) times the way to its minimum: of twice, with the usual 10⁻⁴, which gain nothing
-    decrease: float = number(0.25, most=1)
-    curvature: float = number(0.9, most=1)
+    decrease: float = 0.25
+    curvature: float = 0.9
     first: FirstTrial = field(default_factory=FirstTrial)
     # on the way to target lengths, where these are prescribed
     underway: Armijo = field(default_factory=Armijo)
-    max_trials: int = number(40)
-
-    def __post_init__(self) -> None:
-        if self.decrease >= self.curvature:
-            raise OptionError(f"decrease is {self.decrease}; it must be less than curvature, {self.curvature}")
+    max_trials: int = 40
 
     def along(self, point: Point, direction: FloatArray, natural: float, last: float) -> Step | NoStep:
         """Find a step with E(Q) ≤ E(P) + c₁ τ DE·d and DE(Q)·d ≥ c₂ DE(P)·d, d moved along to Q.

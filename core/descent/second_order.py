@@ -17,9 +17,7 @@ from typing import ClassVar
 import numpy as np
 from scipy.linalg import eigh
 
-from ..base.arguments import checked_fields, number
 from ..base.deadline import check_time
-from ..base.errors import OptionError
 from ..base.tolerances import ENERGY_ROUNDING
 from ..base.types import FloatArray
 from ..energies.components import energy_scale
@@ -33,7 +31,6 @@ from .problem import Point
 from .step import Leg, NoStep, SearchState, Step, attempt, judged
 
 
-@checked_fields
 @dataclass(frozen=True)
 class TrustRegion:
     """Shrink the radius until the step is feasible, free of contact and as good as predicted.
@@ -44,9 +41,9 @@ class TrustRegion:
     the two-dimensional subspaces of Shultz, Schnabel and Byrd, A family of trust-region-based algorithms (1985).
     """
 
-    newton_threshold: float = number(0.3)  # of √E: longer gradients are not worth a Newton direction
-    first_radius: float = number(1.0)  # in the metric's norm
-    # accept, good, poor: ratios of actual to predicted reduction: below ``accept`` a step is rejected, above ``good``
+    newton_threshold: float = 0.3  # of √E: longer gradients are not worth a Newton direction
+    first_radius: float = 1.0  # in the metric's norm
+    # accept ≤ poor < good: ratios of actual to predicted reduction: below ``accept`` a step is rejected, above ``good``
     # the radius grows, below ``poor`` it shrinks
     accept: float = 0.05
     good: float = 0.7
@@ -54,15 +51,9 @@ class TrustRegion:
     first: FirstTrial = field(default_factory=FirstTrial)
     # the search on the way to target lengths, where there is no Lagrangian to model
     underway: Armijo = field(default_factory=Armijo)
-    max_trials: int = number(40)
+    max_trials: int = 40
     second_order: ClassVar[bool] = True
     other_metrics: ClassVar[tuple[Metric, ...]] = ()
-
-    def __post_init__(self) -> None:
-        if not 0.0 < self.accept <= self.poor < self.good < 1.0:
-            raise OptionError(
-                f"accept, poor and good are {self.accept}, {self.poor} and {self.good}; they must ascend within (0, 1)"
-            )
 
     def step(self, point: Point, state: SearchState) -> tuple[Step | NoStep, SearchState]:
         """Take one step; the memory is the radius, and the last projected gradient."""
@@ -150,7 +141,6 @@ def _minimum_in_ball(q: FloatArray, g: FloatArray, radius: float) -> FloatArray:
     return np.asarray(vectors @ c)
 
 
-@checked_fields
 @dataclass(frozen=True)
 class BackwardEuler:
     """Halve τ until the equations are solved, Armijo's rule holds and the motion is proved.
@@ -166,15 +156,15 @@ class BackwardEuler:
     # the metric that is added to the flow's own, divided by τ, for Newton's method and the way to the constraints
     preconditioner: Metric = field(default_factory=MoebiusMetric)
     # first_step, growth: τ of the first step, and how much longer than the last one a step may be
-    first_step: float = number(0.1)
-    growth: float = number(2.0, above=1)
+    first_step: float = 0.1
+    growth: float = 2.0
     # newton_iterations, newton_tolerance: of Newton's method, relative to the first residual: a step need not be more
     # exact than the time discretisation
-    newton_iterations: int = number(8)
-    newton_tolerance: float = number(1e-3, most=1)
+    newton_iterations: int = 8
+    newton_tolerance: float = 1e-3
     # krylov_iterations, krylov_tolerance: of its linear systems
-    krylov_iterations: int = number(60)
-    krylov_tolerance: float = number(0.05, most=1)
+    krylov_iterations: int = 60
+    krylov_tolerance: float = 0.05
     armijo: Armijo = field(default_factory=Armijo)  # Armijo's rule, and how fast lengths go to their targets
     second_order: ClassVar[bool] = True
 
@@ -226,15 +216,14 @@ class BackwardEuler:
         return NoStep.because(limited_by), state
 
 
-@checked_fields
 @dataclass(frozen=True)
 class Escape:
     """Halve a step along ± a direction of negative curvature until it lowers the energy and is proved."""
 
-    decrease: float = number(0.1, most=1)  # required fraction of the predicted decrease
-    longest: float = number(0.5)  # first step, in the metric's norm
+    decrease: float = 0.1  # required fraction of the predicted decrease
+    longest: float = 0.5  # first step, in the metric's norm
     first: FirstTrial = field(default_factory=FirstTrial)
-    max_trials: int = number(20)
+    max_trials: int = 20
 
     def step(self, point: Point, direction: FloatArray, curvature: float) -> Step | NoStep:
         """Find a step with E(Q) < E(P) + ½ c τ² curvature, c the required decrease.
@@ -286,14 +275,13 @@ class Curvature:
         return 0.5 * float(np.sum(self.point.derivative * inverse.solve(self.point.derivative)))
 
 
-@checked_fields
 @dataclass(frozen=True)
 class Newton:
     """Steps that share one second derivative."""
 
-    factor: float = number(8.0, above=1)  # by which σ grows until the Hessian is positive definite
-    steps: int = number(8)
-    short: float = number(0.3, most=1)  # part of a step that shows that the model is not to be trusted so far
+    factor: float = 8.0  # by which σ grows until the Hessian is positive definite
+    steps: int = 8
+    short: float = 0.3  # part of a step that shows that the model is not to be trusted so far
     # full steps gain half of what their slope promises, and so must not be asked for that
     search: Armijo = field(default_factory=lambda: Armijo(decrease=0.1))
 

@@ -13,7 +13,6 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 
-from ..base.arguments import checked_fields, number
 from ..base.errors import OptionError
 from ..base.types import FloatArray
 from ..curve import Curve
@@ -135,15 +134,14 @@ _COMPRESSED: Mapping[type, Callable[[Curve, Tolerances | None, float, int], Comp
 }
 
 
-@checked_fields
 @dataclass(frozen=True)
 class CompressedMetric:
-    """A nonlocal metric by products in O(N log N), midpoint rule; OptionError if θ or the leaves are out of range."""
+    """A nonlocal metric by products in O(N log N), midpoint rule."""
 
     metric: Metric  # the dense one
     tolerances: Tolerances = field(default_factory=Tolerances)  # for what is solved with it
-    theta: float = number(0.5, most=1)  # separation parameter of blocks
-    leaf: int = number(4)  # edges up to which clusters are not halved
+    theta: float = 0.5  # separation parameter of blocks
+    leaf: int = 4  # edges up to which clusters are not halved
     most_vertices = MAX_VERTICES
 
     @property

@@ -10,7 +10,6 @@ from typing import Protocol
 
 import numpy as np
 
-from ...base.arguments import checked_fields, number
 from ...base.types import FloatArray
 from ...curve import Curve
 from ..constraints import ConstraintDerivative, Constraints
@@ -19,16 +18,15 @@ from .models import vanishing_at
 from .tangent_space import Applied, TangentSpace
 
 
-@checked_fields
 @dataclass(frozen=True)
 class Tolerances:
-    """How exactly systems are solved; relative errors in the norm of the inner product, in (0, 1], or OptionError."""
+    """How exactly systems are solved; relative errors in the norm of the inner product, in (0, 1]."""
 
-    gradient: float = number(1e-2, most=1)  # of projected gradients
-    correction: float = number(1e-1, most=1)  # of pseudo-inverses, and of the correction that a projection makes
-    preconditioner: float = number(1e-2, most=1)  # part of a preconditioned residual that is not tangential
-    feasibility: float = number(1e-10, most=1)  # of C u = ξ
-    max_iterations: int = number(500)  # of one system
+    gradient: float = 1e-2  # of projected gradients
+    correction: float = 1e-1  # of pseudo-inverses, and of the correction that a projection makes
+    preconditioner: float = 1e-2  # part of a preconditioned residual that is not tangential
+    feasibility: float = 1e-10  # of C u = ξ
+    max_iterations: int = 500  # of one system
 
     @classmethod
     def of_norms(cls, accuracy: float = 1e-4) -> "Tolerances":

@@ -1,4 +1,4 @@
-"""Fifty trajectories in which a strand moves through another between two frames: each is refused at that leg, no sooner.
+"""Fifty trajectories in which a strand moves through another between two frames: each is refused at that leg.
 
 Every frame of them is an embedded polygon, so only the motion between two frames is wrong; and that it is wrong is
 known from elsewhere: the knots before and after have different signatures.
