@@ -31,21 +31,10 @@ PERKO = (
 )
 
 
-def diagram(name: str) -> Curve:
-    """A reduced diagram, drawn with straight lines and lifted."""
-    found = knot_type(knot(name)).diagram
-    assert found is not None, "those of the table have few crossings"
-    return drawn(found)
-
-
-def messy(name: str) -> Curve:
-    """A polygon whose vertices have been moved far at random."""
-    return scramble(smooth_knot(name, 60), seed=1)
-
-
 KINDS: Mapping[str, Callable[[str], Curve]] = {
-    "lattice": lattice_knot, "braid": knot, "diagram": diagram, "messy": messy, "smooth": smooth_knot,
-    "plat": lambda word: knot(f"plat({word})"), "unknot": knot, "code": coded_knot,
+    "lattice": lattice_knot, "braid": knot, "smooth": smooth_knot, "unknot": knot, "code": coded_knot,
+    "diagram": lambda name: drawn(knot_type(knot(name)).diagram),  # reduced, with straight lines, and lifted
+    "messy": lambda name: scramble(smooth_knot(name, 60), seed=1), "plat": lambda word: knot(f"plat({word})"),
     "random": lambda size: hard_unknot(int(size), seed=7), "steps": lambda size: lattice_unknot(int(size), seed=3),
 }  # fmt: skip
 PAIRS = {
@@ -87,15 +76,10 @@ DIFFERENT = (
 HOPS = RelaxOptions(hops=10)  # where shapes do not meet at once
 
 
-def made(text: str) -> Curve:
-    """A curve of a kind and a name."""
-    kind, name = text.split(" ", 1)
-    return KINDS[kind](name)
-
-
 def row(name: str) -> bool:
     """Print a row; return whether all is well."""
-    (a, b), words = (made(text) for text in PAIRS[name].split(" / ")), PAIRS[name].replace("code Gauss: ", "")
+    kinds = (text.split(" ", 1) for text in PAIRS[name].split(" / "))
+    (a, b), words = (KINDS[kind](one) for kind, one in kinds), PAIRS[name].replace("code Gauss: ", "")
     way: list[Iterate] = []
     began = time.process_time()
     try:

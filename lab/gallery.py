@@ -57,19 +57,15 @@ def gallery(options: argparse.Namespace) -> int:
             for k, (each, picture) in enumerate(zip(shown, pictures, strict=True), start=1):
                 show(f"picture {k} of {len(shown)}: {each.name}")
                 export.write_picture(picture, each.look(), size, size, look, cut_out=True)
-        head = TITLE if _is_atlas(place) else ""
+        head = TITLE if (place / SUMS).is_file() else ""
         _write_page(options.output, [each.title for each in shown], pictures, look, size, head)
     say_written(options.output)
     return 0
 
 
-def _is_atlas(directory: Path) -> bool:
-    return (directory / SUMS).is_file()
-
-
 def _chosen(directory: Path, only: str | None) -> list[Shown]:
     """The results asked for, once all their files are known to exist: pictures take time."""
-    by_name = {each.name: each for each in (_of_atlas if _is_atlas(directory) else _of_batch)(directory)}
+    by_name = {each.name: each for each in (_of_atlas if (directory / SUMS).is_file() else _of_batch)(directory)}
     wanted = [word.strip() for word in only.split(",")] if only else list(by_name)
     for name in wanted:
         if name not in by_name:

@@ -42,7 +42,7 @@ def test_it_runs(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     done = run(name, *ARGUMENTS[name])
     assert done.returncode == 0, done.stdout + done.stderr
-    few = {"batch": 1, "seeded_runs": 0, "soak": 1, "resolution": 3, "hops": 3, "knots": 6}
+    few = {"batch": 1, "seeded_runs": 0, "soak": 1, "resolution": 3, "hops": 3, "passes": 3, "knots": 6}
     least = few.get(name, 5)  # a title, and a line for each of four curves
     assert len(done.stdout.splitlines()) >= least
 

@@ -54,10 +54,8 @@ def curve_of(minimum: Mapping[str, Any]) -> FourierCurve:
 
 
 def _made(name: str, runs: Sequence[AtlasRun]) -> Values:
-    groups = distinct([run.rest for run in runs])
-    minima = [
-        {"number": number} | _described(name, [runs[k] for k in group]) for number, group in enumerate(groups, start=1)
-    ]
+    groups = enumerate(distinct([run.rest for run in runs]), start=1)
+    minima = [{"number": number} | _described(name, [runs[k] for k in group]) for number, group in groups]
     return {"type": name, "lower_bound": lower_bound(name), "runs": len(runs), "minima": minima}
 
 

@@ -50,11 +50,18 @@ def submitting(address: str | None) -> Iterator[Submit]:
                 pool.shutdown(cancel_futures=True)
         return
     from distributed import Client
+    from distributed.comm.core import connect
+    from distributed.security import Security
+
+    async def greet() -> None:
+        """Connect and disconnect; a client that cannot connect would be half made, and hang when it is collected."""
+        comm = await connect(address, timeout=_PATIENCE, **Security().get_connection_args("client"))
+        await comm.close()
 
     for name in ("distributed", "distributed.client"):
         logging.getLogger(name).setLevel(logging.CRITICAL)  # rows report what goes wrong
     try:
-        asyncio.run(asyncio.wait_for(_greet(address), _PATIENCE))  # a peer may take the call and say nothing
+        asyncio.run(asyncio.wait_for(greet(), _PATIENCE))  # a peer may take the call and say nothing
         client = Client(address, timeout=_PATIENCE)
     except (OSError, ValueError, TypeError) as error:  # TypeError: where TLS is not set up
         raise MobiusFlowError(f"{address}: no Dask scheduler answers there") from error
@@ -64,15 +71,6 @@ def submitting(address: str | None) -> Iterator[Submit]:
         except TimeoutError as error:
             raise MobiusFlowError(f"{address}: no worker has joined in 30 s") from error
         yield partial(client.submit, pure=False)
-
-
-async def _greet(address: str) -> None:
-    """Connect and disconnect; a client that cannot connect would be half made, and hang when it is collected."""
-    from distributed.comm.core import connect
-    from distributed.security import Security
-
-    comm = await connect(address, timeout=_PATIENCE, **Security().get_connection_args("client"))
-    await comm.close()
 
 
 def rows(submit: Submit, jobs: Iterable[Job]) -> Iterator[tuple[Job, Row]]:

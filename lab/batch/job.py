@@ -39,7 +39,12 @@ def inputs(words: Iterable[str]) -> list[Input]:
         paths = [word] if os.path.lexists(word) else []  # first, so that a file may be called like a knot
         if paths or (glob.has_magic(word) and (paths := sorted(glob.glob(word, recursive=True)))):
             for path in map(Path, paths):
-                found += _in_directory(path) if path.is_dir() else [_of_file(path)]
+                files = [path]
+                if path.is_dir():
+                    files = sorted(each for each in path.iterdir() if each.suffix.lower() in FORMATS)
+                if not files:
+                    raise MobiusFlowError(f"{path}: holds no curve files; they end in {', '.join(FORMATS)}")
+                found += map(_of_file, files)
         elif is_code(word):
             raise MobiusFlowError(f"{word[:60]}: a code cannot name a folder; put it in a .pd, .dt or .gauss file")
         elif glob.has_magic(word):
@@ -47,7 +52,14 @@ def inputs(words: Iterable[str]) -> list[Input]:
         elif os.path.dirname(word) or Path(word).suffix.lower() in FORMATS:
             raise MobiusFlowError(f"{word}: there is no such file")
         elif ".." in word:
-            found += map(Input, _range(word))
+            table = list(KNOTS)
+            first, last = (table_name(end) for end in word.split("..", 1))
+            low, high = table.index(first[0]), table.index(last[0])
+            if first[1] or last[1]:
+                raise MobiusFlowError(f"{word}: the table has no mirror images; name them one by one")
+            if low > high:
+                raise MobiusFlowError(f"{word}: {last[0]} comes before {first[0]} in the table; swap them")
+            found += map(Input, table[low : high + 1])
         else:
             knot(word)  # which reports names that mean nothing
             found.append(Input(word.strip()))
@@ -65,25 +77,6 @@ def _of_file(path: Path) -> Input:
 def as_text(text: str) -> str:
     """A text that no spreadsheet takes for a formula and runs."""
     return f"_{text}" if text.startswith(_FORMULA) else text
-
-
-def _in_directory(directory: Path) -> Iterator[Input]:
-    paths = sorted(each for each in directory.iterdir() if each.suffix.lower() in FORMATS)
-    if not paths:
-        raise MobiusFlowError(f"{directory}: holds no curve files; they end in {', '.join(FORMATS)}")
-    yield from map(_of_file, paths)
-
-
-def _range(word: str) -> list[str]:
-    """The table's names from one to another, in its order."""
-    table = list(KNOTS)
-    first, last = (table_name(end) for end in word.split("..", 1))
-    low, high = table.index(first[0]), table.index(last[0])
-    if first[1] or last[1]:
-        raise MobiusFlowError(f"{word}: the table has no mirror images; name them one by one")
-    if low > high:
-        raise MobiusFlowError(f"{word}: {last[0]} comes before {first[0]} in the table; swap them")
-    return table[low : high + 1]
 
 
 @dataclass(frozen=True)
