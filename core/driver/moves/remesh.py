@@ -48,11 +48,10 @@ class Remesh(Move):
 
     def stepped(self, step: Step) -> Change | None:
         self._just_refined = False
-        due = self._adapts and self.run.iterate.index % self.interval == 0
-        return self._change(None) if due else None
+        return None if self.run.iterate.index % self.interval else self._change(None)
 
     def stuck(self, found: NoStep) -> NoStep | Change | None:
-        if not self._adapts:
+        if self.run.options.mesh != "adaptive":
             return replace(found, reason=joined((found.reason, Message("a finer or an adaptive mesh may help")), "; "))
         if found.limited_by is None or self._just_refined:
             return None
@@ -60,12 +59,10 @@ class Remesh(Move):
         self._just_refined = change is not None
         return change
 
-    @property
-    def _adapts(self) -> bool:
-        return self.run.options.mesh == "adaptive"
-
     def _change(self, stuck: Contact | None) -> Change | None:
         """Another mesh; None if this one is good or must stay. Around edges that are stuck it is finer in any case."""
+        if self.run.options.mesh != "adaptive":
+            return None
         problem, curve, resolution = self.run.problem, self.run.iterate.curve, self.run.resolution
         pins = problem.constraints.pins.vertices
         spacing = graded_spacing(curve, resolution)

@@ -72,7 +72,7 @@ class Settle(Move):
         asked = self.run.options.stability or self.run.options.escape_saddles
         try:
             if self._applies:
-                curvature, least = Curvature(point), self._least(point)
+                curvature, least = Curvature(point), self._least
                 inverse, index, shift = self.newton.definite(curvature, unresolved(point.curve))
                 if self._rounds < self.rounds and curvature.gain(inverse) > least:
                     self._rounds += 1
@@ -95,11 +95,11 @@ class Settle(Move):
         return outcome.adding(among, kind=_kind(index), group=symmetry, whole=_kind(whole))
 
     def _steps(self, curvature: Curvature, inverse: FactorisedHessian, shift: float) -> tuple[Step, ...]:
-        most, least = self.run.iterations_left, self._least(curvature.point)
-        return tuple(self.newton.along(curvature, inverse, shift, most, least))
+        return tuple(self.newton.along(curvature, inverse, shift, self.run.iterations_left, self._least))
 
-    def _least(self, point: Point) -> float:
-        return self.exact * energy_scale(point.problem.mesh, point.energy)
+    @property
+    def _least(self) -> float:
+        return self.exact * energy_scale(self.run.problem.mesh, self.run.point.energy)
 
     @property
     def _applies(self) -> bool:

@@ -13,7 +13,7 @@ from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.knots import knot
 from mobius_flow.core.solve.constraints import Constraints, weighted_barycenter
 from shapes import regular_polygon, torus_trefoil
-from solids import box, rod
+from solids import box, plate, rod
 from tasks import proved, wanted
 
 WALLS = box(-1.5, 1.5)
@@ -61,6 +61,8 @@ def test_edges_are_split_as_walls_come_near():
     problem = start_problem(*wanted(result.curve, vertices=len(result.curve), avoid=[WALLS]))
     coarse = result.curve.edge_lengths * 2.0 / problem.clearance(result.curve)
     assert 0.5 < coarse.max() < 1.1 * SPLIT
+    above = {"pins": (0, 8, 16, 24), "avoid": [plate(-0.05)], "vertices": 32, "max_iterations": 16}
+    assert len(minimize(*wanted(regular_polygon(32), mesh="adaptive", **above)).curve) > 64
 
 
 def test_a_fixed_mesh_stays():
