@@ -18,26 +18,20 @@ def test_coordinates_of_refined_vertices_lie_between_those_of_corners(curve, ver
         lengths, finer = (each.edge_lengths[each.mesh.edge_slices[k]] for each in (curve, refined))
         for old, new in zip(curve.components[k].T, refined.components[k].T, strict=True):
             np.testing.assert_allclose(on_refined(old, lengths, finer, closed), new, atol=1e-12)
+            np.testing.assert_array_equal(on_refined(old, lengths, lengths, closed), old)  # where it was fine enough
 
 
-@pytest.mark.parametrize("curve", [torus_trefoil(40), overhand(40)], ids=["knot", "arc"])
-def test_a_curve_that_was_fine_enough_is_left_alone(curve):
-    values, lengths = np.arange(40.0), curve.edge_lengths
-    np.testing.assert_array_equal(on_refined(values, lengths, lengths, curve.mesh.closed[0]), values)
-
-
-def test_values_lie_evenly_along_what_is_drawn():
+def test_values_lie_evenly_along_what_is_drawn_and_shapes_between_keys_are_straight():
     values = np.array([1.0, 2.0, 4.0], dtype=np.float32)
     np.testing.assert_allclose(along(values, 6, closed=True), [1, 1.5, 2, 3, 4, 2.5])
     np.testing.assert_allclose(along(values, 5, closed=False), [1, 1.5, 2, 3, 4])
-
-
-def test_shapes_between_keys_are_straight():
     values = np.array([[0.0, 1.0], [2.0, 1.0], [2.0, 5.0]])
     np.testing.assert_allclose(
         interpolated(values, np.array([0.25, 1.0, 1.5, 2.0])), [[0.5, 1], [2, 1], [2, 3], [2, 5]]
     )
     np.testing.assert_array_equal(interpolated(values[:1], np.zeros(1)), values[:1])
+    zeros = np.array([-0.0, 1.0, -0.0])  # values that are hit stay bit for bit
+    assert interpolated(zeros, np.array([0.0, 1.0])).tobytes() == zeros[:2].tobytes()
 
 
 def turning(angle, n=60):
@@ -72,18 +66,6 @@ def test_keys_stay_and_small_turns_need_no_more():
     places = places_between(np.concatenate([turning(0.1), turning(2.0)[1:]]), Mesh((60,)))
     assert {0.0, 1.0, 2.0} < set(places)
     assert not ((places > 0) & (places < 1)).any()
-
-
-def test_a_curve_that_turns_inside_out_gets_so_many_and_no_more():
-    points = turning(np.pi)
-    assert 3 < len(places_between(points, Mesh((60,)))) <= 33
-
-
-def test_one_shape_is_one_key():
-    points = torus_trefoil(20).vertices[None]
-    np.testing.assert_array_equal(places_between(points, Mesh((20,))), [0.0])
-
-
-def test_values_that_are_hit_stay_bit_for_bit():
-    values = np.array([-0.0, 1.0, -0.0])
-    assert interpolated(values, np.array([0.0, 1.0])).tobytes() == values[:2].tobytes()
+    inside_out = turning(np.pi)
+    assert 3 < len(places_between(inside_out, Mesh((60,)))) <= 33
+    np.testing.assert_array_equal(places_between(inside_out[:1], Mesh((60,))), [0.0])
