@@ -20,7 +20,6 @@ PALETTE = (
 )
 Colour = Sequence[float]  # red, green and blue from 0 to 1, as on the screen; more is not looked at
 COMPONENT, DISTANCE, ENERGY = "component", "strand_distance", "energy_density"  # as attributes are called
-_BLOCK = 2_000_000  # pairs processed together
 
 
 def ramp(values: FloatArray) -> FloatArray:
@@ -83,14 +82,14 @@ def vertex_values(link: Curve) -> dict[str, FloatArray]:
     }
 
 
-def strand_distances(curve: Curve) -> FloatArray:
+def strand_distances(curve: Curve, pairs: int = 2_000_000) -> FloatArray:
     """Distance from each vertex to the nearest other strand, shape (n,); in the curve's units.
 
     A strand passes where the distance is least among the neighbours there, as in `core.curve.refine`; the curve round a
     mere bend is none.  Where nothing passes the distance is the curve's longest one, and where nothing passes anywhere
-    its diameter.
+    its diameter.  So many ``pairs`` of vertices are looked at together.
     """
-    mesh, everything, block = curve.mesh, np.arange(len(curve)), max(1, _BLOCK // len(curve))
+    mesh, everything, block = curve.mesh, np.arange(len(curve)), max(1, pairs // len(curve))
     distances = np.full(len(curve), np.inf)  # where nothing passes
     for rows in np.split(everything, everything[block::block]):
         r = cdist(curve.vertices[rows], curve.vertices)
