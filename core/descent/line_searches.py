@@ -136,7 +136,10 @@ class Armijo:
         tau, limited_by = self.first(point, direction, min(natural, longest))
         normal = self.lengths.at(point, point.tangent_space)
         slope_along = float(np.sum(point.derivative * direction))
-        shrink = 1.0
+        # lengths go on by less only where steps are shorter than they would be by the usual growth: without a bound on
+        # it, as in the paper, first trials are far too long near rest, and lengths would never arrive
+        shrink, usual = 1.0, max(FirstTrial.growth * last, 1e-3 / speed if speed > 0.0 else 0.0)
+        lead = max(1.0, tau / usual) if usual > 0.0 else 1.0
         for _ in range(self.max_trials):
             # the share of the normal step to take along costs at most half of what the tangential one gains, so that
             # the objective goes down; but where there is nothing left to gain lengths go on, slowly, all the same
@@ -144,7 +147,7 @@ class Armijo:
             affordable, share = 0.5 * max(gain, normal.allowance), normal.longest
             if share * normal.cost > affordable:
                 share = max(affordable / normal.cost, normal.least)
-            share *= min(1.0, 4.0 * shrink)
+            share *= min(1.0, 4.0 * shrink * lead)
             move = shrink * tau * direction + share * normal.full
             slope = share * normal.cost - gain
             if not np.max(np.abs(move)) > NOTHING:

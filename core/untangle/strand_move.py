@@ -106,7 +106,7 @@ def plan_way(drawing: PlaneDrawing, move: Move, start: tuple[int, float], end: t
         walls |= dict.fromkeys(pairwise(chain), edge)
     nodes = np.concatenate([drawing.nodes, drawing.placed(np.array([start[1], end[1]]))])
     used, names = np.unique(np.array(list(walls)), return_inverse=True)
-    ends = list(map(tuple, names.reshape(-1, 2).tolist()))
+    ends = [(a, b) for a, b in names.reshape(-1, 2).tolist()]
     triangles = Triangles(nodes[used], ends)
     points, corners = triangles.points, triangles.corners
     # gates: directed edges of triangles, each crossed from its left to its right, with the darts that are crossed there
