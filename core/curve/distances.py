@@ -108,11 +108,10 @@ def strand_gaps(curve: Curve, radius: float) -> FloatArray:
     tree = cKDTree(curve.vertices)
     pairs = tree.query_pairs(radius, output_type="ndarray")
     i, j = np.concatenate([pairs, pairs[:, ::-1]]).T  # seen from either end
-    distance = _distances(curve, i, j)
     mesh = curve.mesh
-    passing = (distance <= _distances(curve, i, mesh.heads[mesh.outgoing[j]])) & (
-        distance <= _distances(curve, i, mesh.tails[mesh.incoming[j]])
-    )
+    neighbours = j, mesh.heads[mesh.outgoing[j]], mesh.tails[mesh.incoming[j]]
+    distance, after, before = (np.linalg.norm(curve.vertices[i] - curve.vertices[k], axis=1) for k in neighbours)
+    passing = (distance <= after) & (distance <= before)
     passing &= arc_distance_of_vertices(curve, i, j) > STRAND_RATIO * distance
     i, j, distance = i[passing], j[passing], distance[passing]
     strands = ~_sides_of_corners(curve, i, j)
@@ -134,10 +133,6 @@ def near_by_octave(points: FloatArray, sizes: FloatArray, reach: float) -> tuple
         found.append((large[near["i"]], small[near["j"]], near["v"]))
     i, j, distance = (np.concatenate(each) for each in zip(*found, strict=True))
     return i, j, distance
-
-
-def _distances(curve: Curve, i: IntArray, j: IntArray) -> FloatArray:
-    return np.asarray(np.linalg.norm(curve.vertices[i] - curve.vertices[j], axis=1))
 
 
 def _sides_of_corners(curve: Curve, i: IntArray, j: IntArray) -> BoolArray:

@@ -58,10 +58,8 @@ class FourierCurve:
 
     def with_modes(self, modes: Sequence[int]) -> "FourierCurve":
         """The same with higher frequencies, whose coefficients are 0, or without the highest ones."""
-        parts = []
-        for c, k in zip(self.coefficients, modes, strict=True):
-            parts.append(np.concatenate([c[: k + 1], np.zeros((max(k + 1 - len(c), 0), 3))]))
-        return FourierCurve(tuple(parts))
+        sizes = zip(self.coefficients, modes, strict=True)
+        return FourierCurve(tuple(np.pad(c[: k + 1], ((0, max(k + 1 - len(c), 0)), (0, 0))) for c, k in sizes))
 
     @classmethod
     def through(cls, curve: Curve, modes: Sequence[int]) -> "FourierCurve":
