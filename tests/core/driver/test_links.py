@@ -89,20 +89,18 @@ def parted():
     return curve, Constraints(1.1 * curve.edge_lengths, blocks)
 
 
-def test_barycenters_of_parts_add_up(parted):
+def test_barycenters_of_parts_add_up_and_have_their_derivatives(parted):
     curve, constraints = parted
     both = constraints.block(Barycenters).target.reshape(2, 3)
     np.testing.assert_allclose(both.sum(axis=0), weighted_barycenter(curve))
     np.testing.assert_allclose(constraints.residual(curve)[len(curve) :], 0)
-
-
-def test_taylor_of_parts(parted):
-    curve, constraints = parted
     u = np.random.default_rng(5).normal(size=curve.vertices.shape)
-    linear = constraints.derivative(curve).apply(u)
-    along = [constraints.residual(curve), linear]
+    along = [constraints.residual(curve), constraints.derivative(curve).apply(u)]
     slope = taylor_slope(lambda t: constraints.residual(curve.with_vertices(curve.vertices + t * u)), along)
     assert slope == pytest.approx(2, abs=0.1)
+    link = knot("L2a1")
+    usual, one = Constraints.of(link), Constraints(link.edge_lengths, (Barycenters.of(link, parts=(0, 0)),))
+    np.testing.assert_array_equal(*(list(each.derivative(link).border()) for each in (usual, one)))
 
 
 def test_solver_with_parts_against_dense_matrix(parted):
@@ -131,12 +129,6 @@ def test_barycenters_of_many_parts_take_no_more_memory_than_one():
     tracemalloc.stop()
     assert derivative.count == len(curve) + 150
     assert peak < 1000 * len(curve)  # one row has 24 bytes a vertex
-
-
-def test_one_part_is_the_usual_constraint():
-    curve = knot("L2a1")
-    usual, one = Constraints.of(curve), Constraints(curve.edge_lengths, (Barycenters.of(curve, parts=(0, 0)),))
-    np.testing.assert_array_equal(*(list(each.derivative(curve).border()) for each in (usual, one)))
 
 
 @pytest.mark.parametrize("method", ["lbfgs", *SLOW])
@@ -187,14 +179,12 @@ def test_parts_are_said_to_be_held_where_they_are(curve, options, held):
 def test_strands_a_billionth_apart_come_apart(method):
     t = 2 * np.pi * np.arange(60) / 60
     eight = Curve(np.column_stack([np.sin(2 * t), np.cos(t), 0.5e-9 * np.sin(t)]))
-    result = minimize(eight, RelaxOptions(method=method, vertices=100))
-    assert result.status is Status.CONVERGED
-    assert result.certified
-    assert result.energies[-1] < 4.02
     circles = Curve.from_components([ring([0, 0, 0], 1.0, 40), ring([0, 0, 1e-9], 1.0, 40)])
-    result = minimize(circles, RelaxOptions(method=method, vertices=80))
-    assert result.status is Status.CONVERGED
-    assert result.energies[-1] < 15
+    for curve, vertices, energy in ((eight, 100, 4.02), (circles, 80, 15.0)):
+        result = minimize(curve, RelaxOptions(method=method, vertices=vertices))
+        assert result.status is Status.CONVERGED
+        assert result.certified
+        assert result.energies[-1] < energy
 
 
 def test_second_derivative_along_held_parts():

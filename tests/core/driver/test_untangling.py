@@ -153,10 +153,9 @@ def test_interrupted_runs_say_where_they_stand() -> None:
             raise KeyboardInterrupt
 
     result = minimize(knot("tuzun-sikora"), RelaxOptions(untangle="always"), interrupt)
+    left = result.report()["strand_moves"]["left"]
     assert result.status is Status.INTERRUPTED
-    left = result.last.strand_moves.left
     assert result.message.endswith(f"strands were being moved, and {left} of 21 crossings are left")
-    assert result.report()["strand_moves"]["left"] == left
     assert np.isfinite(result.energies).all()
     assert (result.iterations, [phase.iterations for phase in result.phases]) == (0, [0])
 
@@ -216,12 +215,6 @@ def test_where_strands_are_not_moved_it_is_told(curve: Curve, options: dict[str,
     result, _ = proved(curve, **{"untangle": "always", "max_iterations": 1} | options)
     assert said in result.message
     assert result.report()["strand_moves"] is None
-
-
-def test_a_knot_between_pinned_ends_stays() -> None:
-    result, _ = proved(overhand(60), pins=(0, 59))
-    assert result.final_energy > 50.0
-    assert "strand moves" not in result.message
 
 
 def test_where_obstacles_leave_no_room_the_curve_is_left_to_the_flow() -> None:

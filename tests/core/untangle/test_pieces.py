@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, Mesh
+from mobius_flow.core.curve.pins import NOWHERE
 from mobius_flow.core.knots import knot, knot_type, scramble
 from mobius_flow.core.knots.diagrams import is_least, jones, simplified
 from mobius_flow.core.knots.diagrams.diagram import ENDS, PIN
@@ -16,8 +17,6 @@ from mobius_flow.core.untangle.moving import MovingCurve
 from mobius_flow.core.untangle.strand_move import make_move
 from mobius_flow.core.untangle.tidying import spread, thin
 from mobius_flow.core.untangle.untangle import face, turn
-
-NOWHERE = np.empty(0, dtype=np.intp)
 
 
 def body(name: str, seed: int = 1, held: tuple[int, ...] = (), *, is_open: bool = False) -> MovingCurve:
