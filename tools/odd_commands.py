@@ -24,7 +24,6 @@ import threading
 import time
 import zipfile
 from collections import Counter
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import cos, pi, sin
 from pathlib import Path
@@ -33,7 +32,6 @@ import numpy as np
 from mobius_flow.cli.parser import add_to
 
 ROOT = Path(__file__).resolve().parents[1]
-MEMORY = 1 << 30  # bytes of resident memory
 LIMITS = {resource.RLIMIT_AS: 6 << 30, resource.RLIMIT_FSIZE: 1 << 28, resource.RLIMIT_CORE: 0}
 TEXTS = (".txt", ".xyz", ".obj", ".vect", ".json")
 SHORT = "--max-iterations 1"
@@ -72,16 +70,6 @@ class Case:
     limits: dict[int, int] = field(default_factory=dict)
     signals: list[tuple[float, int]] = field(default_factory=list)  # each after so many seconds
     feeds: dict[str, bytes] = field(default_factory=dict)  # what is written to named pipes
-
-
-Kind = Callable[[random.Random, Path], Case]
-KINDS: dict[str, Kind] = {}
-
-
-def kind(make: Kind) -> Kind:
-    """Register a kind of odd command."""
-    KINDS[make.__name__] = make
-    return make
 
 
 def split(line: str, path: object = "in.txt") -> list[str]:
@@ -123,7 +111,6 @@ def mutated(rng: random.Random, data: bytes) -> bytes:
     return data
 
 
-@kind
 def damaged(rng: random.Random, room: Path) -> Case:
     """Damaged curve files, and files of random bytes, of one line over and over, or of nothing."""
     path = room / f"in{rng.choice(TEXTS)}"
@@ -136,7 +123,6 @@ def damaged(rng: random.Random, room: Path) -> Case:
     return Case(split(rng.choice(READERS), path), statuses=(2,))
 
 
-@kind
 def geometry(rng: random.Random, room: Path) -> Case:
     """Coordinates that are huge, tiny, repeated, collinear, touching, or far away."""
     scale = rng.choice([1.0, 1e-320, 1e-200, 1e-20, 1e20, 1e150, 1e300])
@@ -147,7 +133,6 @@ def geometry(rng: random.Random, room: Path) -> Case:
     return Case(split(rng.choice(READERS), curve_file(room, rng.choice(TEXTS), points)))
 
 
-@kind
 def trajectories(rng: random.Random, room: Path) -> Case:
     """Damaged archives."""
     stream, start = io.BytesIO(), np.array(trefoil())
@@ -164,7 +149,6 @@ def trajectories(rng: random.Random, room: Path) -> Case:
     return Case(["verify", "t.npz", *rng.choice([[], ["--json"]])], statuses=(0, 1))
 
 
-@kind
 def options(rng: random.Random, room: Path) -> Case:
     """Options with odd values, cut short, unknown, and arguments in random combinations."""
     if rng.random() < 0.3:
@@ -178,7 +162,6 @@ def options(rng: random.Random, room: Path) -> Case:
     return Case([command, *split(COMMANDS[command], curve_file(room)), *value])
 
 
-@kind
 def knots(rng: random.Random, room: Path) -> Case:
     """Knot names that are long, huge or invalid."""
     names = ["3_1", "T(3,5)", "T(999999,999999)", "braid()", "braid(1,2,3)", "m" * 2000, "3_1#" * 200, "0_1", *VALUES]
@@ -186,7 +169,6 @@ def knots(rng: random.Random, room: Path) -> Case:
     return Case(["knot", rng.choice(names), rng.choice(["k.txt", "k.obj", "-", "k", "no/k.txt"]), *extra.split()])
 
 
-@kind
 def streams(rng: random.Random, room: Path) -> Case:
     """Standard streams that are closed, full, gone, endless or in a limited encoding; devices and pipes as files."""
     good, name = curve_file(room), rng.choice(["txt", "obj", "json", "vect"])
@@ -214,7 +196,6 @@ def streams(rng: random.Random, room: Path) -> Case:
     )
 
 
-@kind
 def same_files(rng: random.Random, room: Path) -> Case:
     """One file named twice."""
     good = curve_file(room)
@@ -235,7 +216,6 @@ def same_files(rng: random.Random, room: Path) -> Case:
     return Case(split(f"{line} {SHORT}"), statuses=(2,))
 
 
-@kind
 def places(rng: random.Random, room: Path) -> Case:
     """Outputs where no file can be."""
     curve_file(room)
@@ -251,7 +231,6 @@ def places(rng: random.Random, room: Path) -> Case:
     return Case(split(f"relax IN {rng.choice(ends)} {SHORT}"))
 
 
-@kind
 def scarcity(rng: random.Random, room: Path) -> Case:
     """Files may hardly grow, hardly any may be open, or there is too little address space."""
     curve_file(room, points=trefoil(rng.choice([24, 3000])))
@@ -269,7 +248,6 @@ def scarcity(rng: random.Random, room: Path) -> Case:
     return Case(split(f"relax IN {line}"), limits={limit: rng.choice(amounts)}, statuses=statuses)
 
 
-@kind
 def interrupted(rng: random.Random, room: Path) -> Case:
     """Signals at odd moments, sometimes several at once."""
     line = rng.choice(
@@ -286,7 +264,6 @@ def interrupted(rng: random.Random, room: Path) -> Case:
     return Case(split(line, curve_file(room)), signals=moments, statuses=(0, 130, -number, -signal.SIGTERM))
 
 
-@kind
 def huge(rng: random.Random, room: Path) -> Case:
     """More vertices, coordinates or components than can be used."""
     option, most = rng.choice([("", 200_000), ("--solver dense", 12_000), ("--method trust-region", 12_000)])
@@ -306,7 +283,6 @@ def huge(rng: random.Random, room: Path) -> Case:
     return Case(split(rng.choice(READERS), name), statuses=(2,))
 
 
-@kind
 def dependencies(rng: random.Random, room: Path) -> Case:
     """Modules that are missing, broken, out of memory, or interrupted while they are imported."""
     curve_file(room)
@@ -329,18 +305,12 @@ def dependencies(rng: random.Random, room: Path) -> Case:
     return Case(split(line), env={"MPLBACKEND": rng.choice(["nonsense", "agg", ""]), **fake})
 
 
-@dataclass
-class Outcome:
-    """What a command did."""
-
-    status: int
-    seconds: float
-    memory: int
-    out: bytes
-    err: bytes
+FILES = (damaged, geometry, trajectories, streams, same_files, places, huge)
+OTHERS = (options, knots, scarcity, interrupted, dependencies)
+KINDS = {each.__name__: each for each in (*FILES, *OTHERS)}
 
 
-def run(case: Case, room: Path, patience: float) -> Outcome:
+def run(case: Case, room: Path, patience: float) -> "subprocess.CompletedProcess[bytes]":
     """Run a case in its directory, for so many seconds at most."""
 
     def prepare() -> None:  # in the new process: signals as in a terminal, limits, and closed streams
@@ -375,7 +345,6 @@ def run(case: Case, room: Path, patience: float) -> Outcome:
         end(case.out),
         end(case.err),
     ]
-    started = time.monotonic()
     process = subprocess.Popen(
         [os.fsencode(word.replace("\0", "")) for word in (sys.executable, "-P", "-m", "mobius_flow", *case.words)],
         cwd=room,
@@ -397,26 +366,31 @@ def run(case: Case, room: Path, patience: float) -> Outcome:
     except subprocess.TimeoutExpired:
         process.kill()
         out, err = process.communicate()
-    largest = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * 1024  # of all commands so far
-    return Outcome(process.returncode, time.monotonic() - started, largest, out or b"", err or b"")
+    return subprocess.CompletedProcess(case.words, process.returncode, out or b"", err or b"")
 
 
-def complaints(case: Case, room: Path, before: dict[str, bytes], outcome: Outcome) -> list[str]:
+def complaints(
+    case: Case, room: Path, before: dict[str, bytes], outcome: "subprocess.CompletedProcess[bytes]"
+) -> list[str]:
     """Everything that is wrong with an outcome."""
-    found = []
-    if outcome.status == -signal.SIGKILL:
-        found.append(f"was still running after {outcome.seconds:.0f} s")
-    if outcome.memory > MEMORY:
-        found.append(f"this one, or one before, took {outcome.memory >> 20} MB")
-    if outcome.status not in case.statuses:
-        found.append(f"exit status {outcome.status}, not one of {case.statuses}")
+    found, said = [], outcome.stderr
+    if outcome.returncode == -signal.SIGKILL:
+        found.append("was still running when its time was up")
+    if (largest := resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss >> 10) > 1 << 10:  # of all commands so far
+        found.append(f"this one, or one before, took {largest} MB")
+    if outcome.returncode not in case.statuses:
+        found.append(f"exit status {outcome.returncode}, not one of {case.statuses}")
     bad = ("Traceback", "Exception ignored", "internal error", "Fatal Python error")
-    found += [word for word in bad if word.encode() in outcome.err + outcome.out]
-    if (case.signals or case.limits) and b"Traceback" in outcome.err and os.fsencode(f"{ROOT}/") not in outcome.err:
+    found += [word for word in bad if word.encode() in said + outcome.stdout]
+    if (
+        (case.signals or case.limits)
+        and b"Traceback" in outcome.stderr
+        and os.fsencode(f"{ROOT}/") not in outcome.stderr
+    ):
         return []  # Python itself did not start
-    lines = outcome.err.replace(b"\0", b"").decode("utf-8", "replace").splitlines()  # it may be UTF-16
-    several = "compare" in case.words and outcome.status == 130  # the methods that have finished
-    if case.err == "pipe" and outcome.status in (2, 130) and not several and len(lines) != 1:
+    lines = said.replace(b"\0", b"").decode("utf-8", "replace").splitlines()  # it may be UTF-16
+    several = "compare" in case.words and outcome.returncode == 130  # the methods that have finished
+    if case.err == "pipe" and outcome.returncode in (2, 130) and not several and len(lines) != 1:
         found.append(f"{len(lines)} lines instead of a sentence")
     after = contents(room)
     found += [f"{name} is gone" for name in before.keys() - after.keys()]
@@ -429,8 +403,8 @@ def complaints(case: Case, room: Path, before: dict[str, bytes], outcome: Outcom
             found.append(f"{name} has changed")
         if name not in before and not ((ours or named) and whole):
             found.append(f"{name} is left behind")
-    told = case.err == "pipe" and outcome.status >= 0
-    left = [path for path in (room / "scratch").iterdir() if told and os.fsencode(path) not in outcome.err]
+    told = case.err == "pipe" and outcome.returncode >= 0
+    left = [path for path in (room / "scratch").iterdir() if told and os.fsencode(path) not in said]
     return found + [f"{path.name} is left in the temporary directory" for path in left]
 
 
@@ -456,15 +430,16 @@ def main() -> int:
             room = Path(place)
             (room / "scratch").mkdir()
             case = KINDS[name](rng, room)
-            before = contents(room)
+            before, began = contents(room), time.monotonic()
             outcome = run(case, room, asked.patience)
+            seconds = time.monotonic() - began
             wrong = complaints(case, room, before, outcome)
-        statuses[outcome.status] += 1
+        statuses[outcome.returncode] += 1
         words = " ".join(word[:60] for word in case.words)
-        slowest = max(slowest, (outcome.seconds, words))
+        slowest = max(slowest, (seconds, words))
         if wrong:
             bad += 1
-            print(f"{number} {name}: {words!a}\n  {'; '.join(wrong)}\n  {outcome.err[-400:]!r}", flush=True)
+            print(f"{number} {name}: {words!a}\n  {'; '.join(wrong)}\n  {outcome.stderr[-400:]!r}", flush=True)
     print(f"{asked.count} commands, {bad} taken badly; exit statuses {dict(sorted(statuses.items()))}")
     print(f"slowest {slowest[0]:.1f} s: {slowest[1]!a}")
     return 1 if bad else 0
