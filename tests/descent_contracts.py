@@ -5,14 +5,13 @@ from itertools import pairwise
 
 import numpy as np
 from mobius_flow.core import Curve
+from mobius_flow.core.base.tolerances import ENERGY_ROUNDING
 from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.descent import Point, SearchState, Step
 from mobius_flow.core.descent.problem import Geometry
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.proof.filter import doubtful_pairs
 from tasks import wanted
-
-ROUNDING = 1e-13  # of the energy
 
 
 def point_on(curve: Curve, **options: object) -> Point:
@@ -37,7 +36,7 @@ def assert_armijo(start: Point, step: Step, direction: FloatArray, decrease: flo
     """E(Q) ≤ E(P) + c τ DE·d."""
     slope = step.size * float(np.sum(start.derivative * direction))
     assert slope < 0
-    assert step.point.energy <= start.energy + decrease * slope + ROUNDING * abs(start.energy)
+    assert step.point.energy <= start.energy + decrease * slope + 10.0 * ENERGY_ROUNDING * abs(start.energy)
 
 
 def assert_weak_wolfe(

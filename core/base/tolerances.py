@@ -8,6 +8,21 @@ ENERGY_ROUNDING = 1e-14
 Searches accept steps that raise the energy by no more; with 0, tests/core/descent/{test_claims,test_searches}.py fail.
 """
 
+# -- descent
+
+ON_TARGET = 1e-7
+"""Relative error of lengths, or displacement of barycenters, up to which a curve counts as being on the constraints.
+
+The way back after a step leaves 1e-11: below that all is rounding.  Larger errors are corrected along with steps, as
+far as energy allows.  tests/core/descent/test_searches.py
+"""
+
+BULK = 0.1
+"""Eigenvalues of the second derivative against J_C: flat and soft directions of knots are below, all others above.
+
+tests/core/descent/test_soft_modes.py
+"""
+
 # -- collision: proofs by separating planes
 
 PLANE_ROUNDING = 32 * 2.0**-53

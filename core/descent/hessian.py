@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.tolerances import BULK
 from ..base.types import FloatArray
 from ..energies.moebius import OwnBlocks
 from ..solve.saddle import TangentSpace
@@ -21,7 +22,6 @@ from ..solve.saddle.krylov import LinearMap, conjugate_gradients
 from .problem import Point
 
 ASSEMBLED_SIZE = 3000  # unknowns up to which one assembled matrix beats products that go through all pairs
-BULK = 0.1  # against J_C: flat and soft directions of knots are below, all others above
 
 
 def energy_hessian(point: Point) -> LinearMap:

@@ -11,6 +11,7 @@ from scipy.linalg import LinAlgError, cho_factor, cho_solve, eigh, orth
 
 from ...core.base.arguments import checked
 from ...core.base.errors import CurveError
+from ...core.base.tolerances import ENERGY_ROUNDING
 from ...core.base.types import FloatArray
 from ...core.curve import Curve, check_closed
 from ...core.curve.fourier import FourierCurve
@@ -24,7 +25,8 @@ ACCURACY = 1e-6  # of the energy: how much half as many modes again may change i
 MOST = 720  # modes of all components: some gigabytes and seconds a step
 _PER_MODE = 4  # points of the trapezoidal rule
 _RESOLVED = 1e-4  # of the energy: the error up to which more modes go on where fewer ended
-_ROUNDING = 1e-13  # of energies, and of the Hessian's norm: how far they, and its eigenvalues, are known
+# of energies, and of the Hessian's norm: how far they, and its eigenvalues, are known
+_ROUNDING = 10.0 * ENERGY_ROUNDING
 
 Placed = tuple[Curve, Sequence[FloatArray]]
 """A polygon and the parameters of its components' vertices."""

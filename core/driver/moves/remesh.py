@@ -10,6 +10,7 @@ import numpy as np
 
 from ...base.errors import MobiusFlowError
 from ...base.messages import Message, joined
+from ...base.tolerances import BULK
 from ...base.types import FloatArray, IntArray
 from ...collision import Contact, survives_rounding
 from ...curve import Curve
@@ -28,7 +29,6 @@ from ...curve.refine import (
     superfluous,
 )
 from ...descent import Leg, NoStep, Point, Problem, Step
-from ...descent.hessian import BULK
 from ...descent.step import leg
 from ...descent.task import check_refined
 from ...energies import is_moebius_invariant

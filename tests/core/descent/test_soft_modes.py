@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from dense_stability import POINTS, at, dense_modes, saddle
 from mobius_flow.core import RelaxOptions, minimize
+from mobius_flow.core.base.tolerances import BULK
 from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.descent import Point
-from mobius_flow.core.descent.hessian import BULK, smooth_starts, soft_modes
+from mobius_flow.core.descent.hessian import smooth_starts, soft_modes
 from mobius_flow.core.descent.second_order import Curvature
 from mobius_flow.core.driver.moves import rest as stability_module
 from mobius_flow.core.driver.moves.rest import stability
