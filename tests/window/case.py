@@ -1,6 +1,7 @@
 """Run one case inside Blender: ``blender --python case.py -- NAME``.
 
-A case is a generator: it sends an event or looks at the state, yields, and goes on when Blender has drawn.
+A case is a journey: its parts are generators, each of which begins with Blender's own new file. A part sends an event
+or looks at the state, yields, and goes on when Blender has drawn.
 """
 
 import importlib
@@ -8,14 +9,14 @@ import os
 import sys
 import time
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import bpy
 
 _INTERVAL = 0.03
 _DIFFERENT = 300  # pixels
-_LIMIT = 300.0  # seconds for a whole case
+_LIMIT = 300.0  # seconds for a part
 
 Steps = Iterator[None]
 
@@ -23,12 +24,10 @@ Steps = Iterator[None]
 def main(name: str) -> None:
     """Start a case when the window is there."""
     _prepare()
-    steps = importlib.import_module(f"cases.{name}").case()
-    started = time.monotonic()
+    steps = journey(importlib.import_module(f"cases.{name}").PARTS)
 
     def tick() -> float | None:
         try:
-            assert time.monotonic() - started < _LIMIT, "the case takes too long"
             next(steps)
         except StopIteration:
             print("CASE PASSED", flush=True)
@@ -41,6 +40,18 @@ def main(name: str) -> None:
         return _INTERVAL
 
     bpy.app.timers.register(tick, first_interval=0.5, persistent=True)
+
+
+def journey(parts: Sequence[Callable[[], Steps]]) -> Steps:
+    """One part after the other."""
+    for part in parts:
+        print(f"PART {part.__name__}", flush=True)
+        bpy.ops.wm.read_homefile(app_template="")
+        started = time.monotonic()
+        yield
+        for _ in part():
+            assert time.monotonic() - started < _LIMIT, f"{part.__name__} takes too long"
+            yield
 
 
 def _prepare() -> None:

@@ -1,24 +1,42 @@
-"""The steps of docs/tutorial.md, by mouse clicks: from an empty scene to a film; and what else films can meet."""
+"""The steps of docs/tutorial.md, by mouse clicks: the first press, and from an empty scene to a film."""
 
 from pathlib import Path
 
 import bpy
+import numpy as np
 from case import Steps, picture, until
 from hands import addon, button, here, key, open_panels, open_sidebar, window
-from scene import clear, is_, look, obj, reaches
+from scene import clear, is_, look, obj, points, reaches, undone
 
 FOLDER = Path(bpy.app.tempdir)
+FILM = FOLDER / "film.mp4"  # beside the file
 
 
-def case() -> Steps:
+def first_press() -> Steps:
+    """A new file, Add Knot, Relax: the tangle is in view beside the default cube, falls open and ends as a circle."""
+    yield from open_sidebar()
+    yield from picture("first-press-0-new")
+    yield from button("curve.mobius_flow_add_knot")
+    yield from until(lambda: obj().type == "CURVE", "the knot")
+    yield from picture("first-press-1-added", differs_from="first-press-0-new")
+    window().scene.mobius_flow.view_every = 1
+    yield from button("curve.mobius_flow_relax")
+    yield from reaches(12)
+    yield from picture("first-press-2-falls-open", differs_from="first-press-1-added")
+    yield from is_("done")
+    yield from picture("first-press-3-circle", differs_from="first-press-2-falls-open")
+    radii = np.linalg.norm(points() - points().mean(axis=0), axis=1)
+    assert np.ptp(radii) < 1e-2 * radii.mean()
+
+
+def film() -> Steps:
+    """From an empty scene to a film, and what else films can meet."""
     open_panels("film")
-    yield from added()
-    yield from relaxed()
-    yield from staged()
-    yield from filmed()
-    yield from asked()
-    yield from taken_away()
-    yield from interrupted()
+    for step in (added, relaxed, staged, filmed, asked, taken_away, interrupted):
+        yield from step()
+
+
+PARTS = (first_press, film)
 
 
 def added() -> Steps:
@@ -59,8 +77,7 @@ def staged() -> Steps:
     """The stage is one step of undo; the camera sees the knot."""
     yield from button("curve.mobius_flow_set_up_stage")
     yield from until(stage, "the stage")
-    yield from key("Z", ctrl=True)
-    yield from until(lambda: not stage() and window().scene.camera is None, "undo")
+    yield from undone(lambda: not stage() and window().scene.camera is None, "the stage")
     yield from button("curve.mobius_flow_set_up_stage")
     yield from until(stage, "the stage again")
     window().scene.frame_set(1)
@@ -75,14 +92,14 @@ def filmed() -> Steps:
     before = scene.render.engine
     yield from button("curve.mobius_flow_render_film")
     yield from until(rendering, "the render to start")
-    assert window_scene() == scene.name
+    assert window().scene.name == scene.name
     for _ in range(12):  # until there are frames to be seen
         yield
     yield from picture("tutorial-5-rendering")
-    yield from until(lambda: film().exists() and not rendering(), "the film", 200)
+    yield from until(lambda: FILM.exists() and not rendering(), "the film", 200)
     yield from until(lambda: len(bpy.data.scenes) == 1, "the copy to be gone")
     yield from close_render()
-    assert length() == 60
+    assert addon("pictures.movie").length_of(FILM) == 60
     assert window().scene.render.engine == before
     yield from picture("tutorial-6-filmed")
 
@@ -97,7 +114,7 @@ def asked() -> Steps:
 
 def interrupted() -> Steps:
     """A file that is loaded ends the render, and the film that was there stays; simulated keys do not stop renders."""
-    made = film().read_bytes()
+    made = FILM.read_bytes()
     with here():
         bpy.ops.curve.mobius_flow_set_up_stage()
     bpy.ops.wm.save_mainfile()
@@ -109,7 +126,7 @@ def interrupted() -> Steps:
     assert not bpy.ops.curve.mobius_flow_render_film.poll()
     bpy.ops.wm.open_mainfile(filepath=bpy.data.filepath)
     yield from until(lambda: not rendering(), "the render to end")
-    assert film().read_bytes() == made
+    assert FILM.read_bytes() == made
     assert [path.name for path in FOLDER.glob("*.mp4")] == ["film.mp4"]
     assert not list(FOLDER.glob(".*.mp4"))
     assert len(bpy.data.scenes) == 1
@@ -135,21 +152,6 @@ def stage() -> object:
 def rendering() -> bool:
     """Whether Blender renders."""
     return bool(bpy.app.is_job_running("RENDER"))
-
-
-def window_scene() -> str:
-    """Name of the scene that the window shows."""
-    return str(window().scene.name)
-
-
-def film() -> Path:
-    """The film, beside the file."""
-    return FOLDER / "film.mp4"
-
-
-def length() -> int:
-    """Its number of frames."""
-    return int(addon("pictures.movie").length_of(film()))
 
 
 def close_render() -> Steps:

@@ -1,0 +1,291 @@
+"""Several objects: rings relaxed together, a mesh that is avoided, pinned ends, a container, a goal to morph into."""
+
+import os
+from contextlib import suppress
+
+import bpy
+import numpy as np
+from case import Steps, picture, until
+from hands import addon, button, core, entry, here, key, move, open_panels, open_sidebar, region, window
+from scene import (
+    add,
+    clear,
+    in_world,
+    is_,
+    keys,
+    knot,
+    latest,
+    linking_number,
+    look,
+    obj,
+    points,
+    reaches,
+    run,
+    said,
+    undone,
+)
+
+CIRCLE = np.stack([np.cos(t := 2 * np.pi * np.arange(24) / 24), np.sin(t), 0 * t], axis=1)
+FILE = os.path.join(os.environ["ROOM"], "morphed.blend")
+MODULE = "bl_ext.user_default.mobius_flow"
+LENGTH = 40  # of the way of a morph there and back
+
+
+def together() -> Steps:
+    """Two rings have the same keys and stay linked, undone in one step; with one selected the other is avoided."""
+    clear()
+    add("A", CIRCLE)
+    second = add("B", (CIRCLE[:, [0, 2, 1]] * [1, 1, 2.5] + [-3, 1, -2]) * [0.5, 2, 1])
+    second.location, second.scale = (4, -1, 2), (2, 0.5, 1)
+    with here():
+        bpy.ops.ed.undo_push(message="Rings")
+    yield from open_sidebar()
+    yield from look()
+    before, linked = [points("A"), points("B")], linking_number(in_world("A"), in_world("B"))
+    assert abs(linked) == 1
+    yield from picture("links-1-ready")
+    yield from button("curve.mobius_flow_relax")
+    yield from is_("done")
+    assert "free of contact with themselves and each other" in said()
+    assert len(keys("A")) == len(keys("B")) > 2
+    for one, other in zip(keys("A"), keys("B"), strict=True):
+        assert linking_number(in_world("A", one), in_world("B", other)) == linked
+    yield from picture("links-2-done", differs_from="links-1-ready")
+    yield from undone(lambda: not keys("A") and not keys("B"), "both")
+    assert all(np.array_equal(points(name), each) for name, each in zip("AB", before, strict=True))
+    with here():
+        obj("A").select_set(False)
+        bpy.ops.ed.undo_push(message="One selected")
+        named = addon("curves.surroundings").warning(bpy.context, [obj("B")])
+    assert named == "'A' nearby is neither selected nor avoided, and may be crossed", named
+    yield from picture("links-3-one-selected")
+    yield from button("curve.mobius_flow_avoid")
+    yield from until(lambda: window().scene.mobius_flow_surroundings.avoid is not None, "the collection")
+    yield from button("curve.mobius_flow_relax")
+    yield from is_("done")
+    assert said().endswith("free of contact with itself, and with 'A'"), said()
+    assert not keys("A")
+    assert {linking_number(in_world("A"), in_world("B", each)) for each in keys("B")} == {linked}
+    yield from picture("links-4-avoided", differs_from="links-3-one-selected")
+
+
+def around_a_mesh() -> Steps:
+    """A ring stays around a mesh that is avoided; undo gives all back; what moves is refused."""
+    open_panels("surroundings")
+    clear()
+    with here():
+        bpy.ops.mesh.primitive_torus_add(major_radius=1, minor_radius=0.25)
+        obj("Torus").select_set(False)
+        add("Ring", CIRCLE[:, [0, 2, 1]] * [1, 1, 4] + [1, 0, 0], bevel=0.04)  # it would slip off if nothing were there
+        bpy.ops.ed.undo_push(message="Ring and torus")
+    before, settings = points("Ring"), window().scene.mobius_flow_surroundings
+    yield from open_sidebar()
+    yield from all_in_view()
+    yield from picture("avoid-1-may-be-crossed")
+    yield from button("curve.mobius_flow_avoid")
+    yield from until(lambda: settings.avoid is not None, "the collection")
+    assert [each.name for each in settings.avoid.objects] == ["Torus"]
+    yield from button("curve.mobius_flow_relax")
+    yield from is_("done")
+    assert said().endswith("free of contact with itself, and with 'Torus'"), said()
+    assert len(keys("Ring")) > 5
+    assert {abs(linking_number(CIRCLE, each.astype(float))) for each in keys("Ring")} == {1}, "its middle is the circle"
+    yield from all_in_view()
+    yield from picture("avoid-2-relaxed", differs_from="avoid-1-may-be-crossed")
+    yield from undone(lambda: not keys("Ring"), "Relax")
+    assert np.array_equal(points("Ring"), before)
+    assert window().scene.mobius_flow_surroundings.avoid is not None
+
+    with here():
+        obj("Torus").keyframe_insert("location", frame=1)
+        bpy.ops.ed.undo_push(message="Key")
+    yield from picture("avoid-3-moves")
+    with here(), suppress(RuntimeError):
+        assert bpy.ops.curve.mobius_flow_relax("INVOKE_DEFAULT") == {"CANCELLED"}
+    assert run() is None
+
+
+def all_in_view() -> Steps:
+    with here():
+        bpy.ops.view3d.view_all()
+    yield
+
+
+def pinned_ends() -> Steps:
+    """An overhand arc, pinned in Edit Mode and relaxed by clicks: its ends stay, and its knot stays on."""
+    open_panels("surroundings")
+    clear()
+    add("Arc", core("knots").overhand(100).vertices, cyclic=False)
+    with here():
+        bpy.ops.curve.mobius_flow_fit_tube()
+        bpy.ops.ed.undo_push(message="Arc added")
+    arc = points()[:, :3]
+    window().scene.mobius_flow.length = 100
+    window().scene.mobius_flow_panel.quality = "PREVIEW"
+    yield from open_sidebar()
+    yield from look_down()
+    yield from picture("pins-1-arc")
+    yield from key("TAB")
+    yield from until(lambda: bpy.context.mode == "EDIT_CURVE", "Edit Mode")
+    for k, point in enumerate(obj().data.splines[0].points):
+        point.select = k in (0, len(arc) - 1)
+    with here():
+        bpy.ops.ed.undo_push(message="Selected")
+    yield from button("curve.mobius_flow_pin")
+    yield from until(lambda: pinned() == 2, "the ends to be pinned")
+    yield from picture("pins-2-pinned", differs_from="pins-1-arc")
+    yield from undone(lambda: pinned() == 0, "Pin")
+    assert bpy.context.mode == "EDIT_CURVE"
+    yield from key("Z", ctrl=True, shift=True)
+    yield from until(lambda: pinned() == 2, "redo")
+    yield from key("TAB")
+    yield from until(lambda: bpy.context.mode == "OBJECT", "Object Mode")
+    yield from button("curve.mobius_flow_relax")
+    yield from is_("done")
+    assert pinned() == 2
+    for frame in addon("curves.recorded").keyed_points(obj().data):
+        np.testing.assert_array_equal(frame[[0, -1]], arc[[0, -1]])
+    assert not obj().data.splines[0].use_cyclic_u
+    yield from look_down()
+    yield from picture("pins-3-relaxed", differs_from="pins-2-pinned")
+    yield from button("curve.mobius_flow_unpin")
+    yield from until(lambda: pinned() == 0, "the ends to be let go")
+
+
+def look_down() -> Steps:
+    """Look at the arc from above, and leave room for the sidebar."""
+    with here():
+        bpy.ops.view3d.view_axis(type="TOP")
+        bpy.ops.view3d.view_selected()
+        for _ in range(2):
+            bpy.ops.view3d.zoom(delta=-1)
+    yield
+
+
+def pinned() -> int:
+    return int(addon("curves.pins").count(obj().data))
+
+
+def packed() -> Steps:
+    """The knot grows inside its container until it is kept, and its tube is as thick as there is room."""
+    open_panels("surroundings")
+    clear()
+    knot("3_1", 0)
+    trefoil = obj()
+    with here():
+        bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=3, radius=1.6, location=trefoil.location)
+        bpy.context.object.display_type = "WIRE"
+        bpy.context.object.select_set(False)
+        window().scene.mobius_flow_surroundings.container = bpy.context.object
+        window().view_layer.objects.active = trefoil
+        trefoil.select_set(True)
+    window().scene.mobius_flow.view_every = 1
+    yield from open_sidebar()
+    yield from look()
+    before, depth = length(), obj().data.bevel_depth
+    yield from picture("pack-1-ready")
+    yield from button("curve.mobius_flow_pack")
+    yield from reaches(25)
+    yield from picture("pack-2-grows", differs_from="pack-1-ready")
+    assert length() > 1.3 * before
+    assert obj().data.bevel_depth != depth, "the tube follows"
+    yield from button("curve.mobius_flow_stop")
+    yield from is_("done")
+    yield from picture("pack-3-kept", differs_from="pack-1-ready")
+    assert latest().report.certified
+    assert latest().report.avoided == ("Icosphere",)
+
+
+def length() -> float:
+    there = points().astype(float)
+    return float(np.linalg.norm(np.roll(there, -1, axis=0) - there, axis=1).sum())
+
+
+def morphed() -> Steps:
+    """Shape and colors change along the keys and back, also where the extension is not."""
+    clear()
+    settings = window().scene.mobius_flow
+    settings.vertices, settings.tolerance, settings.untangle = 100, 1e-3, "never"
+    settings.loop, settings.length = True, LENGTH
+    window().scene.eevee.taa_samples = 1  # materials are drawn by the processor here
+    woven, smooth = core("knots").knot("3_1", 60).vertices, core("knots").smooth_knot("3_1", 50).vertices
+    coloured("Moving", woven, (0.75, 0.03, 0.02))
+    goal = coloured("There", 0.4 * smooth, (0.02, 0.1, 0.7))
+    goal.parent = holder = bpy.data.objects.new("Holder", None)
+    window().scene.collection.objects.link(holder)
+    holder.location, holder.rotation_euler, holder.scale = (5.0, 1.0, 0.0), (0.5, 0.2, 1.0), (1.5, 1.5, 1.5)
+    with here():
+        bpy.ops.view3d.view_all()
+        bpy.ops.ed.undo_push(message="Curves")
+    yield from open_sidebar()
+    ends = {1: in_world("Moving"), 1 + LENGTH // 2: in_world("There")}
+    for again in (False, True):
+        yield from chosen()
+        yield from is_("done")
+        if not again:
+            window().scene.frame_set(1)
+            yield from undone(lambda: not keys("Moving"), "the morph")
+            assert [each.name for each in obj("Moving").data.materials] == ["Moving"]
+    assert latest().report.certified, latest().report.sentence
+    assert latest().report.scene_range == (1, LENGTH), latest().report.scene_range
+    for frame, wanted in ends.items():
+        window().scene.frame_set(frame)
+        there = in_world("Moving", keys("Moving")[round(obj("Moving").data.shape_keys.eval_time)])
+        near = np.linalg.norm(there[:, None] - wanted, axis=2).min(axis=0)
+        assert near.max() < 1e-5, (frame, near.max())
+    yield from colours("morph-2")
+    with here():
+        bpy.ops.wm.save_as_mainfile(filepath=FILE, copy=True)
+    bpy.ops.preferences.addon_disable(module=MODULE)
+    with here():
+        bpy.ops.wm.open_mainfile(filepath=FILE, load_ui=False)
+    yield
+    yield from colours("morph-3-elsewhere")
+    bpy.ops.preferences.addon_enable(module=MODULE)
+
+
+def colours(name: str) -> Steps:
+    """In Solid shading and in that of materials the shape changes, and the color where the goal is reached."""
+    with here():
+        bpy.ops.object.select_all(action="DESELECT")
+    space = next(area for area in window().screen.areas if area.type == "VIEW_3D").spaces.active
+    for kind in ("SOLID", "MATERIAL"):
+        space.shading.type, before = kind, ""
+        for frame in (1, 1 + LENGTH // 4, 1 + LENGTH // 2):
+            window().scene.frame_set(frame)
+            for _ in range(5 if before else 40):  # shaders are compiled at first
+                yield
+            yield from picture(f"{name}-{kind.lower()}-{frame}", differs_from=before)
+            before = f"{name}-{kind.lower()}-{frame}"
+    space.shading.type = "SOLID"
+
+
+def coloured(name: str, vertices: np.ndarray, tint: tuple[float, float, float]) -> bpy.types.Object:
+    """A tube of one color."""
+    made, material = add(name, vertices, bevel=0.06), bpy.data.materials.new(name)
+    if material.node_tree is None:
+        material.use_nodes = True
+    material.diffuse_color = (*tint, 1.0)
+    material.node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value = (*tint, 1.0)
+    made.data.materials.append(material)
+    return made
+
+
+def chosen() -> Steps:
+    """Select the one that moves and its goal, and choose the menu's entry."""
+    last, main = latest(), region("WINDOW")
+    with here():
+        bpy.ops.object.select_all(action="DESELECT")
+        for name in ("Moving", "There"):
+            obj(name).select_set(True)
+            window().view_layer.objects.active = obj(name)
+    yield from move(main.x + 200, main.y + main.height - 40)
+    with here():
+        bpy.ops.wm.call_menu(name="VIEW3D_MT_mobius_flow")
+    yield
+    yield from picture("morph-0-menu")
+    yield from entry("mobius_flow_morph", main.x + 240, range(main.y + main.height - 10, main.y + 10, -8))
+    yield from until(lambda: latest() is not last, "the run")
+
+
+PARTS = (together, around_a_mesh, pinned_ends, packed, morphed)
