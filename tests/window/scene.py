@@ -126,7 +126,7 @@ def reaches(index: int) -> Steps:
 
 def is_(wanted: str) -> Steps:
     """Wait until the run is in a state."""
-    yield from until(lambda: state() == wanted, f"the run to be {wanted}, not {state()}")
+    yield from until(lambda: state() == wanted, f"the run to be {wanted}, not {state()}", 200)
 
 
 def undone(condition: Any, what: str) -> Steps:

@@ -11,7 +11,7 @@ SIXTEEN += ["7_7", "8_5", "8_18", "8_19", "L2a1", "L4a1", "L5a1", "L6a4"]
 
 
 def found() -> Steps:
-    """By "mobius" and by "relax": in Operator Search, in the Object menu, and among extensions."""
+    """By "mobius", "relax" and "untangle" in Operator Search, in the Object menu, and among extensions."""
     yield from ready()
     yield from picture("found-0-before")
     for words in ("mobius", "relax"):
@@ -19,12 +19,11 @@ def found() -> Steps:
         yield from picture(f"found-1-{words}", differs_from="found-0-before")
         yield from key("ESC")
         yield from key("ESC")
-    for words in ("mobius", "relax"):
-        yield from searched(words)
-        yield from key("RETURN")  # what is listed first
-        yield from is_("running")
-        yield from key("ESC")
-        yield from is_("cancelled")
+    yield from searched("untangle")
+    yield from key("RETURN")  # what is listed first
+    yield from is_("running")
+    yield from key("ESC")
+    yield from is_("cancelled")
     with here():
         bpy.ops.wm.call_menu(name="VIEW3D_MT_mobius_flow")
     yield from picture("found-2-menu", differs_from="found-0-before")
