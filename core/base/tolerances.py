@@ -10,13 +10,6 @@ Searches accept steps that raise the energy by no more; with 0, tests/core/desce
 
 # -- descent
 
-ON_TARGET = 1e-7
-"""Relative error of lengths, or displacement of barycenters, up to which a curve counts as being on the constraints.
-
-The way back after a step leaves 1e-11: below that all is rounding.  Larger errors are corrected along with steps, as
-far as energy allows.  tests/core/descent/test_searches.py
-"""
-
 BULK = 0.1
 """Eigenvalues of the second derivative against J_C: flat and soft directions of knots are below, all others above.
 

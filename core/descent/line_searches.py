@@ -7,7 +7,7 @@ from typing import ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
-from ..base.tolerances import ENERGY_ROUNDING, ON_TARGET
+from ..base.tolerances import ENERGY_ROUNDING
 from ..base.types import FloatArray
 from ..collision import Contact
 from ..energies.components import energy_scale
@@ -45,7 +45,7 @@ class FirstTrial:
 
 def on_target(point: Point) -> bool:
     """Whether a point is on the constraints, or on its way there no more."""
-    return point.infeasibility <= ON_TARGET
+    return point.infeasibility <= 1e-7  # error below which a curve counts as being on the constraints
 
 
 class NormalStep(NamedTuple):

@@ -126,12 +126,3 @@ def test_steps_grow_by_a_bounded_factor() -> None:
     point = start()
     step, _ = taken(LineSearch(SteepestDescent(), Armijo()).step(point, SearchState(None, 1e-5)))
     assert step.size <= 4e-5
-
-
-@pytest.mark.parametrize("error", [1e-8, 1e-5])
-def test_lengths_go_to_their_targets_unless_they_are_there_already(error: float) -> None:
-    point = start()
-    stretched = point.problem.at((1.0 + error) * point.vertices)
-    step = Armijo().along(stretched, -stretched.gradient, np.inf, np.inf)
-    assert isinstance(step, Step)
-    assert (step.point.infeasibility < 1e-10) == (error > 1e-7)
