@@ -387,6 +387,9 @@ class Archive(zipfile.ZipFile):
 
     def __init__(self, path: Path) -> None:
         with self._damage():
+            with open(path, "rb") as stream:
+                if stream.read(23) == b"version https://git-lfs":
+                    raise TrajectoryError("the file is a pointer of Git LFS, not the trajectory: run git lfs pull")
             super().__init__(path)
             self.names = self.namelist()
             # bytes that the arrays of any file may have together, and times its size that others may

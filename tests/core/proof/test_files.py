@@ -103,6 +103,8 @@ def test_what_is_no_file_of_arrays(tmp_path: Path) -> None:
     (tmp_path / "text.npz").write_text(json.dumps({"stage_000": []}))
     for path in (tmp_path, tmp_path / "none", tmp_path / "text.npz", "a\0b", ""):
         assert "cannot be read" in verify(path).reason
+    (tmp_path / "pointer.npz").write_text("version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n")
+    assert "git lfs pull" in verify(tmp_path / "pointer.npz").reason
     assert "numbered" in verify(archive(tmp_path / "empty.npz", {})).reason
 
 
