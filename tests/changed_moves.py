@@ -4,7 +4,7 @@ from functools import partial
 
 import pytest
 from mobius_flow.core.driver import moves
-from mobius_flow.core.driver.run import Move
+from mobius_flow.core.driver.move import Move
 
 
 def change(monkeypatch: pytest.MonkeyPatch, kind: type[Move], **settings: object) -> None:

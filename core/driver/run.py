@@ -1,9 +1,9 @@
-"""One relaxation in progress: its state, the moves that may act between its steps, and its loop."""
+"""One relaxation in progress: its state, when it stops, and its loop over steps and moves."""
 
 from collections import deque
-from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar
+from collections.abc import Callable, Generator, Iterator, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,11 +11,12 @@ from ..base.messages import Message
 from ..base.types import FloatArray
 from ..curve import Curve, Mesh, at_edges
 from ..curve.refine import Resolution
-from ..descent import METHODS, Method, NoStep, Point, Problem, SearchState, Step
+from ..descent import METHODS, NoStep, Point, Problem, SearchState, Step
 from ..descent.line_searches import LineSearch
 from ..energies.components import energy_scale
 from ..energies.hierarchy import SampledErrors
 from ..io.trajectory import Iterate, StrandMoves
+from .move import Change, Event, Move, Start
 from .options import RelaxOptions
 from .outcome import Outcome, Rises, Status, converged, degenerate, stalled
 from .prepare import Symmetrised
@@ -26,25 +27,6 @@ if TYPE_CHECKING:
 HEADWAY, LOOKING_BACK = 0.01, 100  # part of the energy that goes in so many iterations as long as the flow gets ahead
 
 Relaxation = Generator[Iterate, None, Outcome]
-
-
-class Start:
-    """Nothing has happened yet on this mesh."""
-
-
-Event = Start | Step | NoStep | Outcome
-
-
-@dataclass(frozen=True, eq=False)
-class Change:
-    """What a move proposes: proved steps, if any, and then another view of the curve they lead to."""
-
-    steps: tuple[Step, ...] = ()  # motions that come first
-    point: Point | None = None  # the curve reached, in another problem: with other constraints, or on another mesh
-    method: Method | None = None  # the method that takes over
-    resolution: Resolution | None = None  # new bounds of edge lengths
-    iterates: Iterable[Iterate] = ()  # motions that change the run themselves as they go on
-    anew: bool = False  # whether the run goes on from there as from a start
 
 
 class Run:
@@ -235,56 +217,6 @@ class Run:
 def gradient_bound(options: RelaxOptions, mesh: Mesh, energy: float) -> float:
     """Norm of the projected gradient at which a curve of this energy is at rest."""
     return options.tolerance * float(np.sqrt(energy_scale(mesh, energy)))
-
-
-@dataclass(eq=False)
-class Move:
-    """What may act on a run between steps: made for one run, it is called after every event.
-
-    A subclass overrides the methods for the events that concern it, or ``__call__`` for all at once.  Each returns the
-    event as later moves are to see it, or a change, after which these are not asked, or None, which leaves the
-    event as it is.  Settings are fields.  Where the run goes on as from a start moves are made again, unless they last.
-    """
-
-    run: Run
-    lasts: ClassVar[bool] = False
-
-    def __call__(self, event: Event) -> Event | Change:
-        answer: Event | Change | None
-        match event:
-            case Start():
-                answer = self.started()
-            case Step():
-                answer = self.stepped(event)
-            case NoStep():
-                answer = self.stuck(event)
-            case Outcome():
-                answer = self.ended(event)
-        return event if answer is None else answer
-
-    def started(self) -> Event | Change | None:
-        """At the start, and after every change of mesh."""
-        return None
-
-    def stepped(self, step: Step) -> Event | Change | None:
-        """After a step of the method."""
-        return None
-
-    def stuck(self, found: NoStep) -> Event | Change | None:
-        """Where the method finds no step."""
-        return None
-
-    def ended(self, outcome: Outcome) -> Event | Change | None:
-        """Where the run would end."""
-        return self.converged(outcome) if outcome.converged else None
-
-    def converged(self, outcome: Outcome) -> Event | Change | None:
-        """Where it would end at rest."""
-        return None
-
-    def summarised(self, outcome: Outcome) -> Outcome:
-        """The outcome of the whole run with clauses about what the move did."""
-        return outcome
 
 
 def iterates(run: Run, moves: Sequence[Callable[[Run], Move]]) -> Relaxation:

@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 from ...collision.motion import walk
 from ...descent import Leg, Step
 from ...descent.step import leg
-from ..run import Change, Move
+from ..move import Change, Move
 
 
 @dataclass(eq=False)

@@ -2,7 +2,8 @@
 
 from collections.abc import Callable, Sequence
 
-from ..run import Move, Run
+from ..move import Move
+from ..run import Run
 from .balance import Balance
 from .grow import Grow
 from .hand import AwaitHand, Hold

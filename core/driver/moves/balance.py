@@ -25,8 +25,8 @@ from ...curve.refine import arc_lengths, cubic_spline, sample_parameters
 from ...descent import Leg, Point, Problem, Step
 from ...descent.step import leg
 from ...solve.constraints import weighted_barycenter
+from ..move import Change, Move
 from ..outcome import Outcome, Status
-from ..run import Change, Move
 
 CUT_OFF = "the Möbius image of least bending has not converged yet"
 IS_BALANCED = "no other shape of the same energy that can be reached bends less"

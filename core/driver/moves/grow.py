@@ -14,8 +14,8 @@ from ...descent.step import attempt, leg
 from ...descent.task import Units
 from ...energies.components import energy_scale
 from ...solve.constraints import weighted_barycenter
+from ..move import Change, Event, Move
 from ..outcome import Outcome
-from ..run import Change, Event, Move
 from .remesh import FinerMesh, split_edges
 
 

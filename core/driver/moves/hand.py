@@ -18,8 +18,9 @@ from ...energies.components import energy_scale
 from ...energies.pull import Pull
 from ...io.trajectory import Iterate
 from ...solve.constraints import Barycenters
+from ..move import Change, Event, Move
 from ..outcome import Outcome
-from ..run import Change, Event, Move, Run
+from ..run import Run
 
 
 class Hand:

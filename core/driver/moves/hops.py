@@ -19,8 +19,9 @@ from ...descent.step import attempt
 from ...energies.components import energy_scale
 from ...knots import knot_type
 from ...knots.diagrams import quick_invariants
+from ..move import Change, Move
 from ..outcome import Outcome
-from ..run import Change, Move, Run, iterates
+from ..run import Run, iterates
 from .links import SplitLinks
 from .rest import CheckAccuracy, Fallback
 

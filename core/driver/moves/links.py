@@ -22,8 +22,9 @@ from ...energies.hierarchy import moebius_energy
 from ...knots import Effort, knot_type
 from ...knots.composite import Ball, is_searchable, knotted_ball
 from ...solve.constraints import Barycenters, Parts
+from ..move import Change, Move
 from ..outcome import Outcome
-from ..run import Change, Move, Run
+from ..run import Run
 
 UNTESTED = "whether the link is composite was not tested, as there are too many ways to divide it"
 DIRECTIONS = np.array([[3, 1, 2], [-2, 3, 1], [1, -2, 3], [-3, -1, 2], [2, -3, -1]]) / np.sqrt(14)

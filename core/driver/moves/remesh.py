@@ -33,9 +33,9 @@ from ...descent.step import leg
 from ...descent.task import check_refined
 from ...energies import is_moebius_invariant
 from ...energies.components import energy_scale
+from ..move import Change, Move
 from ..outcome import Outcome
 from ..prepare import equal_lengths, target_lengths
-from ..run import Change, Move
 from .links import is_unresolved, shrinking_ball
 
 

@@ -22,8 +22,8 @@ from ...energies.components import energy_scale
 from ...energies.hierarchy import HierarchicalMoebiusEnergy, SampledErrors
 from ...solve.metrics import MoebiusMetric
 from ...solve.saddle.indefinite import FactorisedHessian
+from ..move import Change, Event, Move
 from ..outcome import Outcome
-from ..run import Change, Event, Move
 from .links import is_unresolved
 
 MINIMUM = "a minimum"

@@ -22,9 +22,10 @@ from ...descent.task import check_refined
 from ...io.trajectory import Iterate, StrandMoves
 from ...knots.diagrams import QuickInvariants, quick_invariants
 from ...untangle import Stage, untangled, worth
+from ..move import Change, Move
 from ..outcome import Outcome
 from ..prepare import target_lengths
-from ..run import HEADWAY, Change, Move, Run
+from ..run import HEADWAY, Run
 from .links import shrinking_ball
 
 # directions to the points, ten lengths of the curve from its middle, where ends are joined

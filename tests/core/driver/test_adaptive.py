@@ -18,8 +18,9 @@ from mobius_flow.core.curve.refine import (
     remesh,
     superfluous,
 )
+from mobius_flow.core.driver.move import Change
 from mobius_flow.core.driver.prepare import start_problem
-from mobius_flow.core.driver.run import Change, Run
+from mobius_flow.core.driver.run import Run
 from mobius_flow.core.energies.barrier import near_pairs
 from mobius_flow.core.knots import knot
 from shapes import hopf_link, lattice_knot, regular_polygon, torus_trefoil

@@ -8,9 +8,10 @@ from mobius_flow.core import METHODS, RelaxOptions, Status, minimize
 from mobius_flow.core.curve import refine
 from mobius_flow.core.descent import NoStep
 from mobius_flow.core.driver import run as run_module
+from mobius_flow.core.driver.move import Change
 from mobius_flow.core.driver.moves import Fallback
 from mobius_flow.core.driver.prepare import start_problem
-from mobius_flow.core.driver.run import Change, Run
+from mobius_flow.core.driver.run import Run
 from mobius_flow.core.knots import knot
 
 STUCK = NoStep("it never does")
