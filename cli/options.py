@@ -22,6 +22,7 @@ COMMON = "relaxation"
 GROUPS = {  # of options, by the title that the help gives them
     COMMON: ("vertices", "max_iterations", "time_limit", "tolerance", "method", "untangle"),
     "what is minimised": ("energy", "barrier", "terms", "penalty", "accuracy", "solver"),
+    "a rope": ("radius",),
     "gradients": ("metric", "quadrature_points"),
     "mesh and lengths": ("mesh", "edge_lengths", "grow"),
     "at rest, and beyond": ("balance", "stability", "escape_saddles", "hops", "seed", "symmetry"),
@@ -58,7 +59,9 @@ def from_arguments(arguments: argparse.Namespace) -> RelaxOptions:
         if option.name in arguments.offered:
             value = getattr(arguments, option.name)
             words = (item for word in value for item in option.read(word)) if option.repeated else ()
-            wanted[option.name] = tuple(words) if option.repeated else value
+            wanted[option.name] = (
+                tuple(words) if option.repeated else option.read(value) if isinstance(value, str) else value
+            )
     return RelaxOptions(**wanted)
 
 
@@ -67,7 +70,8 @@ def flags(values: Mapping[str, object]) -> list[str]:
     words: list[str] = []
     for option in declared(RelaxOptions):
         if value := values.get(option.name):
-            words += [flag(option)] if option.kind is bool else [flag(option), str(value)]
+            text = ",".join(map(str, value)) if isinstance(value, list | tuple) else str(value)
+            words += [flag(option)] if option.kind is bool else [flag(option), text]
     return words
 
 

@@ -10,6 +10,7 @@ from ..base.tolerances import MIN_GAP
 from ..base.types import BoolArray, FloatArray, IntArray
 from ..curve import Curve, Mesh
 from ..curve.distances import arc_distance_of_points
+from ..curve.measures import bending_radii
 from .boxes import BoxTree, Level, corners
 from .planes import closest_chord, relative_motion
 
@@ -87,15 +88,6 @@ def thickness(curve: Curve) -> float:
         squares = squares[arc_distance_of_points(curve, i, s, j, t) >= np.pi * bend]
         best = min(best, float(squares.min(initial=np.inf)))
     return min(bend, 0.5 * float(np.ldexp(np.sqrt(best), unit)))
-
-
-def bending_radii(curve: Curve) -> FloatArray:
-    """At each vertex the radius of the circle that touches both edges, the shorter one at its middle; shape (n,)."""
-    ell, tau = curve.edge_lengths, curve.edge_vectors / curve.edge_lengths[:, None]
-    before = curve.mesh.previous
-    sine, cosine = np.linalg.norm(tau - tau[before], axis=1), np.linalg.norm(tau + tau[before], axis=1)
-    with np.errstate(divide="ignore"):
-        return np.asarray(0.5 * np.minimum(ell, ell[before]) * cosine / sine)  # ½ min(ℓ, ℓ') / tan(θ/2)
 
 
 def scaled_points(curve: Curve) -> tuple[FloatArray, int]:

@@ -14,27 +14,38 @@ _TINY = np.finfo(np.float64).tiny
 _PARALLEL = 1e-14  # sin² of the angle below which a cross product is mostly rounding
 
 
-def march(start: FloatArray, end: FloatArray, vertices: IntArray, reached: FloatArray, limit: float) -> FloatArray:
+def march(
+    start: FloatArray,
+    end: FloatArray,
+    vertices: IntArray,
+    reached: FloatArray,
+    limit: float,
+    distance: FloatArray | None = None,
+) -> FloatArray:
     """Prove each pair free of contact from plane to plane, for as long as planes make good progress.
 
     ``start`` and ``end`` are the vertices of the leg, shape (m, n), entries of at most 1 in size, ``vertices`` those of
     the pairs, x₀, x₁, y₀, y₁ and y₂ of triangles, shape (4 or 5, pairs).  Pairs are known to be free up to the times
-    ``reached``, shape (pairs,); the new times are at least ``limit`` where nothing stands in the way.
+    ``reached``, shape (pairs,); the new times are at least ``limit`` where nothing stands in the way.  With a
+    ``distance``, shape (pairs,), they are proved further apart than that; no exact decision follows on these.
     """
     reached = reached.copy()
     active = np.flatnonzero(reached < limit)
     motion = relative_motion(start, end, vertices[:, active])
     size = np.abs(motion).sum(axis=1)
     t = reached[active]
-    for k in range(20):
-        if 3 * active.size <= k:  # so few pairs are not worth another round: the exact decision is as quick
+    # so few pairs are not worth another round where the exact decision is as quick
+    rounds, worth, least = (20, 3, 0.01) if distance is None else (40, 40, 1e-4)
+    width = np.zeros(len(reached)) if distance is None else distance
+    for k in range(rounds):
+        if worth * active.size <= k:
             break
-        planes = Separation(motion, size, closest_chord(at_time(motion, t)))
+        planes = Separation(motion, size, closest_chord(at_time(motion, t)), width[active])
         further = np.minimum(t + (1 - 2.0**-6) * planes.time_left(t), 1.0)  # there still apart, for the next plane
         moved = planes.proves(t) & planes.proves(further)
         further = np.where(moved, further, t)
         reached[active] = further
-        go_on = moved & (further < limit) & (further - t > 0.01 * further)  # else the exact decision is as quick
+        go_on = moved & (further < limit) & (further - t > least * further)
         active, motion, size, t = active[go_on], motion[..., go_on], size[..., go_on], further[go_on]
     return reached
 
@@ -60,12 +71,16 @@ class Separation:
     """The linear functions ⟨n, x_i − y_j⟩ of each pair for fixed directions, lowered by their rounding errors.
 
     ``motion`` is as `relative_motion` gives it, ``size`` the sum of its vectors' absolute values at both times, shape
-    (2, m, pairs), ``direction`` n, shape (m, pairs).
+    (2, m, pairs), ``direction`` n, shape (m, pairs).  With a distance, functions are lowered by it times |n|, too.
     """
 
-    def __init__(self, motion: FloatArray, size: FloatArray, direction: FloatArray) -> None:
+    def __init__(
+        self, motion: FloatArray, size: FloatArray, direction: FloatArray, distance: FloatArray | float = 0.0
+    ) -> None:
         D, e, *spans = np.einsum("tkmp,mp->ktp", motion, direction)
-        D = D - (PLANE_ROUNDING * np.einsum("tmp,mp->tp", size, np.abs(direction)) + PLANE_UNDERFLOW)
+        width = distance * np.sqrt(np.einsum("mp,mp->p", direction, direction))
+        error = PLANE_ROUNDING * (np.einsum("tmp,mp->tp", size, np.abs(direction)) + width)
+        D = D - (width + error + PLANE_UNDERFLOW)
         ends = (D, D + e)
         self.values = np.stack([*ends, *(x - y for y in spans for x in ends)], axis=1)  # (2, 4 or 6, pairs)
 

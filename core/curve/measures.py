@@ -74,3 +74,17 @@ def writhe_and_crossings(curve: Curve) -> tuple[float, float]:
 
 def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
     return np.asarray(np.einsum("ijk,ijk->ij", a, b))
+
+
+def half_turns(curve: Curve) -> FloatArray:
+    """Half the angle by which the curve turns at each vertex, 0 at the ends of arcs; shape (n,)."""
+    tau, mesh = curve.edge_vectors / curve.edge_lengths[:, None], curve.mesh
+    before, after = tau[mesh.incoming], tau[mesh.outgoing]
+    return np.asarray(np.arctan2(np.linalg.norm(after - before, axis=1), np.linalg.norm(after + before, axis=1)))
+
+
+def bending_radii(curve: Curve) -> FloatArray:
+    """At each vertex the radius of the circle that touches both edges, the shorter one at its middle; shape (n,)."""
+    ell, mesh = curve.edge_lengths, curve.mesh
+    with np.errstate(divide="ignore"):
+        return np.asarray(0.5 * np.minimum(ell[mesh.incoming], ell[mesh.outgoing]) / np.tan(half_turns(curve)))

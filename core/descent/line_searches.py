@@ -15,7 +15,7 @@ from ..solve.metrics import Metric
 from ..solve.saddle import TangentSpace
 from .directions import Direction
 from .problem import Point
-from .step import Leg, NoStep, Rejected, SearchState, Step, attempt, leg
+from .step import Leg, NoStep, Rejected, SearchState, Step, attempt
 
 NOTHING = 1e-15  # displacement, in the program's units, that changes no coordinate
 
@@ -37,7 +37,9 @@ class FirstTrial:
         if speed == 0.0:
             return 0.0, None
         tau = min(longest, self.max_displacement / speed)
-        free = leg(point, point.problem.at(point.vertices + tau * direction)).proof
+        end = point.problem.at(point.vertices + tau * direction)
+        # a rope has a barrier that shortens steps; only what is in the way of its centre line matters so far
+        free = point.problem.free_motion(point.placed, end.placed, as_rope=False)
         if free.time < 1.0:
             tau *= self.collision_fraction * free.time
         return tau, free.contact

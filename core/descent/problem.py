@@ -11,13 +11,14 @@ import numpy as np
 from ..base.deadline import check_time
 from ..base.errors import OptionError
 from ..base.types import FloatArray
-from ..collision import FreeMotion, Limit, free_motion
+from ..collision import FreeMotion, Limit, free_motion, rope_motion
 from ..curve import Curve, Mesh
 from ..curve.obstacle import Obstacle
 from ..curve.pins import Pins
 from ..curve.symmetry import NO_SYMMETRY, Symmetry
 from ..energies import Objective
 from ..energies.pull import Pull
+from ..energies.rope import Rope
 from ..solve.constraints import Block, Constraints
 from ..solve.metrics import InnerProduct, Metric, SparseInnerProduct
 from ..solve.saddle import TangentSpace
@@ -79,6 +80,7 @@ class Problem:
     geometry: "Geometry"  # whether the targets are prescribed, or missing them costs energy
     solver: PairSums  # where objective and metric come from, on this mesh and on others
     obstacles: tuple[Obstacle, ...] = ()  # what no motion may touch, in the user's units
+    radius: FloatArray | None = None  # of each component as a rope, in the user's units, if it is one
 
     @classmethod
     def of(
@@ -91,6 +93,7 @@ class Problem:
         geometry: "Geometry",
         blocks: Sequence[Block] | None = None,
         symmetry: Symmetry = NO_SYMMETRY,
+        radius: FloatArray | None = None,
     ) -> "Problem":
         """The problem from a curve on, in the user's units; a CurveError if curve or obstacles are too large for it."""
         units, solver = Units.of(curve), solver.on(curve)
@@ -99,7 +102,8 @@ class Problem:
         own = curve.with_vertices(units.from_user(curve.vertices))
         constraints = replace(Constraints.of(own, pins, blocks), lengths=lengths / units.scale, symmetry=symmetry)
         objective = solver.objective(map(units.obstacle_from_user, obstacles))
-        return cls(curve.mesh, objective, solver.metric, constraints, units, geometry, solver, obstacles)
+        problem = cls(curve.mesh, objective, solver.metric, constraints, units, geometry, solver, obstacles)
+        return problem if radius is None else problem.as_rope(radius)
 
     def on(self, curve: Curve, lengths: FloatArray | None = None, symmetry: Symmetry | None = None) -> "Point":
         """The point of a curve on another mesh, in the same problem there; all in the user's units.
@@ -111,9 +115,15 @@ class Problem:
         symmetry = self.constraints.symmetry.on(curve) if symmetry is None else symmetry
         pins, held = self.constraints.pins.on(curve), self.constraints
         lengths = curve.edge_lengths if lengths is None else lengths
-        problem = Problem.of(curve, lengths, pins, self.obstacles, self.solver, self.geometry, held.blocks, symmetry)
+        given = pins, self.obstacles, self.solver, self.geometry, held.blocks, symmetry
+        problem = Problem.of(curve, lengths, *given, radius=self.radius)
         constraints = replace(problem.constraints, grown=held.grown)
         return replace(problem, constraints=constraints).at_curve(curve)
+
+    def as_rope(self, radius: FloatArray | None) -> "Problem":
+        """The same for a rope of other radii, shape (components,) in the user's units, or for no rope."""
+        rope = None if radius is None else Rope(radius / self.units.scale)
+        return replace(self, radius=radius, objective=self.objective.having(Rope, rope))
 
     def inner_product(self, curve: Curve) -> InnerProduct:
         """The metric, and the stiffness of terms it misses: without, steps near obstacles would be very short."""
@@ -155,12 +165,14 @@ class Problem:
         """Whether contact is tested: in R² and R³; in more dimensions nothing is knotted."""
         return len(self.units.offset) <= 3
 
-    def free_motion(self, start: FloatArray, end: FloatArray) -> FreeMotion:
-        """How far a straight motion in the user's units, both (n, m), is proved free of contact."""
+    def free_motion(self, start: FloatArray, end: FloatArray, *, as_rope: bool = True) -> FreeMotion:
+        """How far a straight motion in the user's units, both (n, m), is proved free of contact, and that of a rope."""
         check_time()
         if not self.certifiable:
             return FreeMotion(1.0, None, Limit.UNTESTED)
-        return free_motion(self.mesh, start, end, self.obstacles)
+        if self.radius is None or not as_rope:
+            return free_motion(self.mesh, start, end, self.obstacles)
+        return rope_motion(self.mesh, start, end, self.radius, self.obstacles)
 
 
 @dataclass(eq=False, repr=False)
@@ -190,7 +202,7 @@ class Point:
     def pulled(self, pull: Pull | None) -> "Point":
         """The same polygon with another pull of a hand, or none; the other terms are not computed again."""
         before = self.problem.objective.pull
-        point = self.changing(objective=self.problem.objective.pulled(pull))
+        point = self.changing(objective=self.problem.objective.having(Pull, pull))
         if before is None or pull is None or pull.weights is not before.weights:
             return Point(point.problem, point.vertices, point.placed)  # in another metric
         energy, derivative = self._energy_and_derivative

@@ -18,6 +18,7 @@ from ..solve.metrics import METRICS, Metric
 
 EDGE_LENGTHS = ("auto", "equal", "keep")
 MESHES = ("auto", "fixed", "finer", "adaptive")
+RADII = ("keep", "none")
 # what "auto" means with the method "paper": nothing that [RS21] does not do
 AS_IN_THE_PAPER = {"barrier": "off", "solver": "dense", "mesh": "fixed", "untangle": "never"}
 
@@ -30,6 +31,10 @@ def _are_lengths(value: object) -> bool:
     except (TypeError, ValueError):
         return False
     return lengths.ndim == 1 and bool(np.isfinite(lengths).all() and (lengths > 0.0).all())
+
+
+def _are_radii(value: object) -> bool:
+    return _are_lengths(np.ravel(value) if isinstance(value, Real) else value) and np.size(value) > 0
 
 
 def _is_a(protocol: type, value: object) -> bool:
@@ -57,6 +62,18 @@ def _weighted(text: str) -> tuple[tuple[str, float]]:
         return ((name, float(weight)),)
     except ValueError:
         raise OptionError(f"{text!r:.40} is not NAME=WEIGHT, such as bending=0.1") from None
+
+
+def _radius(text: str) -> str | tuple[float, ...]:
+    """A word, or numbers with commas between."""
+    if text in RADII:
+        return text
+    try:
+        return tuple(map(float, text.split(",")))
+    except ValueError:
+        raise OptionError(
+            f"radius is {text!r:.40}; give keep, none, or a number such as 0.1, or several: 0.1,0.2"
+        ) from None
 
 
 @documented
@@ -111,6 +128,17 @@ class RelaxOptions:
         "auto: on, except for the method paper",
         choices=("auto", "on", "off"),
         metavar="B",
+    )
+    radius: str | float | tuple[float, ...] = option(
+        "none",
+        "Radius",
+        "radius of a rope that the curve stays: no two strands come within two radii, none within one of an obstacle, "
+        "and nothing bends more tightly; a number in the curve's units, or one for each component; keep, nine tenths "
+        "of the thickness at the start, and less only where that leads to a lower minimum",
+        choices=RADII,
+        objects=("a number above 0, or one for each component", _are_radii),
+        read=_radius,
+        metavar="R",
     )
     metric: str | Metric | None = option(  # noqa: RUF009 (a field, made for this class)
         None,
@@ -249,11 +277,14 @@ class RelaxOptions:
         object.__setattr__(self, "terms", tuple((term, float(weight)) for term, weight in self.terms))
         if not isinstance(self.edge_lengths, str):
             object.__setattr__(self, "edge_lengths", tuple(map(float, self.edge_lengths)))
+        if not isinstance(self.radius, str):
+            object.__setattr__(self, "radius", tuple(map(float, np.ravel(self.radius))))
         if self.mesh in ("finer", "adaptive") and self.edge_lengths != "auto":
             raise OptionError(f"mesh={self.mesh!r} makes its own edge_lengths; leave one of the two options out")
         if self.untangle == "always" and not self.resolved.may_untangle:
             other = "mesh='fixed'" if self.mesh == "fixed" else "symmetry" if self.symmetry else "edge_lengths"
-            raise OptionError(f"untangle='always' changes the mesh; leave it or {other} out")
+            other = "radius" if self.radius != "none" else other
+            raise OptionError(f"untangle='always' changes the mesh and the thickness; leave it or {other} out")
         if self.symmetry is not None:
             if self.symmetry != "auto" and not IS_NAME.fullmatch(self.symmetry):
                 raise OptionError(f"symmetry is {short(self.symmetry)}; give auto, or a group such as C3, D2, S4 or Th")
@@ -282,7 +313,8 @@ class RelaxOptions:
     @property
     def may_untangle(self) -> bool:
         """Whether the mesh may change in the way that strand moves require."""
-        return self.mesh != "fixed" and self.edge_lengths in ("auto", "equal") and self.symmetry is None
+        free = self.mesh != "fixed" and self.edge_lengths in ("auto", "equal")
+        return free and self.symmetry is None and self.radius == "none"
 
     @property
     def ends_finer(self) -> bool:
@@ -303,4 +335,5 @@ class RelaxOptions:
             balance=False,
             untangle="never",
             hops=0,
+            radius="none",
         )

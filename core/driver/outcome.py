@@ -128,6 +128,7 @@ class Result:
     - ``method``: name of the requested method.
     - ``task``: the task that was to be relaxed.
     - ``phases``: the relaxation on each mesh, in order.
+    - ``least_thickness``: of all iterates, if the curve is to be a rope.
     """
 
     outcome: Outcome
@@ -138,6 +139,7 @@ class Result:
     method: str
     task: Task
     phases: tuple[Phase, ...] = ()
+    least_thickness: float | None = None
 
     def __repr__(self) -> str:
         after = counted(self.iterations, "iteration")
@@ -222,6 +224,8 @@ class Result:
             "symmetry": self.last.symmetry or None,
             "obstacles": len(self.task.obstacles),
             "grown": self.last.grown,
+            "radius": None if self.last.radius is None else list(self.last.radius),
+            "least_thickness": self.least_thickness,
             "max_edge_length_error": self.last.edge_length_error,
             "certified": self.certified,
             "method": self.method,

@@ -8,8 +8,8 @@ import numpy as np
 from ..base.errors import CurveError, OptionError
 from ..base.messages import Message
 from ..base.types import FloatArray, IntArray
-from ..collision import is_free, minimal_gap, survives_rounding
-from ..curve import Curve, Mesh, check_closed
+from ..collision import is_free, is_rope, minimal_gap, rope_motion, survives_rounding, thickness
+from ..curve import Curve, Mesh, at_edges, check_closed
 from ..curve.obstacle import Obstacle
 from ..curve.pins import TAUT, arcs, free_edges, spans
 from ..curve.refine import Resolution, graded_spacing, normalised, refined_alike
@@ -17,6 +17,7 @@ from ..curve.symmetry import TOLERANCE, Symmetry, SymmetryGroup, symmetries
 from ..descent import METHODS, Problem
 from ..descent.task import Task
 from ..energies import Term, TwiceDifferentiable, is_moebius_invariant
+from ..energies.rope import Rope
 from ..solve.metrics import Metric
 from .options import RelaxOptions
 from .solver import Solver
@@ -41,7 +42,10 @@ def start_problem(given: Task | Curve, options: RelaxOptions) -> Problem:
     pins = task.held
     geometry = method.geometry if options.penalty is None else method.geometry.weighted(options.penalty)
     lengths = target_lengths(task.curve, pins.vertices, task.obstacles, options)
-    problem = Problem.of(task.curve, lengths, pins, task.obstacles, Solver(options), geometry)
+    if options.radius != "none" and not method.geometry.prescribes:
+        raise OptionError(f"radius needs lengths that stay, but method {method.name} penalises them; leave it out")
+    radius = rope_radius(task, options)
+    problem = Problem.of(task.curve, lengths, pins, task.obstacles, Solver(options), geometry, radius=radius)
     about_minima, lacking = options.stability or options.escape_saddles, problem.objective.without_hessian
     if (method.rule.second_order or about_minima) and lacking is not None:
         raise OptionError(f"{method.name} with these options needs a second derivative; {lacking.name} has none")
@@ -61,13 +65,53 @@ def start_problem(given: Task | Curve, options: RelaxOptions) -> Problem:
     if options.balance:
         if task.pins:
             raise OptionError("balance would move pins, as Möbius maps do; leave one of the two out")
-        other = next((term for term in problem.objective.terms if not is_moebius_invariant(term)), None)
+        terms = (term for term in problem.objective.terms if not isinstance(term, Rope))
+        other = next((term for term in terms if not is_moebius_invariant(term)), None)
         if other is not None:
             told = f"balance takes Möbius images, which have another {other.name} than the curve; leave it out"
             raise OptionError(told)
         check_closed(task.curve, "Möbius images of equal energy, which balance takes,")
     check_foreign(problem, task.curve, options)
     return problem
+
+
+def rope_radius(task: Task, options: RelaxOptions) -> FloatArray | None:
+    """The radius of each component of a refined task as a rope, in the user's units; None if it is none.
+
+    Raises OptionError if there are neither one nor as many as components, CurveError if the curve is not that thick.
+    """
+    curve, wanted, components = task.curve, options.radius, len(task.curve.mesh.component_sizes)
+    if wanted == "none" or (wanted == "keep" and curve.dimension > 3):
+        return None
+    if not isinstance(wanted, str):
+        given = np.ravel(wanted)
+        if curve.dimension > 3:
+            raise OptionError(
+                f"radius is for curves in the plane and in space, not in R^{curve.dimension}; leave it out"
+            )
+        if len(given) not in (1, components):
+            raise OptionError(f"radius has {len(given)} numbers; give one, or {components}, one for each component")
+        radius = np.broadcast_to(given, components).astype(np.float64)
+        found = rope_motion(curve.mesh, curve.vertices, curve.vertices, radius, task.obstacles)
+        if found.proved:
+            return radius
+        assert found.contact is not None
+        thin = (
+            "the curve is no rope of radius {radius:.4g}: {contact} are too near to each other, or the curve bends too "
+            "sharply between them; its thickness is {thickness:.4g}, so give a smaller radius, or more room"
+        )
+        raise CurveError(
+            Message(thin, radius=float(radius.max()), contact=found.contact.message, thickness=thickness(curve)),
+            at_edges(curve, found.contact.edges),
+        )
+    radius = np.full(components, 0.9 * thickness(curve))
+    for _ in range(40):  # less, where obstacles are nearer than strands
+        if not np.isfinite(radius).all() or radius.max() <= 1e-9 * curve.length:
+            return None
+        if is_rope(curve.mesh, curve.vertices, curve.vertices, radius, task.obstacles):
+            return radius
+        radius *= 0.8
+    return None
 
 
 def target_lengths(start: Curve, pins: IntArray, obstacles: Sequence[Obstacle], options: RelaxOptions) -> FloatArray:

@@ -1,5 +1,6 @@
 """The one driver: `relax` yields the iterates of a relaxation, `minimize` runs it to its end."""
 
+import math
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -12,6 +13,7 @@ from ..base.deadline import TimeIsUp, TimeLimit
 from ..base.errors import CurveError, OptionError
 from ..base.messages import COMPONENT, VERTEX_COUNT, Message
 from ..base.threads import BLAS
+from ..collision import thickness
 from ..curve import Curve
 from ..descent.task import Task
 from ..io.trajectory import Iterate
@@ -128,6 +130,7 @@ def finish(
     last: Iterate | None = None
     given = 0  # vertices at the start
     meshes: list[tuple[int, int, float]] = []  # vertices, and when the mesh was new: iterate, seconds
+    thinnest = math.inf
     run, cut_short = WithOutcome(relaxation), False
     try:
         for last in run:
@@ -139,6 +142,8 @@ def finish(
                 meshes.append((len(last.curve), iterations, time.perf_counter() - started if meshes else 0.0))
             if last.method != options.method:
                 fallback.append(last.index)
+            if last.radius is not None:
+                thinnest = min(thinnest, thickness(last.curve))
             if callback is not None:
                 callback(last)
     except (KeyboardInterrupt, MemoryError) as error:
@@ -158,4 +163,5 @@ def finish(
     seconds = time.perf_counter() - started
     ends = pairwise([*meshes, (0, iterations, seconds)])
     phases = tuple(Phase(size, end - begun, until - since) for (size, begun, since), (_, end, until) in ends)
-    return Result(run.outcome, last, tuple(energies), tuple(fallback), seconds, options.method, task, phases)
+    least = thinnest if math.isfinite(thinnest) else None
+    return Result(run.outcome, last, tuple(energies), tuple(fallback), seconds, options.method, task, phases, least)

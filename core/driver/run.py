@@ -102,6 +102,7 @@ class Run:
             pins=tuple(constraints.pins.vertices.tolist()),
             strand_moves=self.strand_moves,
             symmetry=constraints.symmetry.name,
+            radius=None if self.problem.radius is None else tuple(self.problem.radius.tolist()),
         )
 
     def step(self) -> Step | NoStep:

@@ -95,7 +95,7 @@ class EdgePairs(NamedTuple):
         """The inner product of two combinations, as a function of the 3m coordinates of (Δ, e, f)."""
         u, v = self.combination(a), self.combination(b)
         first = np.asarray(a)[:, None] * v[:, None, :] + np.asarray(b)[:, None] * u[:, None, :]
-        return Jet(np.einsum("km,km->k", u, v), first.reshape(len(u), -1))
+        return Jet(np.einsum("km,km->k", u, v), first.reshape(len(u), 3 * u.shape[1]))
 
 
 def scatter_first(mesh: Mesh, i: IntArray, j: IntArray, first: FloatArray) -> FloatArray:

@@ -70,10 +70,10 @@ class Objective:
         """The pull of a hand, if one holds the curve."""
         return next((term for term, _ in self.further if isinstance(term, Pull)), None)
 
-    def pulled(self, pull: Pull | None) -> "Objective":
-        """The same with another pull, or none."""
-        others = tuple(each for each in self.further if not isinstance(each.term, Pull))
-        return replace(self, further=others if pull is None else (*others, Weighted(pull)))
+    def having(self, kind: type[Term], term: Term | None) -> "Objective":
+        """The same with another term of some kind, such as the pull of a hand or a rope's barrier, or none."""
+        others = tuple(each for each in self.further if not isinstance(each.term, kind))
+        return replace(self, further=others if term is None else (*others, Weighted(term)))
 
     @property
     def sees_size(self) -> bool:
@@ -110,11 +110,12 @@ class Objective:
 
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
         """The objective and its derivative with respect to the vertices, shape (n, m)."""
-        energy, *rest = self._summands(curve)
-        value, derivative = energy.term.value_and_derivative(curve)
-        for term, weight in rest:
+        value, derivative = 0.0, np.zeros_like(curve.vertices)
+        for term, weight in reversed(self._summands(curve)):  # the energy, which takes most of the time, is the first
             more, further = term.value_and_derivative(curve)
             value, derivative = value + weight * more, derivative + weight * further
+            if not np.isfinite(value):
+                break
         return value, derivative
 
     def hessian(self, curve: Curve) -> FloatArray:

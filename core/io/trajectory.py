@@ -55,6 +55,7 @@ class Iterate:
     - ``pins``: pinned vertices of this curve, counted from 0, and those between them that cannot move.
     - ``strand_moves``: the strand moves so far; None before the first one.
     - ``symmetry``: name of the symmetry group that is kept, if any.
+    - ``radius``: of each component as a rope, in the user's units; None if the curve is none.
     """
 
     index: int
@@ -70,6 +71,7 @@ class Iterate:
     pins: tuple[int, ...] = ()
     strand_moves: StrandMoves | None = None
     symmetry: str = ""
+    radius: tuple[float, ...] | None = None
 
     def __repr__(self) -> str:
         proved = "certified" if self.certified else "not certified"
@@ -82,7 +84,8 @@ class Trajectory:
     Arrays ``stage_000``, ``stage_001``, … of shape (k, n, m), each with ``component_sizes_000``, … and, unless all
     components are closed, ``component_closed_000``, … of booleans; a new stage begins where the mesh changes.
     Obstacles are in ``obstacle_000_vertices``, shape (k, 3), and ``obstacle_000_faces``, shape (f, 3) or (f, 2), ….
-    ``pins``, shape (k, m), are the places of the vertices that were held, if there were any.  Coordinates are the
+    ``pins``, shape (k, m), are the places of the vertices that were held, if there were any; ``radius``, shape
+    (components,), those of the thinnest rope that the curve was, if it always was one.  Coordinates are the
     user's, in double precision: the proofs are about exactly these numbers.  ``provenance`` records in plain values
     where the run came from, as JSON in an array of one string; `verify` ignores it, and None leaves it out.
     """
@@ -92,6 +95,7 @@ class Trajectory:
         self._provenance, self._obstacles = provenance, obstacles
         self._stages: list[tuple[Mesh, list[FloatArray]]] = []
         self._pins: FloatArray = np.empty((0, 0))
+        self._radius: FloatArray | None = None
         self._last: Curve | None = None
         self._last_index = -1
 
@@ -118,6 +122,9 @@ class Trajectory:
             self._stages.append((iterate.curve.mesh, [iterate.curve.vertices]))
         if self._last is None:
             self._pins = iterate.curve.vertices[list(iterate.pins)]
+            self._radius = None if iterate.radius is None else np.array(iterate.radius)
+        elif self._radius is not None:
+            self._radius = None if iterate.radius is None else np.minimum(self._radius, iterate.radius)
         self._last, self._last_index = iterate.curve, iterate.index
 
     def arrays(self) -> dict[str, FloatArray | IntArray | BoolArray | NDArray[np.str_]]:
@@ -130,6 +137,8 @@ class Trajectory:
             named[f"obstacle_{k:03d}_faces"] = obstacle.faces
         if len(self._pins):
             named["pins"] = self._pins
+        if self._radius is not None:
+            named["radius"] = self._radius
         for k, (mesh, frames) in enumerate(self._stages):
             named[f"stage_{k:03d}"] = np.stack(frames)
             named[f"component_sizes_{k:03d}"] = np.array(mesh.component_sizes, dtype=np.intp)

@@ -57,6 +57,8 @@ def morph(
     or do not go together.
     """
     task, wanted = Task.of(a), options or RelaxOptions()
+    if wanted.radius != "none":
+        raise OptionError("radius is kept by relaxations, but not by morphs; leave it out")
     return finish(morphing((task, Task.of(b)), wanted, NAMES), task, wanted, callback)
 
 

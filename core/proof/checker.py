@@ -22,6 +22,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from itertools import chain, combinations, pairwise, product
 from operator import mul
 from os import PathLike, stat
@@ -68,6 +69,7 @@ class Verdict:
     obstacles: int = 0  #: how many there are
     obstacle: int | None = None  #: the one that an edge meets
     pins: int = 0  #: how many vertices are held, in every frame
+    radius: tuple[float, ...] = ()  #: of each component, if it is a rope in every frame and on every leg
 
     def __str__(self) -> str:
         if self.accepted:
@@ -75,7 +77,8 @@ class Verdict:
             legs, stages, obstacles, pins = (f"{count} {noun}{'s' * (count != 1)}" for noun, count in counts.items())
             nor = f", nor with {obstacles}" if self.obstacles else ""
             held = f"; {pins} in place" if self.pins else ""
-            return f"accepted: no contact on {legs} in {stages}{nor}{held}"
+            rope = f"; a rope of radius {min(self.radius):.4g}" if self.radius else ""
+            return f"accepted: no contact on {legs} in {stages}{nor}{held}{rope}"
         place = "" if self.stage is None else f"stage {self.stage}"
         place += "" if self.frame is None else f", frame {self.frame}"
         return f"rejected: {place}: {self.reason}" if place else f"rejected: {self.reason}"
@@ -239,10 +242,10 @@ def meet_triangle(x0: Motion, x1: Motion, *corners: Motion) -> bool:
     return False
 
 
-def apart(first: Sequence[Motion], second: Sequence[Motion], halvings: int = 4) -> bool:
+def apart(first: Sequence[Motion], second: Sequence[Motion], halvings: int = 4, distance: int = 0) -> bool:
     """Whether fixed planes, each for a part of the time, separate an edge from another or a triangle, by their corners.
 
-    The distance from a fixed plane is linear in time.
+    The distance from a fixed plane is linear in time.  With a distance, both are further apart than that.
     """
     x, y = ([plus(*motion) for motion in corners] for corners in (first, second))  # halfway
     chord = [sum(column) for column in zip(*(minus(p, q) for p in x for q in y), strict=True)]
@@ -250,13 +253,14 @@ def apart(first: Sequence[Motion], second: Sequence[Motion], halvings: int = 4) 
     across = (cross(u, v) for u, v in chain(((e, side) for side in sides), combinations(sides[:2], 2)))
     for normal in chain([chord], (n if dot(n, chord) > 0 else [-c for c in n] for n in across)):
         above, below = ([[dot(normal, motion[t]) for motion in each] for t in (0, 1)] for each in (first, second))
-        if min(above[0]) > max(below[0]) and min(above[1]) > max(below[1]):
+        gap = min(min(above[t]) - max(below[t]) for t in (0, 1))
+        if gap > 0 and gap**2 > distance**2 * dot(normal, normal):
             return True
     if not halvings:
         return False
     halves = [[(plus(p, p), plus(p, q), plus(q, q)) for p, q in corners] for corners in (first, second)]
     parts = [[[way[k : k + 2] for way in each] for each in halves] for k in (0, 1)]
-    return all(apart(x, y, halvings - 1) for x, y in parts)
+    return all(apart(x, y, halvings - 1, 2 * distance) for x, y in parts)
 
 
 def whole(points: Points) -> list[Vector]:
@@ -264,6 +268,114 @@ def whole(points: Points) -> list[Vector]:
     ratios = [[x.as_integer_ratio() for x in p] for p in points]
     unit = max(b for p in ratios for _, b in p)
     return [(*(a * (unit // b) for a, b in p), *[0] * (3 - len(p))) for p in ratios]
+
+
+# Ropes: distances in space and along the curve, and corners.
+
+PI = 3141592653589793, 10**15  # a fraction less than it
+
+
+def inner(u: Sequence[Polynomial], v: Sequence[Polynomial]) -> Polynomial:
+    return [sum(terms) for terms in zip(*map(times, u, v), strict=True)]
+
+
+def stay_apart(first: Sequence[Motion], second: Sequence[Motion], distance: int) -> bool:
+    """Whether an edge stays further than a distance from another, or from a still triangle that it does not meet.
+
+    If it is further away at first and not always, then when it first is at that distance closest points are two ends,
+    an end and a point inside the other edge or the triangle, or points inside both edges.  Each case has a polynomial
+    that vanishes then, and others that tell whether feet are inside; one that is always zero needs no root, since then
+    the distance was reached before, or a simpler case rules.
+    """
+    lift, square = [1, 2, 1], [distance * distance]
+    x, y = ([list(map(list, zip(*motion, strict=True))) for motion in each] for each in (first, second))
+
+    def less(p: Polynomial, q: Polynomial) -> Polynomial:
+        """p - distance^2 q, where the degree of q may be two less."""
+        q = times(square, q)
+        return minus(p, times(q, lift) if len(q) < len(p) else q)
+
+    def difference(p: Sequence[Polynomial], q: Sequence[Polynomial]) -> list[Polynomial]:
+        return list(map(minus, p, q))
+
+    cases = [(less(inner(c, c), lift), lift, []) for c in (difference(p, q) for p in x for q in y)]
+    sides = list(combinations(y, 2))
+    for points, lines in ((x, sides), (y, [(x[0], x[1])])):
+        for point, (a, b) in product(points, lines):
+            c, line = difference(point, a), difference(b, a)
+            h, along, whole_line = cross(line, c, times, minus), inner(c, line), inner(line, line)
+            cases.append((less(inner(h, h), whole_line), whole_line, [along, minus(whole_line, along)]))
+    e = difference(x[1], x[0])
+    for a, b in sides:
+        f, d = difference(b, a), difference(x[0], a)
+        n = cross(e, f, times, minus)
+        nn, volume = inner(n, n), inner(d, n)
+        s, t = inner(cross(f, d, times, minus), n), inner(cross(e, d, times, minus), n)
+        cases.append((less(times(volume, volume), nn), nn, [s, minus(nn, s), t, minus(nn, t)]))
+    if len(y) == 3:
+        normal = [[k] for k in cross(*(minus(corner[0], second[0][0]) for corner in second[1:]))]
+        length = inner(normal, normal)
+        for point in x:
+            height = inner(normal, difference(point, y[0]))
+            turns = [
+                inner(cross(difference(b, a), difference(point, a), times, minus), normal)
+                for a, b in ((y[0], y[1]), (y[1], y[2]), (y[2], y[0]))
+            ]
+            cases.append((less(times(height, height), times(length, lift)), length, turns))
+    return not any(
+        sign(gap, time) <= 0 < sign(positive, time) and all(sign(p, time) >= 0 for p in inside)
+        for gap, positive, inside in cases
+        for time in chain((START, END), roots(gap) if any(gap) else ())
+    )
+
+
+def products(u: Motion, v: Motion) -> tuple[int, int, int]:
+    """Twice the inner product of moving vectors is between the least and the largest of these."""
+    return 2 * dot(u[0], v[0]), dot(u[0], v[1]) + dot(u[1], v[0]), 2 * dot(u[1], v[1])
+
+
+def normals(u: Motion, v: Motion) -> tuple[Vector, Vector, Vector]:
+    """The same of twice the vector product."""
+    first, last = ([2 * x for x in cross(u[t], v[t])] for t in (0, 1))
+    return first, plus(cross(u[0], v[1]), cross(u[1], v[0])), last
+
+
+def arcs_fit(edge: Motion, neighbours: Sequence[Motion], radius: int, halvings: int = 12) -> bool:
+    """Whether arcs of a radius fit into the corners of an edge: radius (tan(a/2) + tan(b/2)) <= length, all vectors.
+
+    tan(a/2) is |e x f| / (|e||f| + <e, f>).  Where bounds of these do not suffice, the time is halved.
+    """
+    tangents, own = Fraction(0), max(min(products(edge, edge)), 0)
+    for other in neighbours:
+        most = math.isqrt(max(dot(n, n) for n in normals(edge, other))) + 1
+        least = math.isqrt(own * max(min(products(other, other)), 0)) + min(products(edge, other))
+        if least <= 0:
+            break
+        tangents += Fraction(most, least)
+    else:
+        if radius * tangents <= math.isqrt(own // 2):
+            return True
+    if not halvings:
+        return False
+    halves = [(plus(u, u), plus(u, v), plus(v, v)) for u, v in (edge, *neighbours)]
+    parts = ([way[k : k + 2] for way in halves] for k in (0, 1))
+    return all(arcs_fit(part[0], part[1:], 2 * radius, halvings - 1) for part in parts)
+
+
+def shortcut(e: Motion, f: Motion) -> Fraction:
+    """By how much an arc of radius 1 shortens the way round a corner at all times: 2 (tan(a/2) - a/2), or less."""
+    n = normals(e, f)
+    least = min(dot(n[1], each) for each in n)
+    most = math.isqrt(max(dot(u, u) for u in e) * max(dot(v, v) for v in f)) + 1
+    below = (math.isqrt(dot(n[1], n[1])) + 1) * (2 * most + max(products(e, f)))
+    if least <= 0 or below <= 0:
+        return Fraction(0)
+    x = Fraction((least << 40) // below, 1 << 40)
+    small = x**3 / (3 + Fraction(9, 5) * x**2)
+    if x <= 1:
+        return 2 * small
+    y = 1 / x
+    return 2 * max(small, x - Fraction(15708, 10000) + y - y**3 / 3 + y**5 / 5 - y**7 / 7)
 
 
 class Polygons:
@@ -293,6 +405,100 @@ class Polygons:
         """Of the edge between two vertices, or of one at a vertex given twice; ends of open polygons begin none."""
         tail = b if self.heads[b] == a != b else a - (self.heads[a] == a)
         return sum(head != k for k, head in enumerate(self.heads[:tail]))
+
+
+class RopeLeg:
+    """Lengths along a rope during a leg.
+
+    Points count if their distance along the curve that has arcs of the radius for corners is at least half a circle.
+    Upper bounds of that distance: no edge is longer on the way than at both its ends.
+    """
+
+    STEPS, PARTS = 16, 1 << 44  # along the border of points that count, and of an edge
+
+    def __init__(
+        self, start: Points, end: Points, polygons: Polygons, radius: Sequence[float], halvings: int = 6
+    ) -> None:
+        n, heads, self.given = len(start), polygons.heads, (start, end, polygons, radius, halvings)
+        # in a unit in which square roots may be rounded
+        places = [[x << 64 for x in p] for p in whole([*start, *end, *((r,) for r in radius)])]
+        self.ends = {k: [(places[v], places[n + v]) for v in (k, j)] for k, j in enumerate(heads) if j != k}
+        self.radius = [p[0] for p in places[2 * n :]]
+        self.part, self.closed = [k for k, each in enumerate(polygons.parts) for _ in each], polygons.closed
+        self.edge = {k: tuple(map(minus, b, a)) for k, (a, b) in self.ends.items()}
+        self.before, self.after = (
+            {heads[k]: k for k in self.edge},
+            {k: heads[k] for k in self.edge if heads[k] in self.edge},
+        )
+        self.longest = {k: math.isqrt(max(dot(e, e) for e in ends)) + 1 for k, ends in self.edge.items()}
+        self.position, self.around = dict[int, int](), [0] * len(radius)
+        for k, length in self.longest.items():
+            c, before = self.part[k], self.before.get(k)
+            saved = 0 if before is None else math.floor(self.radius[c] * shortcut(self.edge[before], self.edge[k]))
+            self.position[k] = self.around[c] - saved
+            self.around[c] += length - saved
+
+    def arcs_fit(self, k: int) -> bool:
+        """Whether arcs fit into the corners of an edge, given by its tail."""
+        neighbours = [self.edge[j] for j in (self.before.get(k), self.after.get(k)) if j is not None]
+        return arcs_fit(self.edge[k], neighbours, self.radius[self.part[k]])
+
+    def stay_apart(self, i: int, j: int) -> bool:
+        """Whether points of edges, given by their tails i < j, that count stay further apart than two radii.
+
+        Where lengths change too much to tell which points count, the time is halved.
+        """
+        distance = self.PARTS * (self.radius[self.part[i]] + self.radius[self.part[j]])
+        parts = ((self.piece(i, *p), self.piece(j, *q)) for p, q in self.parts(i, j))
+        if all(apart(*pair, distance=distance) or stay_apart(*pair, distance) for pair in parts):
+            return True
+        return bool(self.halves) and all(half.stay_apart(i, j) for half in self.halves)
+
+    @cached_property
+    def halves(self) -> "list[RopeLeg]":
+        """The leg in two, unless it has been halved often enough."""
+        start, end, polygons, radius, halvings = self.given
+        if not halvings or start is end:
+            return []
+        middle = [
+            tuple((Fraction(x) + Fraction(y)) / 2 for x, y in zip(p, q, strict=True))
+            for p, q in zip(start, end, strict=True)
+        ]
+        return [RopeLeg(*ends, polygons, radius, halvings - 1) for ends in ((start, middle), (middle, end))]
+
+    def piece(self, k: int, *shares: int) -> list[Motion]:
+        """The ends of a part of an edge, in units that are so many parts of the usual one."""
+        return [
+            tuple(
+                [(self.PARTS - s) * x + s * y for x, y in zip(u, v, strict=True)]
+                for u, v in zip(*self.ends[k], strict=True)
+            )
+            for s in shares
+        ]
+
+    def parts(self, i: int, j: int) -> Iterator[tuple[tuple[int, int], tuple[int, int]]]:
+        """Parts of edges that contain all points that count."""
+        entire, c = (0, self.PARTS), self.part[i]
+        if c != self.part[j]:
+            yield entire, entire
+            return
+        a, b, half = self.longest[i], self.longest[j], PI[0] * self.radius[c] // PI[1]
+        ahead = self.position[j] - self.position[i] - a
+        back = self.around[c] - self.position[j] - b + self.position[i] if self.closed[c] else half
+        if min(ahead, back) + a + b < half:
+            return
+        if min(ahead, back) >= half:
+            yield entire, entire
+            return
+        # u, v and w are counted from the ends that are nearer along the curve
+        rest = half - min(ahead, back)
+        for k in range(self.STEPS):
+            u = rest * (self.STEPS - 1 - k) * self.PARTS // (self.STEPS * a)
+            v, w = (rest * step * self.PARTS // (self.STEPS * b) for step in (k, k + 1))
+            w = self.PARTS if k == self.STEPS - 1 else min(w + 1, self.PARTS)
+            if u <= self.PARTS and v <= self.PARTS:
+                own, other = (0, self.PARTS - u), (v, w)
+                yield ((u, self.PARTS), (self.PARTS - w, self.PARTS - v)) if back < ahead else (own, other)
 
 
 def kept_vertices(first: Points, second: Points, closed: bool) -> tuple[list[int], list[int]]:
@@ -356,6 +562,20 @@ class Nearby:
             if not apart([(p[0], p[2]), (p[1], p[3])], [(q, q) for q in p[4:]]):
                 yield a, b, j
 
+    def crowded(
+        self, start: Points, end: Points, polygons: Polygons, radius: Sequence[float]
+    ) -> Iterator[tuple[int, int, int | None]]:
+        """Yield what of a rope must be decided: tails of an edge and the same one, for its corners, or another one;
+        ends of an edge, and a triangle."""
+        edges, most = [(k, head) for k, head in enumerate(polygons.heads) if head != k], Fraction(max(radius))
+        around = [
+            (tuple(Fraction(x) - most for x in low), tuple(Fraction(x) + most for x in high))
+            for low, high in self._boxes([(start[a], end[a], start[b], end[b]) for a, b in edges])
+        ]
+        yield from ((k, k, None) for k, _ in edges)
+        yield from ((edges[i][0], edges[j][0], None) for i, j in self._overlapping(around, around))
+        yield from ((*edges[i], j) for i, j in self._overlapping(around, self.around))
+
     @staticmethod
     def _boxes(groups: Sequence[Points]) -> list[Box]:
         columns = (list(zip(*group, strict=True)) for group in groups)
@@ -375,7 +595,7 @@ class Nearby:
                     yield i, j
 
 
-Sieve = Callable[[Points, Points, Polygons, float], Iterator[tuple[int, ...]]]
+Sieve = Any  # `Nearby`, or what does as it does
 
 
 class Archive(zipfile.ZipFile):
@@ -477,6 +697,13 @@ class Archive(zipfile.ZipFile):
             raise TrajectoryError(f"{name} has shape {shape}; it must have {columns} columns")
         return list(rows)
 
+    def radius(self) -> list[float]:
+        """Of each component as a rope."""
+        radius = [r for (r,) in list(self.array("radius", FLOATS, 1, "a list of float64"))[1:]]
+        if not radius or min(radius) <= 0:
+            raise TrajectoryError("radius must have a number above 0 for each component")
+        return radius
+
     def triangles(self, name: str) -> list[Points]:
         """Of an obstacle; a segment becomes a triangle without area."""
         points = self.points(f"{name}_vertices", [3])
@@ -527,6 +754,7 @@ class Findings:
     triangles: list[Points]
     obstacle: list[int]  # the obstacle of each triangle
     pins: list[Coordinates]
+    radius: list[float]  # of each component as a rope, if it is one
     stages: int = 0
     legs: int = 0
     frame: int | None = None
@@ -550,13 +778,17 @@ class Findings:
             for number, pin in enumerate(self.pins):
                 if pin not in vertices:
                     raise RefusedError(f"no vertex is at pin {number + 1} (counted from 1)")
+            if self.radius and len(self.radius) != len(sizes):
+                raise TrajectoryError(f"radius has {len(self.radius)} numbers, but {name} has {len(sizes)} components")
             self.leg(last, last, polygons)  # a single frame is a polygon, too
+            self.rope(last, last, polygons)
             for frame in frames:
                 self.legs += 1
                 for number, pin in enumerate(self.pins):
                     if frame[vertices[pin]] != pin:
                         raise RefusedError(f"vertex {vertices[pin] + 1} leaves pin {number + 1} (counted from 1)")
                 self.leg(last, frame, polygons)
+                self.rope(last, frame, polygons)
                 last, self.frame = frame, self.frame + 1
                 tell(self.legs)
             before = last, polygons
@@ -608,6 +840,24 @@ class Findings:
                     message = f"{kind} collapses at vertex {a + 1}"
                 raise RefusedError(message, (edge, second))
 
+    def rope(self, start: Points, end: Points, polygons: Polygons) -> None:
+        """Raise if the curve is no rope at some time of a leg: corners, strands, and obstacles."""
+        leg: RopeLeg | None = None
+        for a, b, triangle in self.sieve.crowded(start, end, polygons, self.radius) if self.radius else ():
+            leg = leg or RopeLeg(start, end, polygons, self.radius)
+            number, other = (polygons.edge_number(k, polygons.heads[k]) for k in (a, b))
+            if triangle is not None:
+                p = whole([start[a], start[b], end[a], end[b], *self.triangles[triangle], (self.radius[leg.part[a]],)])
+                if not stay_apart([(p[0], p[2]), (p[1], p[3])], [(q, q) for q in p[4:7]], p[7][0]):
+                    found = self.obstacle[triangle]
+                    message = f"edge {number + 1} comes within a radius of obstacle {found + 1} (counted from 1)"
+                    raise RefusedError(message, (number,), found)
+            elif a == b and not leg.arcs_fit(a):
+                raise RefusedError(f"the rope bends too sharply at edge {number + 1} (counted from 1)", (number,))
+            elif a != b and not leg.stay_apart(min(a, b), max(a, b)):
+                message = f"edges {number + 1} and {other + 1} (counted from 1) come within two radii"
+                raise RefusedError(message, (number, other))
+
 
 def check(
     path: Path,
@@ -626,9 +876,11 @@ def check(
             parts = [archive.triangles(name) for name in names]
             what["obstacles"] = len(parts)
             pins = archive.points("pins", [2, 3]) if "pins.npy" in archive.names else []
-            what["pins"], total = len(pins), 0
+            radius = archive.radius() if "radius.npy" in archive.names else []
+            what |= {"pins": len(pins), "radius": tuple(radius)}
+            total = 0
             triangles, obstacle = [*chain(*parts)], [k for k, part in enumerate(parts) for _ in part]
-            found = Findings(sieve(triangles), triangles, obstacle, pins)
+            found = Findings(sieve(triangles), triangles, obstacle, pins, radius)
             with suppress(TrajectoryError):
                 for name in archive.numbered("stage", ""):
                     total += max(next(archive.array(name, FLOATS, 3, ""))[0] - 1, 0)

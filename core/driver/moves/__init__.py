@@ -11,6 +11,7 @@ from .hops import ON_A_FIXED_MESH, Hops
 from .links import Composite, OpenKnots, SplitLinks
 from .remesh import CoarseStart, FinerMesh, Remesh, SymmetricStart
 from .rest import CheckAccuracy, EscapeSaddle, Fallback, Settle
+from .rope import GiveWay
 from .untangling import Untangling
 
 MOVES: Sequence[Callable[[Run], Move]] = (
@@ -21,6 +22,7 @@ MOVES: Sequence[Callable[[Run], Move]] = (
     Grow,
     SplitLinks,
     CoarseStart,
+    GiveWay,
     EscapeSaddle,
     Composite,
     Balance,

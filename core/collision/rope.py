@@ -1,0 +1,245 @@
+"""How far a rope can move along straight lines and stay one: strands two radii apart, no corner tighter than the
+radius.
+
+A polygon is a rope of radius r if
+
+- arcs of radius r fit into its corners: r (tan(θ/2) + tan(θ'/2)) ≤ ℓ for the turning angles θ, θ' at the ends of every
+  edge.  A corner whose bending radius (`bending_radii`) is r or more takes up no more than half of both its edges.
+- Two of its points are further apart than 2 r if they are at a distance of π r or more along the curve that has these
+  arcs for corners: each shortens the way by r (2 tan(θ/2) − θ).  On different components it is the sum of their radii.
+- It is further than r away from obstacles.
+
+All is decided in floating-point numbers with error bounds: what is proved is so.
+"""
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+from itertools import chain, product
+from typing import NamedTuple
+
+import numpy as np
+
+from ..base.types import BoolArray, FloatArray, IntArray
+from ..curve import Mesh
+from ..curve.obstacle import Obstacle
+from .boxes import BoxTree, Level, Test, contact_window, corners, still_triangles
+from .motion import Contact, FreeMotion, Limit
+from .planes import march
+
+_STEPS = 16  # in which the border of points half a circle apart is followed: those up to π r/16 nearer are tested, too
+_HALVINGS = 14  # of the time, until a corner is given up
+_BATCH = 1 << 13
+_TINY = np.finfo(np.float64).tiny
+_SLACK = 1e-10  # relative to the size of coordinates, far above rounding and far below any radius
+
+
+def rope_motion(
+    mesh: Mesh,
+    start: FloatArray,
+    end: FloatArray,
+    radius: FloatArray,
+    obstacles: Sequence[Obstacle] = (),
+    halvings: int = 4,
+) -> FreeMotion:
+    """Prove as much as possible of the motion (1−t) start + t end, t ∈ [0, 1], that of a rope.
+
+    ``start`` and ``end`` are the vertices at both ends, shape (n, m) with m = 2 or 3, ``radius`` has one number for
+    each component.  Where lengths change too much on the way to tell which points count, the time is halved.  Ropes are
+    free of contact: points that count are apart, and between others the curve turns by less than π, so that it cannot
+    come back.
+    """
+    exponent = int(np.frexp(max(np.abs(start).max(), np.abs(end).max(), *(each.size for each in obstacles)))[1])
+    points = tuple(np.ldexp(p.T, -exponent, order="C") for p in (start, end))
+    own = np.ldexp(radius, -exponent) * (1.0 + _SLACK) + _SLACK
+    spans = [p[:, mesh.heads] - p[:, mesh.tails] for p in points]
+    limit, edge, saved = _bends(mesh, spans, own[mesh.edge_component])
+    met, in_part = None if limit >= 1.0 else Contact((edge, int(mesh.next[edge]))), False
+    for places, vertices, names, width in _near(mesh, points, spans, saved, own, obstacles, exponent):
+        reached = march(*places, vertices, np.zeros(vertices.shape[1]), limit, width)
+        if reached.size and (time := float(reached.min())) < limit:
+            edge, other = names[:, reached.argmin()].tolist()
+            still = still_triangles(tuple(obstacles), exponent) if len(vertices) == 5 else None
+            limit, met = time, Contact((edge,), still.obstacle_of(other).title) if still else Contact((edge, other))
+            in_part = len(vertices) == 4 and places is not points
+    if met is None:
+        return FreeMotion(1.0)
+    if in_part and halvings and not np.array_equal(start, end):
+        middle = 0.5 * (start + end)
+        for k, ends in enumerate(((start, middle), (middle, end))):
+            found = rope_motion(mesh, *ends, radius, obstacles, halvings - 1)
+            if not found.proved:
+                time = max(limit, 0.5 * (k + found.time))
+                return FreeMotion(time, found.contact, Limit.CONTACT if time > 0.0 else Limit.TOUCHING_START)
+        return FreeMotion(1.0)
+    return FreeMotion(limit, met, Limit.CONTACT if limit > 0.0 else Limit.TOUCHING_START)
+
+
+def is_rope(
+    mesh: Mesh, start: FloatArray, end: FloatArray, radius: FloatArray, obstacles: Sequence[Obstacle] = ()
+) -> bool:
+    """Whether the motion from ``start`` to ``end``, each (n, m), is proved that of a rope; see `rope_motion`."""
+    return rope_motion(mesh, start, end, radius, obstacles).proved
+
+
+def _near(
+    mesh: Mesh,
+    points: tuple[FloatArray, FloatArray],
+    spans: list[FloatArray],
+    saved: FloatArray,
+    radius: FloatArray,
+    obstacles: Sequence[Obstacle],
+    exponent: int,
+) -> Iterator[tuple[tuple[FloatArray, FloatArray], IntArray, IntArray, FloatArray]]:
+    """Pairs that may come nearer than they must, in batches; points are (m, n), edges and what arcs save as in
+    `_bends`.
+
+    Points (m, k) at both times, indices of x₀, x₁, y₀, y₁ and y₂ of triangles, shape (4 or 5, pairs), numbers of the
+    edges, or of edge and triangle, shape (2, pairs), and their least distances, shape (pairs,).
+    """
+    tree, component = BoxTree.build(mesh, *points), mesh.edge_component
+    # no edge is longer on the way than at both its ends, as the norm is convex
+    longest = np.sqrt(np.maximum(*(np.einsum("me,me->e", e, e) for e in spans))) * (1.0 + _SLACK) + _SLACK
+    position, around = np.cumsum(longest - saved) - longest, np.add.reduceat(longest - saved, mesh.edge_offsets[:-1])
+    once_round = np.where(mesh.closed, around, np.inf)
+
+    def within(width: float) -> Test:
+        width = min(width, 2.5)  # more than boxes can be apart, and less than those that only pad the tree are
+
+        def near(level: Level, a: IntArray, others: Level, b: IntArray) -> BoolArray:
+            enter, leave = contact_window(level.gaps(a, others, b) - width)
+            return enter <= leave
+
+        return near
+
+    widest = float(radius.max())
+    neighbours = np.stack([np.arange(mesh.edges), mesh.next])[:, mesh.next != np.arange(mesh.edges)]
+    found = ((tree.order[a], tree.order[b]) for a, b in tree.pairs(within(2.0 * widest)))
+    for pair in chain([neighbours], found):
+        i, j = np.sort(pair, axis=0)
+        # along the curve between the edges, ahead from i and back
+        ways = np.stack([position[j] - position[i] - longest[i], once_round[component[i]] - position[j] - longest[j]])
+        ways[1] += position[i]
+        half = np.where(component[i] == component[j], np.pi * radius[component[i]] * (1.0 - _SLACK), 0.0)
+        counts = (ways + longest[i] + longest[j] >= half).all(axis=0)
+        i, j, ways, half = i[counts], j[counts], ways[:, counts], half[counts]
+        whole = (ways >= half).all(axis=0)
+        for k in range(0, int(whole.sum()), _BATCH):
+            a, b = i[whole][k : k + _BATCH], j[whole][k : k + _BATCH]
+            yield points, corners(mesh, a, b), np.stack([a, b]), radius[component[a]] + radius[component[b]]
+        i, j, ways, half = i[~whole], j[~whole], ways[:, ~whole], half[~whole]
+        if not len(i):
+            continue
+        # parts of i from distance u on, and of j from v to w, that are half a circle apart or more, but for a step
+        back = ways[1] < ways[0]
+        k = np.arange(_STEPS)[:, None]
+        rest = half - ways.min(axis=0)
+        u = np.maximum(rest * (1.0 - (k + 1) / _STEPS), 0.0) / longest[i]
+        v, w = rest * k / _STEPS / longest[j], np.where(k + 1 == _STEPS, 1.0, rest * (k + 1) / _STEPS / longest[j])
+        there = (u <= 1.0) & (v <= 1.0)
+        i, j, back = (np.broadcast_to(each, there.shape)[there] for each in (i, j, back))
+        u, v, w = u[there], v[there], np.minimum(w[there], 1.0)
+        # u, v, w count from the ends that are nearer along the curve, as shares of the edges
+        ends = [(i, np.where(back, u, 1.0 - u)), (i, np.where(back, 1.0, 0.0))]
+        ends += [(j, np.where(back, 1.0 - s, s)) for s in (v, w)]
+        places = tuple(
+            np.concatenate([p[:, mesh.tails[edge]] + s * e[:, edge] for edge, s in ends], axis=1)
+            for p, e in zip(points, spans, strict=True)
+        )
+        yield places, np.arange(4 * len(i)).reshape(4, -1), np.stack([i, j]), 2.0 * radius[component[i]]
+    if obstacles:
+        still = still_triangles(tuple(obstacles), exponent)
+        places = tuple(np.concatenate([p, np.ldexp(still.vertices.T, -exponent)], axis=1) for p in points)
+        for a, b in tree.pairs_with(still.tree, within(widest)):
+            for k in range(0, len(a), _BATCH):
+                edges, others = a[k : k + _BATCH], b[k : k + _BATCH]
+                vertices = np.concatenate([tree.corners[:, edges], mesh.size + still.tree.corners[:, others]])
+                names = np.stack([tree.order[edges], still.tree.order[others]])
+                yield places, vertices, names, radius[component[names[0]]]
+
+
+class Corners(NamedTuple):
+    """Corners between edges e and f during a leg, their vectors at both times, each (m, k)."""
+
+    e: tuple[FloatArray, FloatArray]
+    f: tuple[FloatArray, FloatArray]
+
+    def tangents(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Bounds of tan(θ/2) = |e × f|/(|e||f| + ⟨e, f⟩) from below and above, and those of |e| and |f| from below.
+
+        Products of moving vectors are quadratic polynomials in time, between their coefficients in Bernstein's basis.
+        """
+        dots = partial(np.einsum, "mk,mk->k")
+        normals = [_cross(u, v) for u, v in product(self.e, self.f)]
+        middle = 0.5 * (normals[1] + normals[2])
+        length = np.sqrt(dots(middle, middle))
+        normals[1:3] = [middle]
+        largest = np.sqrt(np.max([dots(n, n) for n in normals], axis=0))
+        smallest = np.min([dots(n, middle) for n in normals], axis=0) / np.maximum(length, _TINY)
+
+        def between(u: tuple[FloatArray, FloatArray], v: tuple[FloatArray, FloatArray]) -> FloatArray:
+            return np.stack([dots(u[0], v[0]), 0.5 * (dots(u[0], v[1]) + dots(u[1], v[0])), dots(u[1], v[1])])
+
+        ee, ff, ef = between(self.e, self.e), between(self.f, self.f), between(self.e, self.f)
+        a, b = (np.sqrt(np.maximum(each.min(axis=0), 0.0)) for each in (ee, ff))
+        longest = np.sqrt(np.maximum(ee[0], ee[2]) * np.maximum(ff[0], ff[2]))  # the norm is convex
+        least = a * b + ef.min(axis=0)
+        above = np.where(least > _SLACK * longest, largest / np.maximum(least, _TINY) + _SLACK, np.inf)
+        below = smallest / np.maximum(longest + ef.max(axis=0), _TINY) * (1.0 - _SLACK) - _SLACK
+        return np.maximum(below, 0.0), above, a, b
+
+    def halves(self, k: IntArray) -> "Corners":
+        """Some of them in the first half of the time, and then these in the second."""
+        parts = [(u[:, k], 0.5 * (u[:, k] + v[:, k]), v[:, k]) for u, v in self]
+        e, f = (tuple(np.concatenate([u, v], axis=1) for u, v in ((a, b), (b, c))) for a, b, c in parts)
+        return Corners(e, f)  # type: ignore[arg-type]
+
+
+def _cross(u: FloatArray, v: FloatArray) -> FloatArray:
+    if len(u) == 2:
+        return np.asarray(u[:1] * v[1:] - u[1:] * v[:1])
+    return np.stack([u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]])
+
+
+def shortcut(x: FloatArray) -> FloatArray:
+    """No more than x − arctan x, for x ≥ 0, nearly that, and made of quotients of polynomials."""
+    y = 1.0 / np.maximum(x, 1.0)
+    small, large = x**3 / (3.0 + 1.8 * x**2), x - 1.5708 + y - y**3 / 3.0 + y**5 / 5.0 - y**7 / 7.0
+    return np.maximum(small, large)
+
+
+def _bends(mesh: Mesh, spans: list[FloatArray], radius: FloatArray) -> tuple[float, int, FloatArray]:
+    """The time up to which arcs fit into corners, 1 if always, the edge that limits it, and what they save on the way.
+
+    ``spans`` are the edges at both times, each (m, edges), radii are by edge; the last is what the arc at the tail of
+    each edge takes off the way at least, r (2 tan(θ/2) − θ).  Where the bounds do not suffice the time is halved.
+    """
+    edges = np.arange(mesh.edges)
+    before, after = mesh.previous, mesh.next
+    corners = Corners(*([p[:, k] for p in spans] for k in (before, edges)))
+    low, high, _, own = corners.tangents()
+    is_corner = before != edges
+    saved = np.where(is_corner, 2.0 * radius * shortcut(low), 0.0)
+    high = np.where(is_corner, high, 0.0)
+    needed = high + np.where(after != edges, high[after], 0.0)
+    which = np.flatnonzero(radius * needed * (1.0 + _SLACK) > own - _SLACK)
+    if not len(which):
+        return 1.0, 0, saved
+    first, size, k, limit, worst = np.zeros(len(which)), 1.0, np.arange(len(which)), 1.0, int(which[0])
+    tail, head = (
+        Corners(*([p[:, j] for p in spans] for j in pair)) for pair in ((before[which], which), (which, after[which]))
+    )
+    for _ in range(_HALVINGS):
+        tail, head, size = tail.halves(k), head.halves(k), 0.5 * size
+        which, first = np.tile(which[k], 2), np.concatenate([first[k], first[k] + size])
+        (low, high, _, own), (below, above, _, _) = tail.tangents(), head.tangents()
+        corner, other, r = is_corner[which], after[which] != which, radius[which]
+        fails = r * (np.where(corner, high, 0.0) + np.where(other, above, 0.0)) * (1.0 + _SLACK) > own - _SLACK
+        # where arcs do not fit at any time nothing later matters
+        longest = np.sqrt(np.max([np.einsum("mk,mk->k", f, f) for f in tail.f], axis=0))
+        ends = r * (np.where(corner, low, 0.0) + np.where(other, below, 0.0)) > longest
+        if ends.any() and (time := float(first[ends].min())) < limit:
+            limit, worst = time, int(which[ends][first[ends].argmin()])
+        k = np.flatnonzero(fails & (first < limit))
+        if not len(k):
+            return limit, worst, saved
+    return float(first[k].min()), int(which[k][first[k].argmin()]), saved

@@ -1,0 +1,184 @@
+"""A curve that is a rope: a barrier that keeps strands two radii apart, and corners from bending tighter than one.
+
+    E = w Σ (ℓ_I ℓ_J / r²) φ((d_IJ − 2r)/(c − 2r)) + w Σ (ℓ_I / 2r) φ((ϱ − r)/(b − r)),   φ(z) = −(1 − z)² log z,
+
+where φ = 0 from z = 1 on.  The first sum is over pairs of edges at distance d that are more than half a circle of the
+radius apart along the curve; between ropes of two radii 2r is their sum.  The second is over both ends of every edge,
+with the bending radius ϱ = ℓ/(2 tan(θ/2)) at the corner of angle θ there (Rawdon, Experimental Mathematics 12, 2003).
+The barrier begins at c = 3r and b = 2r.  φ is that of incremental potential contact (Li et al., ACM Trans. Graphics 39,
+2020).
+"""
+
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.spatial import cKDTree
+
+from ..base.arguments import checked_fields
+from ..base.types import FloatArray, IntArray
+from ..curve import Curve
+from ..curve.measures import bending_radii, half_turns
+from .edge_pairs import E, EdgePairs, F, Jet, change, scatter_first, scatter_second, stepped
+
+
+@checked_fields
+@dataclass(frozen=True, eq=False)
+class Rope:
+    """The barrier of a rope with a radius for each component, shape (components,), in the units of curves.
+
+    The curve ``seen`` tells distances along the curve and the weights of terms: by default that at hand, which
+    `frozen_at` keeps.  With it kept the barrier is C¹ on ropes, and C² but where the closest points of two edges move
+    from their insides to their ends.
+    """
+
+    radius: FloatArray
+    seen: Curve | None = None
+    tightest: FloatArray | None = None  # bending radius of each component, if its mesh does not allow the rope's
+    weight: float = (
+        0.05  # with a tenth of it curves stick to the wall, with ten times as much they stop off their minima
+    )
+    reach: float = 1.5  # of strands' distance, over 2r
+    bend: float = 2.0  # of bending radii, over r
+
+    scale_exponent: ClassVar[float] = 0.0  # of rope and curve together
+    name: ClassVar[str] = "rope"
+    description: ClassVar[str] = "barrier that keeps the curve a rope"
+
+    def frozen_at(self, curve: Curve) -> "Rope":
+        """The rope with the lengths of a curve, or its own if they are as good, and bends that the curve's mesh allows.
+
+        Where edges have just been split, corners look sharper than before; they may bend as far as they do until the
+        flow has made them smooth.
+        """
+        seen = self._seen(curve)
+        allowed = np.minimum(self.radius, 0.9 * np.minimum.reduceat(bending_radii(curve), curve.mesh.offsets[:-1]))
+        if seen is self.seen and bool((np.abs(seen.edge_lengths / curve.edge_lengths - 1.0) <= 0.01).all()):
+            allowed = np.maximum(allowed, self._tightest)
+            if (allowed == self._tightest).all():
+                return self
+            return replace(self, tightest=allowed)
+        return replace(self, seen=curve, tightest=allowed)
+
+    def value(self, curve: Curve) -> float:
+        """E; infinite where the curve is no rope."""
+        return self.value_and_derivative(curve)[0]
+
+    def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
+        value, first = self._sum(curve, curve.vertices)
+        return float(value), first
+
+    def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
+        return change(self._sum(curve, stepped(curve.vertices, v))[1])
+
+    def sparse_hessian(self, curve: Curve) -> sp.csr_array:
+        """D²E as a sparse matrix: it couples near edges, and those that meet at a corner."""
+        total = sp.csr_array((curve.vertices.size, curve.vertices.size))
+        for (i, j), barrier in ((self._strands(curve), self._apart), (self._corners(curve), self._bent)):
+            pairs = EdgePairs.of(curve.mesh, curve.vertices, i, j)
+            second = [change(barrier(curve, i, j, each).first) for each in pairs.along_coordinates()]
+            total = total + scatter_second(curve.mesh, i, j, np.stack(second, axis=2))
+        return total
+
+    def _sum(self, curve: Curve, vertices: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """E and its derivative at a curve's vertices, or after a complex step from them."""
+        strands, corners = self._strands(curve), self._corners(curve)
+        apart = self._apart(curve, *strands, EdgePairs.of(curve.mesh, vertices, *strands))
+        bent = self._bent(curve, *corners, EdgePairs.of(curve.mesh, vertices, *corners))
+        total = apart.value.sum() + bent.value.sum()
+        if not np.isfinite(total):
+            return total, np.zeros_like(vertices)
+        first = np.concatenate([apart.first, bent.first])
+        return total, scatter_first(curve.mesh, *np.concatenate([strands, corners], axis=1), first)
+
+    def _strands(self, curve: Curve) -> tuple[IntArray, IntArray]:
+        """Unordered pairs of edges within the barrier's reach that are far enough along the curve."""
+        mesh, seen, component = curve.mesh, self._seen(curve), curve.mesh.edge_component
+        cut = 2.0 * self.reach * float(self.radius.max()) + float(curve.edge_lengths.max())
+        i, j = cKDTree(curve.midpoints).query_pairs(cut, output_type="ndarray").T
+        # along the curve, but around corners by arcs of the radius
+        ell, half = seen.edge_lengths, half_turns(seen)[mesh.tails]
+        saved = 2.0 * self.radius[component] * (np.tan(half) - half)
+        position, around = np.cumsum(ell - saved) - 0.5 * ell, np.add.reduceat(ell - saved, mesh.edge_offsets[:-1])
+        arc = np.abs(position[i] - position[j])
+        arc = np.minimum(arc, np.where(mesh.closed, around, np.inf)[component[i]] - arc)
+        far = arc > np.pi * self.radius[component[i]] + 0.5 * (ell[i] + ell[j])
+        kept = far | (component[i] != component[j])
+        i, j = i[kept], j[kept]
+        chord, _, _ = closest(EdgePairs.of(mesh, curve.vertices, i, j))
+        near = (
+            np.einsum("km,km->k", chord, chord)
+            < (self.reach * (self.radius[component[i]] + self.radius[component[j]])) ** 2
+        )
+        return i[near], j[near]
+
+    def _corners(self, curve: Curve) -> tuple[IntArray, IntArray]:
+        """The edges before and after each corner that bends within the barrier's reach."""
+        mesh, ell = curve.mesh, curve.edge_lengths
+        i = np.flatnonzero(mesh.next != np.arange(mesh.edges))
+        j = mesh.next[i]
+        tau = curve.edge_vectors / ell[:, None]
+        sine, cosine = (np.einsum("km,km->k", d, d) for d in (tau[j] - tau[i], tau[j] + tau[i]))
+        bends = (
+            np.minimum(ell[i], ell[j]) ** 2 * cosine
+            < (2.0 * self.bend * self._tightest[mesh.edge_component[i]]) ** 2 * sine
+        )
+        return i[bends], j[bends]
+
+    def _seen(self, curve: Curve) -> Curve:
+        return curve if self.seen is None or self.seen.mesh != curve.mesh else self.seen
+
+    @property
+    def _tightest(self) -> FloatArray:
+        return self.radius if self.tightest is None else self.tightest
+
+    def _apart(self, curve: Curve, i: IntArray, j: IntArray, pairs: EdgePairs) -> Jet:
+        """The barrier between strands; the distance changes as if its closest points stayed on their edges' places."""
+        chord, s, t = closest(pairs)
+        d = np.sqrt(np.einsum("km,km->k", chord, chord))
+        unit = chord / np.where(d == 0, 1.0, d)[:, None]
+        distance = Jet(d, np.concatenate([unit, s[:, None] * unit, -t[:, None] * unit], axis=1))
+        ell, r = self._seen(curve).edge_lengths, self.radius[curve.mesh.edge_component]
+        width = r[i] + r[j]
+        return _barrier(distance, width, self.reach * width, self.weight * ell[i] * ell[j] / (0.5 * width) ** 2)
+
+    def _bent(self, curve: Curve, i: IntArray, j: IntArray, pairs: EdgePairs) -> Jet:
+        """The barrier of corners, for both edges' bending radii."""
+        ell, r = self._seen(curve).edge_lengths, self._tightest[curve.mesh.edge_component[i]]
+        a, b, c = pairs.inner(E, E).sqrt(), pairs.inner(F, F).sqrt(), pairs.inner(E, F)
+        cotangent = ((a * b + c) * (a * b - c).reciprocal()).sqrt()  # of half the angle
+        sides = ((a, ell[i]), (b, ell[j]))
+        first, second = (
+            _barrier((side * cotangent).scaled(0.5), r, self.bend * r, 0.5 * self.weight * length / r)
+            for side, length in sides
+        )
+        return first + second
+
+
+def closest(pairs: EdgePairs) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Δ + s e − t f between closest points of k pairs of edges, shape (k, m), and s, t ∈ [−½, ½], shape (k,)."""
+    delta, e, f = pairs
+    ee, ff, ef, de, df = (np.einsum("km,km->k", *each) for each in ((e, e), (f, f), (e, f), (delta, e), (delta, f)))
+    sine = ee * ff - ef * ef
+    oblique = sine.real > 1e-12 * (ee * ff).real  # where edges are parallel any s will do
+    s = np.where(oblique, _clip((ef * df - de * ff) / np.where(oblique, sine, 1.0)), 0.0)
+    t = _clip((ef * s + df) / ff)
+    s = _clip((ef * t - de) / ee)
+    return delta + s[:, None] * e - t[:, None] * f, s, t
+
+
+def _clip(x: FloatArray) -> FloatArray:
+    """Numbers, real or after a complex step, in [−½, ½]."""
+    return np.where(np.abs(x.real) < 0.5, x, np.clip(x.real, -0.5, 0.5))
+
+
+def _barrier(x: Jet, wall: FloatArray, end: FloatArray, weight: FloatArray) -> Jet:
+    """Weight · φ((x − wall)/(end − wall)) of k quantities; infinite at the wall and behind it."""
+    z = (x.value - wall) / (end - wall)
+    behind, beyond = z.real <= 0.0, z.real >= 1.0
+    safe = np.where(behind | beyond, 0.5, z)
+    log, k = np.log(safe), 1.0 - safe
+    value = np.where(behind, np.inf, np.where(beyond, 0.0, -k * k * log))
+    slope = np.where(behind | beyond, 0.0, 2.0 * k * log - k * k / safe)
+    return x.compose(weight * value, weight * slope / (end - wall))

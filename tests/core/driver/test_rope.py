@@ -1,0 +1,105 @@
+"""Runs that keep a rope: its radius is kept, gives way where that leads on, and is refused where it cannot be."""
+
+import numpy as np
+import pytest
+from mobius_flow.core import CurveError, Obstacle, OptionError, RelaxOptions, Task, minimize, morph
+from mobius_flow.core.collision import is_rope, thickness
+from mobius_flow.core.knots import knot, overhand, torus_knot
+
+WALL = Obstacle([[-9.0, -9, 0], [9, -9, 0], [0, 18, 0]], [[0, 1, 2]])
+
+
+def kept(task: Task, **options: object) -> float:
+    """The least thickness of all iterates over that of the start; each leg is that of the rope that the run tells of."""
+    iterates = []
+    result = minimize(task, RelaxOptions(**options), callback=iterates.append)  # type: ignore[arg-type]
+    assert result.certified
+    assert result.last.radius is not None
+    radius = np.array(result.last.radius)
+    for before, after in zip(iterates, iterates[1:], strict=False):
+        way = [before.curve.vertices, *after.path]
+        for start, end in zip(way, way[1:], strict=False):
+            assert is_rope(after.curve.mesh, start, end, 0.999 * radius, task.obstacles)
+    assert result.least_thickness == pytest.approx(min(thickness(each.curve) for each in iterates))
+    assert result.report()["radius"] == list(radius)
+    return result.least_thickness / thickness(iterates[0].curve)
+
+
+@pytest.mark.parametrize(
+    ("task", "options"),
+    [
+        (Task(curve=knot("goeritz")), {}),
+        (Task(curve=knot("L6a4", 120)), {"max_iterations": 20}),
+        (Task(curve=overhand(60), pins=(0, 59), pin_tangents=True), {}),
+        (Task(curve=knot("4_1", 80), obstacles=(WALL,)), {"max_iterations": 10}),
+        (Task(curve=knot("5_2", 300)), {"solver": "hierarchical", "max_iterations": 12}),
+        (Task(curve=torus_knot(2, 3, 60)), {"grow": 1.2, "mesh": "fixed", "vertices": 60, "max_iterations": 25}),
+    ],
+    ids=["unknot", "link", "arc", "obstacle", "hierarchical", "growth"],
+)
+def test_nine_tenths_of_the_thickness_are_kept(task: Task, options: dict[str, object]) -> None:
+    task = Task(
+        curve=task.curve.with_vertices(task.curve.vertices + [0, 0, 4.0 if task.obstacles else 0.0]),
+        obstacles=task.obstacles,
+        pins=task.pins,
+        pin_tangents=task.pin_tangents,
+    )
+    assert kept(task, radius="keep", **options) >= 0.89
+
+
+def test_without_a_rope_it_gets_thinner() -> None:
+    iterates = []
+    minimize(knot("goeritz"), RelaxOptions(), callback=lambda each: iterates.append(each.curve))
+    assert min(map(thickness, iterates)) < 0.6 * thickness(iterates[0])
+
+
+def test_radii_of_components() -> None:
+    link = knot("L6a4", 120)
+    result = minimize(link, RelaxOptions(radius=(0.05, 0.1, 0.02), max_iterations=8))
+    assert result.last.radius == (0.05, 0.1, 0.02)
+
+
+def test_the_radius_gives_way_where_it_is_in_its_own_way() -> None:
+    """So that it ends no higher than without a rope; 8_10 has a strand that wants to be thin."""
+    start, options = knot("8_10", 100), {"vertices": 100, "mesh": "fixed"}
+    free, rope = (minimize(start, RelaxOptions(radius=each, **options)) for each in ("none", "keep"))
+    assert rope.final_energy <= (1 + 5e-4) * free.final_energy
+    assert "the rope gave way from radius" in rope.message
+    assert rope.last.radius is not None
+    assert rope.last.radius[0] < 0.8 * thickness(start)
+
+
+def test_a_given_radius_does_not_give_way() -> None:
+    start = knot("8_10", 100)
+    radius = 0.95 * thickness(start)
+    result = minimize(start, RelaxOptions(radius=radius, vertices=100, mesh="fixed", max_iterations=150))
+    assert result.last.radius == (radius,)
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "said"),
+    [
+        ({"radius": 1.0}, CurveError, "no rope of radius 1: edge"),
+        ({"radius": 1e6}, CurveError, "thickness is"),
+        ({"radius": (0.1, 0.2)}, OptionError, "radius has 2 numbers; give one, or 1"),
+        ({"radius": 0.1, "method": "penalty-lbfgs"}, OptionError, "radius needs lengths that stay"),
+    ],
+)
+def test_what_cannot_be(options: dict[str, object], error: type[Exception], said: str) -> None:
+    with pytest.raises(error, match=said):
+        minimize(knot("4_1", 60), RelaxOptions(**options))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("radius", [0.0, -1.0, float("nan"), float("inf"), "thick", (), (0.1, 0.0)])
+def test_what_is_no_radius(radius: object) -> None:
+    with pytest.raises(OptionError, match="radius"):
+        RelaxOptions(radius=radius)  # type: ignore[arg-type]
+
+
+def test_strand_moves_and_morphs_keep_no_radius_yet() -> None:
+    with pytest.raises(
+        OptionError, match="untangle='always' changes the mesh and the thickness; leave it or radius out"
+    ):
+        RelaxOptions(radius="keep", untangle="always")
+    with pytest.raises(OptionError, match="not by morphs"):
+        morph(knot("3_1"), knot("3_1"), RelaxOptions(radius="keep"))

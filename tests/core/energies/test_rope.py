@@ -1,0 +1,93 @@
+"""A rope's barrier: its derivatives, where it acts and where not."""
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve
+from mobius_flow.core.collision import thickness
+from mobius_flow.core.energies.rope import Rope
+from mobius_flow.core.knots import knot, overhand
+from mobius_flow.core.knots.shapes import smooth_knot
+from shapes import regular_polygon
+from taylor import derivative_slope, hessian_slope
+
+
+def tight(curve: Curve, share: float = 0.9) -> Rope:
+    radius = np.full(len(curve.mesh.component_sizes), share * thickness(curve))
+    return Rope(radius).frozen_at(curve)
+
+
+CURVES = {
+    "knot": lambda: knot("5_2", 120),
+    "link": lambda: knot("L6a4", 120),
+    "arc": lambda: overhand(60),
+    "plane": lambda: Curve(smooth_knot("3_1", 60).vertices[:, :2] * [1, 0.3] + [[0, 0]]),
+    "bends": lambda: Curve(regular_polygon(24).vertices * [1.0, 0.5, 1.0]),
+}
+
+
+@pytest.mark.parametrize("name", [name for name in CURVES if name != "plane"])
+def test_derivatives(name: str) -> None:
+    curve = CURVES[name]()
+    rope, v = tight(curve), np.random.default_rng(7).standard_normal(curve.vertices.shape)
+    assert rope.value(curve) > 0.0
+    assert derivative_slope(rope, curve, v, 1e-4 * curve.length) == pytest.approx(2.0, abs=0.05)
+    assert hessian_slope(rope, curve, v, 1e-5 * curve.length) >= 2.9
+    product = rope.sparse_hessian(curve) @ v.ravel()
+    np.testing.assert_allclose(
+        product, rope.hessian_product(curve, v).ravel(), rtol=1e-9, atol=1e-9 * abs(product).max()
+    )
+
+
+def test_two_dimensions() -> None:
+    curve = Curve(regular_polygon(30, 2).vertices * [1.0, 0.4])
+    rope, v = tight(curve), np.random.default_rng(9).standard_normal((30, 2))
+    assert rope.value(curve) > 0.0
+    assert derivative_slope(rope, curve, v, 1e-5) == pytest.approx(2.0, abs=0.05)
+
+
+def test_thin_ropes_cost_nothing_and_thick_ones_everything() -> None:
+    curve = knot("4_1", 150)
+    thick = thickness(curve)
+    assert Rope(np.array([0.4 * thick])).value(curve) == 0.0
+    costs = [Rope(np.array([share * thick])).value(curve) for share in (0.8, 0.9, 0.99)]
+    assert 0.0 < costs[0] < costs[1] < costs[2] < np.inf
+    assert Rope(np.array([1.001 * thick])).value(curve) == np.inf
+
+
+def test_it_does_not_depend_on_the_unit() -> None:
+    curve = knot("L6a4", 90)
+    scaled = curve.with_vertices(1e3 * curve.vertices)
+    radius = np.full(3, 0.9 * thickness(curve))
+    assert Rope(1e3 * radius).value(scaled) == pytest.approx(Rope(radius).value(curve), rel=1e-9)
+
+
+def test_radii_of_components() -> None:
+    """Two straight strands a distance of 1 apart are ropes of .3 and .6, but not of .5 each."""
+    t = np.linspace(0.0, 4.0, 41)
+    strands = [np.stack([t, 0 * t, np.full(41, z)], axis=1) for z in (0.0, 1.0)]
+    curve = Curve.from_components(strands, closed=(False, False))
+    assert 0.0 < Rope(np.array([0.3, 0.6])).value(curve) < np.inf
+    assert Rope(np.array([0.3, 0.71])).value(curve) == np.inf
+    assert Rope(np.array([0.1, 0.2])).value(curve) == 0.0
+
+
+def test_what_is_frozen_stays_until_lengths_change() -> None:
+    curve = knot("3_1", 60)
+    rope = tight(curve)
+    assert rope.frozen_at(curve) is rope
+    assert rope.frozen_at(curve.with_vertices(1.001 * curve.vertices)) is rope
+    assert rope.frozen_at(curve.with_vertices(1.1 * curve.vertices)) is not rope
+
+
+def test_split_edges_may_bend_as_they_do() -> None:
+    """A polygon whose edges have been split looks twice as sharp at its old corners: no wall, until it gets smooth."""
+    curve = regular_polygon(12)
+    finer = Curve(np.repeat(curve.vertices, 2, axis=0) * 1.0)
+    middle = 0.5 * (curve.vertices + np.roll(curve.vertices, -1, axis=0))
+    finer = Curve(np.stack([curve.vertices, middle], axis=1).reshape(-1, 3))
+    rope = Rope(np.array([0.9 * thickness(curve)]))
+    assert rope.value(finer) == np.inf
+    allowed = rope.frozen_at(finer)
+    assert np.isfinite(allowed.value(finer))
+    smooth = regular_polygon(24)
+    assert (allowed.frozen_at(smooth).tightest == rope.radius).all()

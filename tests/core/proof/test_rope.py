@@ -1,0 +1,140 @@
+"""Trajectories of ropes: what is one is accepted, and each way of not being one is told, by both doors."""
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mobius_flow.core import Mesh, Obstacle, RelaxOptions, Trajectory, minimize
+from mobius_flow.core.collision import is_rope
+from mobius_flow.core.knots import knot
+from mobius_flow.core.proof import checker, verify
+from mobius_flow.core.proof.filter import FloatingSieve
+
+Arrays = dict[str, np.ndarray]
+COUNT = int(os.environ.get("MOBIUS_FLOW_MOTIONS", "30"))
+
+
+@pytest.fixture(scope="module")
+def run() -> Arrays:
+    """A short relaxation of a figure-eight knot with few vertices."""
+    trajectory = Trajectory()
+    options = RelaxOptions(radius="keep", max_iterations=6, vertices=40, mesh="fixed")
+    minimize(knot("4_1", 40), options, callback=trajectory.add)
+    return {name: np.asarray(array) for name, array in trajectory.arrays().items()}
+
+
+def verdicts(path: Path, arrays: Arrays) -> tuple[checker.Verdict, checker.Verdict]:
+    np.savez(path / "rope.npz", **arrays)
+    return verify(path / "rope.npz"), checker.check(path / "rope.npz")
+
+
+def test_a_run_is_accepted(tmp_path: Path, run: Arrays) -> None:
+    for verdict in verdicts(tmp_path, run):
+        assert verdict.accepted
+        assert verdict.radius == tuple(run["radius"])
+        assert "a rope of radius" in str(verdict)
+
+
+def test_files_without_a_radius_say_nothing_of_ropes(tmp_path: Path, run: Arrays) -> None:
+    for verdict in verdicts(tmp_path, {name: array for name, array in run.items() if name != "radius"}):
+        assert verdict.accepted
+        assert "rope" not in str(verdict)
+
+
+@pytest.mark.parametrize("factor", [1.4, 2.0, 50.0, 1e6])
+def test_no_rope_is_thicker_than_it_is(tmp_path: Path, run: Arrays, factor: float) -> None:
+    one, other = verdicts(tmp_path, run | {"radius": factor * run["radius"]})
+    assert not one.accepted
+    assert not other.accepted
+    assert (one.stage, one.frame) == (other.stage, other.frame)
+
+
+@pytest.mark.parametrize(
+    ("radius", "reason"),
+    [
+        ([], "a number above 0"),
+        ([0.0], "a number above 0"),
+        ([-0.1], "a number above 0"),
+        ([np.nan], "not finite"),
+        ([0.1, 0.1], "has 2 numbers, but stage_000 has 1 components"),
+        ([[0.1]], "it must be a list of float64"),
+        ([1], "it must be a list of float64"),
+    ],
+)
+def test_radii_that_are_none(tmp_path: Path, run: Arrays, radius: list[object], reason: str) -> None:
+    for verdict in verdicts(tmp_path, run | {"radius": np.array(radius)}):
+        assert not verdict.accepted
+        assert reason in verdict.reason
+
+
+def moved(run: Arrays, seed: int) -> Arrays:
+    """A vertex of some frame is elsewhere: a forgery, unless it is a rope all the same."""
+    rng, stage = np.random.default_rng(seed), run["stage_000"].copy()
+    frame, vertex = rng.integers(1, len(stage)), rng.integers(stage.shape[1])
+    stage[frame, vertex] += rng.standard_normal(3) * run["radius"] * rng.choice([0.5, 2.0, 5.0])
+    return run | {"stage_000": stage}
+
+
+def crowded(start: np.ndarray, end: np.ndarray, radius: float) -> bool:
+    """Whether at some of the times on a leg two points more than a whole circle apart along it are too near."""
+    for t in np.linspace(0.0, 1.0, 9):
+        p = (1 - t) * start + t * end
+        points = np.concatenate([(1 - s) * p + s * np.roll(p, -1, axis=0) for s in (0.0, 0.25, 0.5, 0.75)])
+        points = points.reshape(4, -1, 3).swapaxes(0, 1).reshape(-1, 3)
+        arc = np.cumsum(np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1))
+        along = np.abs(arc[:, None] - arc)
+        far = np.minimum(along, arc[-1] - along) > 2 * np.pi * radius
+        if (np.linalg.norm(points[:, None] - points, axis=2)[far] < 2 * radius).any():
+            return True
+    return False
+
+
+def test_forged_vertices(tmp_path: Path, run: Arrays) -> None:
+    """Of some forgeries none on whose way strands are too near is accepted, and all that the program proves are."""
+    mesh, radius, refused = Mesh(tuple(run["component_sizes_000"].tolist())), run["radius"], 0
+    for seed in range(COUNT):
+        forged = moved(run, seed)
+        legs = list(zip(forged["stage_000"], forged["stage_000"][1:], strict=False))
+        np.savez(tmp_path / "forged.npz", **forged)
+        accepted = checker.check(tmp_path / "forged.npz", FloatingSieve).accepted
+        if any(crowded(a, b, radius[0]) for a, b in legs):
+            assert not accepted
+            refused += 1
+        elif all(is_rope(mesh, a, b, 1.001 * radius) for a, b in legs):
+            assert accepted
+    assert refused > COUNT / 5
+
+
+def test_the_plain_checker_agrees_about_forgeries(tmp_path: Path, run: Arrays) -> None:
+    answers = [[verdict.accepted for verdict in verdicts(tmp_path, moved(run, seed))] for seed in range(12)]
+    assert all(one == other for one, other in answers)
+    assert {one for one, _ in answers} == {True, False} or not any(one for one, _ in answers)
+
+
+def test_obstacles_are_as_far_as_the_radius(tmp_path: Path) -> None:
+    wall = Obstacle([[-5.0, -5, 0], [5, -5, 0], [0, 9, 0]], [[0, 1, 2]])
+    strand = np.array([[0.0, 0, 1], [1, 0, 1]])
+    arrays = {
+        "stage_000": np.stack([strand, strand - [0, 0, 0.5]]),
+        "component_sizes_000": np.array([2]),
+        "component_closed_000": np.array([False]),
+        "obstacle_000_vertices": wall.vertices,
+        "obstacle_000_faces": wall.faces,
+    }
+    for radius, accepted in ((0.49, True), (0.51, False)):
+        for verdict in verdicts(tmp_path, arrays | {"radius": np.array([radius])}):
+            assert verdict.accepted is accepted
+            assert accepted or verdict.obstacle == 0
+
+
+def test_a_corner_gets_too_sharp(tmp_path: Path) -> None:
+    arrays = {
+        "stage_000": np.array([[[1.0, 0, 0], [0, 0, 0], [0, 1.0, 0]], [[1.0, 0, 0], [0, 0, 0], [0.4, 0.9, 0]]]),
+        "component_sizes_000": np.array([3]),
+        "component_closed_000": np.array([False]),
+    }
+    for radius, accepted in ((0.2, True), (0.8, False)):
+        for verdict in verdicts(tmp_path, arrays | {"radius": np.array([radius])}):
+            assert verdict.accepted is accepted
+            assert accepted or "bends too sharply" in verdict.reason
