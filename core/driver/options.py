@@ -132,9 +132,8 @@ class RelaxOptions:
     radius: str | float | tuple[float, ...] = option(
         "none",
         "Radius",
-        "radius of a rope that the curve stays: no two strands come within two radii, none within one of an obstacle, "
-        "and nothing bends more tightly; a number in the curve's units, or one for each component; keep, nine tenths "
-        "of the thickness at the start, and less only where that leads to a lower minimum",
+        "radius of the rope that the curve stays, one or one for each component; keep: nine tenths of the thickness at "
+        "the start, less only where that leads to a lower minimum",
         choices=RADII,
         objects=("a number above 0, or one for each component", _are_radii),
         read=_radius,

@@ -36,9 +36,7 @@ class Rope:
     radius: FloatArray
     seen: Curve | None = None
     tightest: FloatArray | None = None  # bending radius of each component, if its mesh does not allow the rope's
-    weight: float = (
-        0.05  # with a tenth of it curves stick to the wall, with ten times as much they stop off their minima
-    )
+    weight: float = 0.05  # a tenth of it lets curves stick to the wall, ten times as much holds them off their minima
     reach: float = 1.5  # of strands' distance, over 2r
     bend: float = 2.0  # of bending radii, over r
 

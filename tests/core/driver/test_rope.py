@@ -10,7 +10,7 @@ WALL = Obstacle([[-9.0, -9, 0], [9, -9, 0], [0, 18, 0]], [[0, 1, 2]])
 
 
 def kept(task: Task, **options: object) -> float:
-    """The least thickness of all iterates over that of the start; each leg is that of the rope that the run tells of."""
+    """The least thickness of all iterates over that of the start; each leg is that of the rope of the last radius."""
     iterates = []
     result = minimize(task, RelaxOptions(**options), callback=iterates.append)  # type: ignore[arg-type]
     assert result.certified
