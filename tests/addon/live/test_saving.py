@@ -6,7 +6,7 @@ import pytest
 from blender_scenes import add_trefoil, evaluated, relax, stored
 from mobius_flow.addon.curves import bake, keyframes
 from mobius_flow.addon.live.run import KeyWriter, RunState
-from modal_operator import everything, keys, rings
+from modal_operator import everything, keys, rings, splines_of
 
 
 @pytest.fixture(autouse=True)
@@ -46,6 +46,11 @@ def test_in_mid_run_the_file_has_everything_as_it_was(operator, path, scene):
         np.testing.assert_array_equal(stored(obj.data), points)
     assert operator.event() == {"PASS_THROUGH"}, "saving does not end the run"
     operator.run.cancel()
+    names = [obj.name for obj in objects]
+    with bpy.data.libraries.load(path) as (_, loaded):
+        loaded.objects = list(names)
+    for obj, name in zip(loaded.objects, names, strict=True):
+        assert splines_of(obj.data) == before["all"][name], "also where the extension is not"
     reopen(path)
     assert everything() == before
 
