@@ -267,7 +267,7 @@ def _doubtful(
     # one stays above the other along a coordinate axis
     room = gap + width[:, None]
     above = (differences > room).all(axis=(0, 1)) | (differences < -room).all(axis=(0, 1))
-    left = np.flatnonzero(~above.any(axis=1))
+    left = np.flatnonzero(~np.any(above, axis=1))
     width = width[left]
     vertices, x, y, differences = vertices[:, left], x[:, :, left], y[:, :, left], differences[:, :, left]
     edges = np.stack([x[1] - x[0], *(q - p for p, q in combinations(y, 2))], axis=1)
@@ -312,7 +312,7 @@ def _normal(kind: str, k: int, other: int, differences: FloatArray, edges: Float
     if kind == "chord":
         return np.asarray(differences.sum(axis=0))
     if kind == "ends":
-        return differences[k]
+        return np.asarray(differences[k])
     if kind == "line":
         c, e = differences[k], edges[other]
         along = np.einsum("pm,pm->p", c, e) / np.maximum(np.einsum("pm,pm->p", e, e), np.finfo(np.float64).tiny)
