@@ -150,7 +150,9 @@ def shuffled_down(
     """
     rng, vain, trial = np.random.default_rng(seed), 0, diagram
     while vain < patience and diagram.crossings <= most and not enough(diagram):
-        move, vain = shuffled(trial, rng), vain + 1
+        # some diagrams have no way on: every now and then it begins anew
+        trial, vain = trial if vain % 20 else diagram, vain + 1
+        move = shuffled(trial, rng)
         trial = trial if move is None else simplified(move.after)
         if trial.crossings < diagram.crossings:
             diagram, vain = trial, 0
