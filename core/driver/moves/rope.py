@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, field
 
-from ...base.arguments import checked_fields, number
+from ...base.arguments import number
 from ...descent import NoStep
 from ...energies.components import energy_scale
 from ...energies.rope import Rope
@@ -11,7 +11,6 @@ from ..outcome import Outcome
 from ..run import Change, Move
 
 
-@checked_fields
 @dataclass(eq=False)
 class GiveWay(Move):
     """Make a rope that keeps its thickness thinner where the curve rests against it, or finds no step for it."""

@@ -1,5 +1,7 @@
 """Runs that keep a rope: its radius is kept, gives way where that leads on, and is refused where it cannot be."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from mobius_flow.core import CurveError, Obstacle, OptionError, RelaxOptions, Task, minimize, morph
@@ -16,9 +18,9 @@ def kept(task: Task, **options: object) -> float:
     assert result.certified
     assert result.last.radius is not None
     radius = np.array(result.last.radius)
-    for before, after in zip(iterates, iterates[1:], strict=False):
+    for before, after in pairwise(iterates):
         way = [before.curve.vertices, *after.path]
-        for start, end in zip(way, way[1:], strict=False):
+        for start, end in pairwise(way):
             assert is_rope(after.curve.mesh, start, end, 0.999 * radius, task.obstacles)
     assert result.least_thickness == pytest.approx(min(thickness(each.curve) for each in iterates))
     assert result.report()["radius"] == list(radius)
@@ -39,7 +41,7 @@ def kept(task: Task, **options: object) -> float:
 )
 def test_nine_tenths_of_the_thickness_are_kept(task: Task, options: dict[str, object]) -> None:
     task = Task(
-        curve=task.curve.with_vertices(task.curve.vertices + [0, 0, 4.0 if task.obstacles else 0.0]),
+        curve=task.curve.with_vertices(task.curve.vertices + np.array([0, 0, 4.0 if task.obstacles else 0.0])),
         obstacles=task.obstacles,
         pins=task.pins,
         pin_tangents=task.pin_tangents,
