@@ -4,10 +4,9 @@ import argparse
 import json
 import sys
 from collections.abc import Iterator, Mapping
-from functools import partial
 from pathlib import Path
 
-from ..core import Curve, Iterate, MobiusFlowError, RelaxOptions, Result, Status, Task, Trajectory, relax, write_curve
+from ..core import Curve, Iterate, MobiusFlowError, RelaxOptions, Result, Status, Task, Trajectory, relax
 from ..core.base.errors import counted
 from ..core.descent.task import centred
 from ..core.driver import Relaxation, finish
@@ -171,16 +170,16 @@ def write_results(
     if scene or options.output == curves.STREAM:  # of what is kept
         name = f"{Path(options.output).stem}.obj" if scene else f"curve.{options.format or 'txt'}"
     extras = (options.report, report_as_json), (options.trajectory, trajectory)
-    jobs: list[tuple[str, Write, Write, str | None]]
-    jobs = [(path, write, write, None) for path, write in extras if path is not None]
-    jobs.append((options.output, output, partial(write_curve, curve=result.curve) if scene else output, name))
+    jobs: list[tuple[str, Write, str | None]]
+    jobs = [(path, write, None) for path, write in extras if path is not None]
+    jobs.append((options.output, output, name))  # of a film that is not written the curve is kept, by the name's suffix
     slow = {path: not is_file(path) or (scene and path == options.output) for path, *_ in jobs}
     failures: list[str] = []
     interrupted = False
-    for path, write, rescue, name in sorted(jobs, key=lambda job: slow[job[0]]):
+    for path, write, name in sorted(jobs, key=lambda job: slow[job[0]]):
         signals.hold()
         try:
-            failures += kept(path, patiently(write) if slow[path] else write, rescue, name)
+            failures += kept(path, patiently(write) if slow[path] else write, write, name)
         except KeyboardInterrupt as interrupt:
             interrupted = True
             failures.append(str(interrupt))

@@ -197,6 +197,20 @@ def test_a_film_can_be_interrupted_and_the_curve_is_kept(when, terminated, monke
     assert len(read_curve(kept[1])) == 60
 
 
+@pytest.mark.usefixtures("interrupted_at_the_end")
+def test_of_a_film_that_is_not_begun_the_curve_is_kept(monkeypatch, run):
+    """As the signal has ended what was written to a pipe before."""
+    os.mkfifo("pipe")
+    reader = os.open("pipe", os.O_RDONLY | os.O_NONBLOCK)
+    monkeypatch.setattr(places.export, "require_blender", lambda: None)
+    monkeypatch.setattr(places.export, "write_movie", lambda *_: pytest.fail("it is begun"))
+    status, _, said = run(*FILM[:4], "pipe", *FILM[5:])
+    os.close(reader)
+    assert status == 130
+    (kept,) = re.findall(r"film\.mp4 is not written \(the result is kept as (.*?)\)", said)
+    assert len(read_curve(kept)) == 60
+
+
 def test_memory_that_runs_out_keeps_the_curve(on_iterate, run):
     def failing(iterate):
         if iterate.index == 3:
