@@ -60,10 +60,10 @@ def writing(
         values = there - skipped + np.arange(float(len(frames)))
         add_keys(data.shape_keys, f"{obj.name} Relaxation", "eval_time", 0, *there_and_back(frames, values, timing))
     elif output is Output.FCURVES:  # one for every coordinate of every point
-        values = np.stack([key.points for key in keys.keys], axis=-1).astype(np.float64)
-        for path, point in zip(point_paths(data), values, strict=True):
+        places = np.stack([key.points for key in keys.keys], axis=-1).astype(np.float64)
+        for path, point in zip(point_paths(data), range(len(places)), strict=True):
             for axis in range(3):
-                add_keys(data, f"{obj.name} Relaxation", path, axis, frames, point[axis])
+                add_keys(data, f"{obj.name} Relaxation", path, axis, frames, places[point, axis])
             yield
 
 

@@ -49,7 +49,7 @@ def rope_motion(
     come back.
     """
     exponent = int(np.frexp(max(np.abs(start).max(), np.abs(end).max(), *(each.size for each in obstacles)))[1])
-    points = tuple(np.ldexp(p.T, -exponent, order="C") for p in (start, end))
+    points = np.ldexp(start.T, -exponent, order="C"), np.ldexp(end.T, -exponent, order="C")
     own = np.ldexp(radius, -exponent) * (1.0 + _SLACK) + _SLACK
     spans = [p[:, mesh.heads] - p[:, mesh.tails] for p in points]
     limit, edge, saved = _bends(mesh, spans, own[mesh.edge_component])
@@ -114,8 +114,8 @@ def _near(
     widest = float(radius.max())
     neighbours = np.stack([np.arange(mesh.edges), mesh.next])[:, mesh.next != np.arange(mesh.edges)]
     found = ((tree.order[a], tree.order[b]) for a, b in tree.pairs(within(2.0 * widest)))
-    for pair in chain([neighbours], found):
-        i, j = np.sort(pair, axis=0)
+    for a, b in chain([(neighbours[0], neighbours[1])], found):
+        i, j = np.minimum(a, b), np.maximum(a, b)
         # along the curve between the edges, ahead from i and back
         ways = np.stack([position[j] - position[i] - longest[i], once_round[component[i]] - position[j] - longest[j]])
         ways[1] += position[i]
@@ -131,30 +131,31 @@ def _near(
             continue
         # parts of i from distance u on, and of j from v to w, that are half a circle apart or more, but for a step
         back = ways[1] < ways[0]
-        k = np.arange(_STEPS)[:, None]
-        rest = half - ways.min(axis=0)
-        u = np.maximum(rest * (1.0 - (k + 1) / _STEPS), 0.0) / longest[i]
-        v, w = rest * k / _STEPS / longest[j], np.where(k + 1 == _STEPS, 1.0, rest * (k + 1) / _STEPS / longest[j])
+        rest, step = half - ways.min(axis=0), np.arange(_STEPS)[:, None] / _STEPS
+        u = np.maximum(rest * (1.0 - step - 1.0 / _STEPS), 0.0) / longest[i]
+        v = rest * step / longest[j]
+        w = np.where(step + 1.0 / _STEPS == 1.0, 1.0, rest * (step + 1.0 / _STEPS) / longest[j])
         there = (u <= 1.0) & (v <= 1.0)
         i, j, back = (np.broadcast_to(each, there.shape)[there] for each in (i, j, back))
         u, v, w = u[there], v[there], np.minimum(w[there], 1.0)
         # u, v, w count from the ends that are nearer along the curve, as shares of the edges
         ends = [(i, np.where(back, u, 1.0 - u)), (i, np.where(back, 1.0, 0.0))]
         ends += [(j, np.where(back, 1.0 - s, s)) for s in (v, w)]
-        places = tuple(
-            np.concatenate([p[:, mesh.tails[edge]] + s * e[:, edge] for edge, s in ends], axis=1)
+        first, last = (
+            np.concatenate([p[:, mesh.tails[edge]] + share * e[:, edge] for edge, share in ends], axis=1)
             for p, e in zip(points, spans, strict=True)
         )
-        yield places, np.arange(4 * len(i)).reshape(4, -1), np.stack([i, j]), 2.0 * radius[component[i]]
+        yield (first, last), np.arange(4 * len(i)).reshape(4, -1), np.stack([i, j]), 2.0 * radius[component[i]]
     if obstacles:
         still = still_triangles(tuple(obstacles), exponent)
-        places = tuple(np.concatenate([p, np.ldexp(still.vertices.T, -exponent)], axis=1) for p in points)
+        corners_of = np.ldexp(still.vertices.T, -exponent)
+        first, last = (np.concatenate([p, corners_of], axis=1) for p in points)
         for a, b in tree.pairs_with(still.tree, within(widest)):
             for k in range(0, len(a), _BATCH):
                 edges, others = a[k : k + _BATCH], b[k : k + _BATCH]
                 vertices = np.concatenate([tree.corners[:, edges], mesh.size + still.tree.corners[:, others]])
                 names = np.stack([tree.order[edges], still.tree.order[others]])
-                yield places, vertices, names, radius[component[names[0]]]
+                yield (first, last), vertices, names, radius[component[names[0]]]
 
 
 class Corners(NamedTuple):
@@ -189,9 +190,13 @@ class Corners(NamedTuple):
 
     def halves(self, k: IntArray) -> "Corners":
         """Some of them in the first half of the time, and then these in the second."""
-        parts = [(u[:, k], 0.5 * (u[:, k] + v[:, k]), v[:, k]) for u, v in self]
-        e, f = (tuple(np.concatenate([u, v], axis=1) for u, v in ((a, b), (b, c))) for a, b, c in parts)
-        return Corners(e, f)  # type: ignore[arg-type]
+        (e, e1), (f, f1) = ((u[:, k], v[:, k]) for u, v in self)
+        starts, middles, ends = (e, f), (0.5 * (e + e1), 0.5 * (f + f1)), (e1, f1)
+        first, last = (
+            [np.concatenate(each, axis=1) for each in zip(*two, strict=True)]
+            for two in ((starts, middles), (middles, ends))
+        )
+        return Corners((first[0], last[0]), (first[1], last[1]))
 
 
 def _cross(u: FloatArray, v: FloatArray) -> FloatArray:
@@ -215,8 +220,11 @@ def _bends(mesh: Mesh, spans: list[FloatArray], radius: FloatArray) -> tuple[flo
     """
     edges = np.arange(mesh.edges)
     before, after = mesh.previous, mesh.next
-    corners = Corners(*([p[:, k] for p in spans] for k in (before, edges)))
-    low, high, _, own = corners.tangents()
+
+    def corners(k: IntArray, j: IntArray) -> Corners:
+        return Corners((spans[0][:, k], spans[1][:, k]), (spans[0][:, j], spans[1][:, j]))
+
+    low, high, _, own = corners(before, edges).tangents()
     is_corner = before != edges
     saved = np.where(is_corner, 2.0 * radius * shortcut(low), 0.0)
     high = np.where(is_corner, high, 0.0)
@@ -225,9 +233,7 @@ def _bends(mesh: Mesh, spans: list[FloatArray], radius: FloatArray) -> tuple[flo
     if not len(which):
         return 1.0, 0, saved
     first, size, k, limit, worst = np.zeros(len(which)), 1.0, np.arange(len(which)), 1.0, int(which[0])
-    tail, head = (
-        Corners(*([p[:, j] for p in spans] for j in pair)) for pair in ((before[which], which), (which, after[which]))
-    )
+    tail, head = corners(before[which], which), corners(which, after[which])
     for _ in range(_HALVINGS):
         tail, head, size = tail.halves(k), head.halves(k), 0.5 * size
         which, first = np.tile(which[k], 2), np.concatenate([first[k], first[k] + size])

@@ -34,7 +34,8 @@ def _are_lengths(value: object) -> bool:
 
 
 def _are_radii(value: object) -> bool:
-    return _are_lengths(np.ravel(value) if isinstance(value, Real) else value) and np.size(value) > 0
+    numbers = [value] if isinstance(value, Real) and not isinstance(value, bool) else value
+    return _are_lengths(numbers) and bool(np.asarray(numbers).size)
 
 
 def _is_a(protocol: type, value: object) -> bool:

@@ -88,7 +88,8 @@ class Rope:
         if not np.isfinite(total):
             return total, np.zeros_like(vertices)
         first = np.concatenate([apart.first, bent.first])
-        return total, scatter_first(curve.mesh, *np.concatenate([strands, corners], axis=1), first)
+        i, j = np.concatenate([strands, corners], axis=1)
+        return total, scatter_first(curve.mesh, i, j, first)
 
     def _strands(self, curve: Curve) -> tuple[IntArray, IntArray]:
         """Unordered pairs of edges within the barrier's reach that are far enough along the curve."""

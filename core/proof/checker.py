@@ -298,6 +298,7 @@ def stay_apart(first: Sequence[Motion], second: Sequence[Motion], distance: int)
     def difference(p: Sequence[Polynomial], q: Sequence[Polynomial]) -> list[Polynomial]:
         return list(map(minus, p, q))
 
+    cases: list[tuple[Polynomial, Polynomial, list[Polynomial]]]
     cases = [(less(inner(c, c), lift), lift, []) for c in (difference(p, q) for p in x for q in y)]
     sides = list(combinations(y, 2))
     for points, lines in ((x, sides), (y, [(x[0], x[1])])):
@@ -464,7 +465,7 @@ class RopeLeg:
             tuple((Fraction(x) + Fraction(y)) / 2 for x, y in zip(p, q, strict=True))
             for p, q in zip(start, end, strict=True)
         ]
-        return [RopeLeg(*ends, polygons, radius, halvings - 1) for ends in ((start, middle), (middle, end))]
+        return [RopeLeg(a, b, polygons, radius, halvings - 1) for a, b in ((start, middle), (middle, end))]
 
     def piece(self, k: int, *shares: int) -> list[Motion]:
         """The ends of a part of an edge, in units that are so many parts of the usual one."""

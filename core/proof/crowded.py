@@ -76,7 +76,7 @@ def crowded(
         ]
         names = np.stack([i, j])
         corners = np.arange(4 * len(i)).reshape(4, -1)
-        left = doubtful(*points, corners, 0.0, 2.0 * r[i])
+        left = doubtful(points[0], points[1], corners, 0.0, 2.0 * r[i])
         yield from zip(*tails[np.unique(names[:, left[0]], axis=1)].tolist(), repeat(None))
 
     if len(still):
@@ -84,7 +84,7 @@ def crowded(
         boxes = still.reshape(-1, 3, 3).min(axis=1), still.reshape(-1, 3, 3).max(axis=1)
         for i, t in overlapping((low, high), boxes):
             corners = np.stack([tails[i], heads[tails[i]], *(n + 3 * t + k for k in range(3))])
-            left = doubtful(*moving, corners, 0.0, r[i])
+            left = doubtful(moving[0], moving[1], corners, 0.0, r[i])
             yield from zip(left[0].tolist(), left[1].tolist(), ((left[2] - n) // 3).tolist(), strict=True)
 
 
@@ -105,7 +105,9 @@ def _corners(spans: FloatArray, after: IntArray, longest: FloatArray) -> tuple[F
     below = shortest[corner] * shortest[after[corner]] + cosines.min(axis=0)
     most = np.sqrt((normals * normals).sum(axis=2).max(axis=0)) / np.maximum(below, 1e-300) + SLACK
     most[below <= SLACK * sizes] = np.inf
-    needed = np.bincount(corner, most, len(longest)) + np.bincount(after[corner], most, len(longest))
+    needed, saved = np.zeros_like(longest), np.zeros_like(longest)
+    needed[corner] = most
+    needed[after[corner]] += most
 
     middle = normals[1] / np.maximum(np.linalg.norm(normals[1], axis=1), 1e-300)[:, None]
     least = np.einsum("tem,em->te", normals, middle).min(axis=0)
@@ -113,4 +115,5 @@ def _corners(spans: FloatArray, after: IntArray, longest: FloatArray) -> tuple[F
     x = np.maximum(x * (1.0 - SLACK) - SLACK, 0.0)
     y = 1.0 / np.maximum(x, 1.0)
     arc = x**3 / (3.0 + 1.8 * x**2), x - 1.5708 + y - y**3 / 3.0 + y**5 / 5.0 - y**7 / 7.0
-    return needed, shortest, np.bincount(after[corner], 2.0 * np.maximum(*arc), len(longest))
+    saved[after[corner]] = 2.0 * np.maximum(*arc)
+    return needed, shortest, saved
