@@ -39,7 +39,7 @@ class Narrow(Problem):
 
     width: float
 
-    def free_motion(self, start: np.ndarray, end: np.ndarray) -> FreeMotion:
+    def free_motion(self, start: np.ndarray, end: np.ndarray, *, as_rope: bool = True) -> FreeMotion:
         way = float(np.abs(end - start).max()) / self.units.scale
         return FreeMotion(1.0) if way <= self.width else FreeMotion(self.width / way, Contact((0, 2)), Limit.CONTACT)
 

@@ -28,7 +28,7 @@ def _are_lengths(value: object) -> bool:
         return False
     try:
         lengths = np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         return False
     return lengths.ndim == 1 and bool(np.isfinite(lengths).all() and (lengths > 0.0).all())
 
@@ -284,7 +284,7 @@ class RelaxOptions:
         if self.untangle == "always" and not self.resolved.may_untangle:
             other = "mesh='fixed'" if self.mesh == "fixed" else "symmetry" if self.symmetry else "edge_lengths"
             other = "radius" if self.radius != "none" else other
-            raise OptionError(f"untangle='always' changes the mesh and the thickness; leave it or {other} out")
+            raise OptionError(f"untangle='always' changes the mesh; leave it or {other} out")
         if self.symmetry is not None:
             if self.symmetry != "auto" and not IS_NAME.fullmatch(self.symmetry):
                 raise OptionError(f"symmetry is {short(self.symmetry)}; give auto, or a group such as C3, D2, S4 or Th")

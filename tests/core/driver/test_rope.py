@@ -99,9 +99,7 @@ def test_what_is_no_radius(radius: object) -> None:
 
 
 def test_strand_moves_and_morphs_keep_no_radius_yet() -> None:
-    with pytest.raises(
-        OptionError, match="untangle='always' changes the mesh and the thickness; leave it or radius out"
-    ):
+    with pytest.raises(OptionError, match="untangle='always' changes the mesh; leave it or radius out"):
         RelaxOptions(radius="keep", untangle="always")
     with pytest.raises(OptionError, match="not by morphs"):
         morph(knot("3_1"), knot("3_1"), RelaxOptions(radius="keep"))
