@@ -23,8 +23,8 @@ class VIEW3D_MT_mobius_flow(bpy.types.Menu):
     def draw(self, _context: bpy.types.Context) -> None:
         """Offer everything; entries that do not apply are grey, and their tooltips say why."""
         self.layout.operator_context = "INVOKE_REGION_WIN"  # or else they do the whole job while Blender waits
-        # Operator Search lists this first for those who type no ö
-        operator(self.layout, "relax", text="Relax and Untangle (Mobius Flow)", icon="PLAY")
+        # Operator Search lists this first for those who type no ö; "(Mobius" would not begin with what they type
+        operator(self.layout, "relax", text="Relax and Untangle - Mobius Flow", icon="PLAY")
         for group in _OPERATORS:
             self.layout.separator()
             for name in group:
