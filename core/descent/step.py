@@ -80,7 +80,7 @@ class Step:
     """An accepted step."""
 
     legs: tuple[Leg, ...]  # the straight motions that lead to its end, one after the other, at least one
-    size: float  # its τ
+    size: float  # its τ; 0 for a motion of a move, which no search along a direction has found
     limited_by: Contact | None  # the contact that limited τ, if any
 
     @property

@@ -24,7 +24,7 @@ Event = Start | Step | NoStep | Outcome
 class Change:
     """What a move proposes: proved steps, if any, and then another view of the curve they lead to."""
 
-    steps: tuple[Step, ...] = ()  # motions that come first
+    steps: tuple[Step, ...] = ()  # motions that come first; that they end on the constraints is up to the move
     point: Point | None = None  # the curve reached, in another problem: with other constraints, or on another mesh
     method: Method | None = None  # the method that takes over
     resolution: Resolution | None = None  # new bounds of edge lengths

@@ -44,7 +44,7 @@ class Iterate:
       have the ``energy``, ``gradient_norm`` and ``edge_length_error`` of its end.
     - ``gradient_norm``: norm of the projected gradient (dimensionless), in the metric in which the method takes it:
       that of this curve, or of one up to two steps before.
-    - ``step_size``: the step size τ that led here, 0 for the start and where the mesh changes.
+    - ``step_size``: the step size τ that led here, 0 for the start, for motions of moves, and where the mesh changes.
     - ``path``: the motion from the previous iterate: vertices, each (n, m), at the ends of its straight legs, of which
       the last is this curve.  Empty for the start, and where the mesh changes: there this is the previous curve with
       other vertices on its edges.

@@ -13,7 +13,7 @@ from ..move import Change, Move
 
 @dataclass(eq=False)
 class Turning(Move):
-    """A rigid motion about the barycenter after every second step."""
+    """A rotation about the middle of the curve's box after every second step; the next one puts the barycenter back."""
 
     def stepped(self, step: Step) -> Change | None:
         run = self.run
