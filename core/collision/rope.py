@@ -126,7 +126,11 @@ def _near(
         for k in range(0, int(whole.sum()), _BATCH):
             a, b = i[whole][k : k + _BATCH], j[whole][k : k + _BATCH]
             yield points, corners(mesh, a, b), np.stack([a, b]), radius[component[a]] + radius[component[b]]
+        # of others only a part counts; most are apart all the same
         i, j, ways, half = i[~whole], j[~whole], ways[:, ~whole], half[~whole]
+        width = 2.0 * radius[component[i]]
+        near = march(*points, corners(mesh, i, j), np.zeros(len(i)), 1.0, width) < 1.0
+        i, j, ways, half = i[near], j[near], ways[:, near], half[near]
         if not len(i):
             continue
         # parts of i from distance u on, and of j from v to w, that are half a circle apart or more, but for a step
