@@ -4,11 +4,11 @@ import math
 from dataclasses import dataclass, field
 
 from ...base.arguments import number
-from ...descent import NoStep
+from ...descent import NoStep, Step
 from ...energies.components import energy_scale
 from ...energies.rope import Rope
 from ..outcome import Outcome
-from ..run import Change, Move
+from ..run import Change, Move, gradient_bound
 
 
 @dataclass(eq=False)
@@ -19,11 +19,20 @@ class GiveWay(Move):
     pressing: float = number(1e-4)  # part of the energy that the rope's barrier has where the curve rests against it
     gain: float = number(3e-4)  # part of the energy without which the next time is pointless
     most: int = number(12)  # times
+    nearly: float = number(100.0)  # times the gradient of curves at rest, at which the rope's part of the energy shows
     _start: float = field(default=0.0, init=False)
     _times: int = field(default=0, init=False)
     _energy: float = field(default=math.inf, init=False)  # without the rope's, when it last gave way
 
+    def stepped(self, step: Step) -> Change | None:
+        point = self.run.point
+        bound = gradient_bound(self.run.options, point.problem.mesh, point.energy)
+        return self._where_pressed() if point.gradient_norm <= self.nearly * bound else None
+
     def converged(self, outcome: Outcome) -> Change | None:
+        return self._where_pressed()
+
+    def _where_pressed(self) -> Change | None:
         rope = self._rope
         if rope is None:
             return None
