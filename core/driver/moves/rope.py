@@ -19,7 +19,7 @@ class GiveWay(Move):
     pressing: float = number(1e-4)  # part of the energy that the rope's barrier has where the curve rests against it
     gain: float = number(3e-4)  # part of the energy without which the next time is pointless
     most: int = number(12)  # times
-    nearly: float = number(100.0)  # times the gradient of curves at rest, at which the rope's part of the energy shows
+    nearly: float = number(10.0)  # times the gradient of curves at rest, at which the rope's part of the energy shows
     _start: float = field(default=0.0, init=False)
     _times: int = field(default=0, init=False)
     _energy: float = field(default=math.inf, init=False)  # without the rope's, when it last gave way
