@@ -25,15 +25,13 @@ ENERGIES: Mapping[str, Energy] = {
 }
 """Every energy that users can choose, by name; the first is the default."""
 
+_TERMS: list[Term] = [
+    Bending(),
+]
 TERMS: Mapping[str, Term] = Table(
     "mobius_flow.terms",
     lambda it: isinstance(it, Term) and not isinstance(it, type),
-    {
-        term.name: term
-        for term in [
-            Bending(),
-        ]
-    },
+    {term.name: term for term in _TERMS},
 )
 """What users can add to an energy, by name; packages join by entry points in ``mobius_flow.terms``."""
 

@@ -13,7 +13,7 @@ from ..move import Change, Move
 
 @dataclass(eq=False)
 class Turning(Move):
-    """A rotation about the middle of the curve's box after every second step; the next one puts the barycenter back."""
+    """A rotation about the barycenter, which constraints hold, after every second step."""
 
     def stepped(self, step: Step) -> Change | None:
         run = self.run
@@ -22,10 +22,12 @@ class Turning(Move):
         axis = np.random.default_rng([35, run.iterate.index]).standard_normal(3)
         axis *= 1.0 / np.linalg.norm(axis)
         start, angle, legs = run.point, 0.5, list[Leg]()
+        centre = start.curve.edge_lengths @ start.curve.midpoints / start.curve.length
 
         def turned(place: float, stride: float) -> Leg | None:
             rotation = Rotation.from_rotvec(min(place + stride, angle) * axis)
-            found = leg(legs[-1].end if legs else start, start.problem.at(rotation.apply(start.vertices)))
+            end = centre + rotation.apply(start.vertices - centre)
+            found = leg(legs[-1].end if legs else start, start.problem.at(end))
             return found if found.open else None
 
         for _, found in walk(turned, angle, angle, 1e-3):
