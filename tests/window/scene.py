@@ -77,9 +77,9 @@ def keys(name: str = "") -> list[np.ndarray]:
 
 
 def steps() -> list[np.ndarray]:
-    """Those of the keys that are iterates, without what is shown in between."""
+    """Those of the keys that are iterates, changes of mesh among them, without what is shown in between."""
     blocks = obj().data.shape_keys.key_blocks if obj().data.shape_keys else ()
-    return [each for each, block in zip(keys(), blocks, strict=True) if block.name.startswith("Step")]
+    return [each for each, block in zip(keys(), blocks, strict=True) if not block.name.startswith("Between")]
 
 
 def in_world(name: str = "", local: Any = None) -> np.ndarray:
