@@ -10,6 +10,7 @@ import inspect
 import os
 import pickle
 import queue
+import signal
 import subprocess
 import sys
 import threading
@@ -194,6 +195,8 @@ class Worker:
 
 def _send(process: "subprocess.Popen[bytes]", inbox: Inbox) -> None:
     """Pass on what is put into the inbox, in a thread of its own: a pipe may be full."""
+    if hasattr(signal, "pthread_sigmask"):  # or else a worker that is gone ends a Blender that does not ignore SIGPIPE
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGPIPE})
     to_worker = _pipes(process)[0]
     with contextlib.suppress(OSError), to_worker:  # to a worker that is gone
         for packet in iter(inbox.get, None):

@@ -2,6 +2,9 @@
 
 import pickle
 import queue
+import signal
+import subprocess
+import sys
 from itertools import pairwise
 
 import numpy as np
@@ -110,3 +113,26 @@ def test_motions_are_proved_beside_obstacles(placement):
 
     assert free(task.obstacles)
     assert not free(())
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGPIPE"), reason="there is no such signal")
+def test_a_worker_that_is_gone_does_not_end_blender() -> None:
+    """Some builds of Blender leave SIGPIPE as it is, unlike Python by itself."""
+    program = """
+import queue, signal, subprocess, sys, threading
+from mobius_flow.addon.engine.worker import _send
+signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+gone = subprocess.Popen([sys.executable, "-c", ""], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+gone.wait()
+inbox = queue.SimpleQueue()
+for packet in (b"x" * 100_000, None):
+    inbox.put(packet)
+thread = threading.Thread(target=_send, args=(gone, inbox))
+thread.start()
+thread.join()
+print("still there")
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, timeout=PATIENCE, check=False
+    )
+    assert (done.returncode, done.stdout) == (0, "still there\n"), done.stderr
