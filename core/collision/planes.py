@@ -138,15 +138,15 @@ def _to_segment(D: FloatArray, e: FloatArray, f: FloatArray) -> FloatArray:
     s, r = ef * Df - ff * De, ee * Df - ef * De
     inner = (sine > _PARALLEL * ee * ff) & (s > 0) & (s < sine) & (r > 0) & (r < sine)
     if inner.any():
-        chord[:, inner] = _along(_cross(e[:, inner], f[:, inner]), D[:, inner]) if len(D) == 3 else 0.0
+        chord[:, inner] = _along(cross(e[:, inner], f[:, inner]), D[:, inner]) if len(D) == 3 else 0.0
     return chord
 
 
 def _to_face(D: FloatArray, f: FloatArray, g: FloatArray) -> FloatArray:
     """From the foot of x₀ in a triangle to x₀; D, no shorter than the chord, where the foot is not in the triangle."""
-    normal = _cross(f, g)
+    normal = cross(f, g)
     whole = _dot(normal, normal)
-    r, q = _dot(_cross(D, g), normal), _dot(_cross(f, D), normal)
+    r, q = _dot(cross(D, g), normal), _dot(cross(f, D), normal)
     inside = (whole > _PARALLEL * _dot(f, f) * _dot(g, g)) & (r > 0) & (q > 0) & (r + q < whole)
     return np.where(inside, _along(normal, D), D)
 
@@ -161,7 +161,10 @@ def _dot(u: FloatArray, v: FloatArray) -> FloatArray:
     return np.asarray(np.einsum("mp,mp->p", u, v))
 
 
-def _cross(u: FloatArray, v: FloatArray) -> FloatArray:
+def cross(u: FloatArray, v: FloatArray) -> FloatArray:
+    """The vector product of vectors (m, k), in the plane its only component."""
+    if len(u) == 2:
+        return np.asarray(u[:1] * v[1:] - u[1:] * v[:1])
     return np.stack([u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]])
 
 

@@ -24,7 +24,7 @@ from ..curve import Mesh
 from ..curve.obstacle import Obstacle
 from .boxes import BoxTree, Level, Test, contact_window, corners, still_triangles
 from .motion import Contact, FreeMotion, Limit
-from .planes import march
+from .planes import cross, march
 
 _STEPS = 16  # in which the border of points half a circle apart is followed: those up to π r/16 nearer are tested, too
 _HALVINGS = 14  # of the time, until a corner is given up
@@ -174,7 +174,7 @@ class Corners(NamedTuple):
         Products of moving vectors are quadratic polynomials in time, between their coefficients in Bernstein's basis.
         """
         dots = partial(np.einsum, "mk,mk->k")
-        normals = [_cross(u, v) for u, v in product(self.e, self.f)]
+        normals = [cross(u, v) for u, v in product(self.e, self.f)]
         middle = 0.5 * (normals[1] + normals[2])
         length = np.sqrt(dots(middle, middle))
         normals[1:3] = [middle]
@@ -201,12 +201,6 @@ class Corners(NamedTuple):
             for two in ((starts, middles), (middles, ends))
         )
         return Corners((first[0], last[0]), (first[1], last[1]))
-
-
-def _cross(u: FloatArray, v: FloatArray) -> FloatArray:
-    if len(u) == 2:
-        return np.asarray(u[:1] * v[1:] - u[1:] * v[:1])
-    return np.stack([u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]])
 
 
 def shortcut(x: FloatArray) -> FloatArray:

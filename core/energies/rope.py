@@ -114,16 +114,9 @@ class Rope:
 
     def _corners(self, curve: Curve) -> tuple[IntArray, IntArray]:
         """The edges before and after each corner that bends within the barrier's reach."""
-        mesh, ell = curve.mesh, curve.edge_lengths
-        i = np.flatnonzero(mesh.next != np.arange(mesh.edges))
-        j = mesh.next[i]
-        tau = curve.edge_vectors / ell[:, None]
-        sine, cosine = (np.einsum("km,km->k", d, d) for d in (tau[j] - tau[i], tau[j] + tau[i]))
-        bends = (
-            np.minimum(ell[i], ell[j]) ** 2 * cosine
-            < (2.0 * self.bend * self._tightest[mesh.edge_component[i]]) ** 2 * sine
-        )
-        return i[bends], j[bends]
+        mesh = curve.mesh
+        at = mesh.inner[bending_radii(curve)[mesh.inner] < self.bend * self._tightest[mesh.component[mesh.inner]]]
+        return mesh.incoming[at], mesh.outgoing[at]
 
     def _seen(self, curve: Curve) -> Curve:
         return curve if self.seen is None or self.seen.mesh != curve.mesh else self.seen

@@ -45,7 +45,8 @@ class GiveWay(Move):
         return self._thinner()
 
     def stuck(self, found: NoStep) -> Change | None:
-        return None if self._rope is None else self._thinner()
+        rope = self._rope  # which may have nothing to do with it
+        return None if rope is None or not rope.value(self.run.point.curve) else self._thinner()
 
     def summarised(self, outcome: Outcome) -> Outcome:
         now = self.run.problem.radius
