@@ -1,11 +1,12 @@
 """Trajectories of ropes: what is one is accepted, and each way of not being one is told, by both doors."""
 
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from mobius_flow.core import Mesh, Obstacle, RelaxOptions, Trajectory, minimize
+from mobius_flow.core import Iterate, Mesh, Obstacle, RelaxOptions, Trajectory, minimize
 from mobius_flow.core.collision import is_rope
 from mobius_flow.core.knots import knot
 from mobius_flow.core.proof import checker, verify
@@ -138,3 +139,22 @@ def test_a_corner_gets_too_sharp(tmp_path: Path) -> None:
         for verdict in verdicts(tmp_path, arrays | {"radius": np.array([radius])}):
             assert verdict.accepted is accepted
             assert accepted or "bends too sharply" in verdict.reason
+
+
+def test_edges_that_count_in_part(tmp_path: Path) -> None:
+    """A hairpin whose legs close in on each other: near the bend they do not count, at their ends they do."""
+    hairpin = np.array([[[10.0, 0, 0], [0, 0, 0], [0, 1, 0], [10, 0.5, 0]]])
+    arrays = {"stage_000": hairpin, "component_sizes_000": np.array([4]), "component_closed_000": np.array([False])}
+    for radius, accepted in ((0.2, True), (0.4, False)):
+        assert is_rope(Mesh((4,), (False,)), hairpin[0], hairpin[0], np.array([radius])) is accepted
+        for verdict in verdicts(tmp_path, arrays | {"radius": np.array([radius])}):
+            assert verdict.accepted is accepted
+            assert accepted or verdict.edges == (0, 2)
+
+
+def test_a_file_has_the_least_radius_of_its_run() -> None:
+    trajectory, iterates = Trajectory(), list[Iterate]()
+    minimize(knot("3_1", 30), RelaxOptions(radius="keep", max_iterations=2), callback=iterates.append)
+    for share, iterate in zip((1.0, 0.5, 0.8), iterates, strict=False):
+        trajectory.add(replace(iterate, radius=(share,)))
+    assert trajectory.arrays()["radius"].tolist() == [0.5]
