@@ -76,15 +76,10 @@ def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
     return np.asarray(np.einsum("ijk,ijk->ij", a, b))
 
 
-def half_turns(curve: Curve) -> FloatArray:
-    """Half the angle by which the curve turns at each vertex, 0 at the ends of arcs; shape (n,)."""
-    tau, mesh = curve.edge_vectors / curve.edge_lengths[:, None], curve.mesh
-    before, after = tau[mesh.incoming], tau[mesh.outgoing]
-    return np.asarray(np.arctan2(np.linalg.norm(after - before, axis=1), np.linalg.norm(after + before, axis=1)))
-
-
 def bending_radii(curve: Curve) -> FloatArray:
     """At each vertex the radius of the circle that touches both edges, the shorter one at its middle; shape (n,)."""
     ell, mesh = curve.edge_lengths, curve.mesh
+    tau, before, after = curve.edge_vectors / ell[:, None], mesh.incoming, mesh.outgoing
+    sine, cosine = (np.linalg.norm(d, axis=1) for d in (tau[after] - tau[before], tau[after] + tau[before]))
     with np.errstate(divide="ignore"):
-        return np.asarray(0.5 * np.minimum(ell[mesh.incoming], ell[mesh.outgoing]) / np.tan(half_turns(curve)))
+        return np.asarray(0.5 * np.minimum(ell[before], ell[after]) * cosine / sine)  # ½ min(ℓ, ℓ') / tan(θ/2)

@@ -19,7 +19,7 @@ from scipy.spatial import cKDTree
 from ..base.arguments import checked_fields
 from ..base.types import FloatArray, IntArray
 from ..curve import Curve
-from ..curve.measures import bending_radii, half_turns
+from ..curve.measures import bending_radii
 from .edge_pairs import E, EdgePairs, F, Jet, change, scatter_first, scatter_second, stepped
 
 
@@ -96,10 +96,8 @@ class Rope:
         mesh, seen, component = curve.mesh, self._seen(curve), curve.mesh.edge_component
         cut = 2.0 * self.reach * float(self.radius.max()) + float(curve.edge_lengths.max())
         i, j = cKDTree(curve.midpoints).query_pairs(cut, output_type="ndarray").T
-        # along the curve, but around corners by arcs of the radius
-        ell, half = seen.edge_lengths, half_turns(seen)[mesh.tails]
-        saved = 2.0 * self.radius[component] * (np.tan(half) - half)
-        position, around = np.cumsum(ell - saved) - 0.5 * ell, np.add.reduceat(ell - saved, mesh.edge_offsets[:-1])
+        ell = seen.edge_lengths
+        position, around = np.cumsum(ell) - 0.5 * ell, np.add.reduceat(ell, mesh.edge_offsets[:-1])
         arc = np.abs(position[i] - position[j])
         arc = np.minimum(arc, np.where(mesh.closed, around, np.inf)[component[i]] - arc)
         far = arc > np.pi * self.radius[component[i]] + 0.5 * (ell[i] + ell[j])

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, Mesh, Obstacle
 from mobius_flow.core.collision import is_free, is_rope, rope_motion, thickness
-from mobius_flow.core.collision.rope import Corners, shortcut
+from mobius_flow.core.collision.rope import Corners, _bends, shortcut
 from mobius_flow.core.knots import knot
 from mobius_flow.core.proof import checker
 from shapes import regular_polygon
@@ -152,3 +152,15 @@ def test_what_arcs_save_is_not_overrated() -> None:
     exact = x - np.arctan(x)
     assert (shortcut(x) <= exact + 1e-15).all()
     assert (shortcut(x) >= exact - 0.03).all()
+
+
+def test_what_arcs_save_on_the_way() -> None:
+    """Each corner of a hexagon turns by 60°; those at the ends of arcs, and corners on the way that straighten, save
+    none.
+    """
+    hexagon = regular_polygon(6)
+    spans = [p.T[:, hexagon.mesh.heads] - p.T[:, hexagon.mesh.tails] for p in [hexagon.vertices] * 2]
+    saved = _bends(hexagon.mesh, spans, np.full(6, 0.1))[2]
+    np.testing.assert_allclose(saved, 0.1 * (2 * np.tan(np.pi / 6) - np.pi / 3), rtol=0.01)
+    straight = [spans[0], np.tile([[1.0], [0.0], [0.0]], 6)]
+    assert (_bends(hexagon.mesh, straight, np.full(6, 0.1))[2] < 0.2 * saved).all()

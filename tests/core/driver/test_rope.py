@@ -6,6 +6,9 @@ import numpy as np
 import pytest
 from mobius_flow.core import CurveError, Obstacle, OptionError, RelaxOptions, Task, minimize, morph
 from mobius_flow.core.collision import is_rope, thickness
+from mobius_flow.core.descent import NoStep
+from mobius_flow.core.driver.moves.rope import GiveWay
+from mobius_flow.core.driver.relax import begin
 from mobius_flow.core.knots import knot, overhand, torus_knot
 
 WALL = Obstacle([[-9.0, -9, 0], [9, -9, 0], [0, 18, 0]], [[0, 1, 2]])
@@ -103,3 +106,16 @@ def test_strand_moves_and_morphs_keep_no_radius_yet() -> None:
         RelaxOptions(radius="keep", untangle="always")
     with pytest.raises(OptionError, match="not by morphs"):
         morph(knot("3_1"), knot("3_1"), RelaxOptions(radius="keep"))
+
+
+def test_a_rope_gives_way_only_where_it_acts() -> None:
+    """Where a run is stuck for other reasons, a rope that touches nothing stays as it is."""
+    run = begin(Task.of(knot("3_1", 60)), RelaxOptions(radius="keep", vertices=60, mesh="fixed"))
+    stuck, point = NoStep("no step"), run.point
+    change = GiveWay(run).stuck(stuck)
+    assert change is not None
+    assert change.point is not None
+    assert (change.point.problem.radius < point.problem.radius).all()  # type: ignore[operator]
+    thin = point.problem.as_rope(0.1 * np.asarray(point.problem.radius))
+    run.view(point.changing(objective=thin.objective, radius=thin.radius))
+    assert GiveWay(run).stuck(stuck) is None
