@@ -80,7 +80,7 @@ def shown() -> list[Option]:
 def _property(option: Option, options: set[str]) -> Any:
     automatic = option.default is None
     words: dict[str, Any] = {"name": option.label, "options": options}
-    if option.choices is None:
+    if option.choices is None or option.read is not str:  # what a word is read as may be no name
         words |= {
             "description": option.sentence("Empty" if option.kind is str else "0"),
             "default": option.default or option.kind(),
@@ -204,7 +204,8 @@ class Further:
 
 def relax_options(values: Mapping[str, Any]) -> RelaxOptions:
     """The core's options from the values of the settings; raises OptionError."""
-    wanted = {option.name: values[option.name] for option in shown()}
+    given = ((option, values[option.name]) for option in shown())
+    wanted = {option.name: option.read(value) if isinstance(value, str) else value for option, value in given}
     optional = [option.name for option in shown() if option.default is None]
     return RelaxOptions(**wanted | dict.fromkeys(name for name in optional if wanted[name] in (0, "", _AUTOMATIC)))
 

@@ -45,7 +45,9 @@ def test_every_option_is_a_setting_of_scene_and_operator(each):
         shown = owner[each.name]
         assert shown.name == each.label
         assert shown.description.startswith(each.sentence())
-        if each.choices is not None:
+        if each.read is not str:  # a name, or numbers in text
+            assert shown.default == each.default
+        elif each.choices is not None:
             automatic = ["AUTO"] if each.default is None else []
             assert [item.identifier for item in shown.enum_items] == automatic + list(each.choices)
             assert len({item.value for item in shown.enum_items}) == len(shown.enum_items)
@@ -54,6 +56,12 @@ def test_every_option_is_a_setting_of_scene_and_operator(each):
             assert shown.hard_max >= min(each.high * (1 - 1e-7), 2**31 - 1)
         none = f"; {'Empty' if each.kind is str else 0}: "
         assert (none in shown.description) == (each.default is None and each.choices is None)
+
+
+def test_a_radius_may_be_a_name_or_numbers():
+    values = scene_values() | {"radius": "0.05,0.1"}
+    assert properties.relax_options(values).radius == (0.05, 0.1)
+    assert properties.further("radius=0.05,0.1 vertices=90") == {"radius": "0.05,0.1", "vertices": 90}
 
 
 def test_defaults_are_the_librarys():
