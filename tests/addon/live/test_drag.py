@@ -92,7 +92,9 @@ def test_a_strand_follows_the_mouse_and_all_is_proved(operator):
         assert move(operator, target) == {"RUNNING_MODAL"}
         operator.event()
     operator.until(lambda: gap(operator, target) < 0.2)
+    before = operator.run.drag.target
     operator.run.pull(np.array([np.nan, 0.0, np.inf]))  # nowhere, which is left out
+    assert operator.run.drag.target is before
     operator.run.pull(np.array([1e300, 0.0, 0.0]))
     assert release(operator, target) == {"RUNNING_MODAL"}
     assert operator.run.drag is None
