@@ -5,7 +5,7 @@ from itertools import pairwise
 import bpy
 import numpy as np
 import pytest
-from baked_curves import KEYED, SHORT, again, blocks, clear, curve_of, go_on, last_frame, reopen, two_rings
+from baked_curves import KEYED, SHORT, again, blocks, clear, curve_of, go_on, last_frame, two_rings
 from blender_scenes import add_curve, add_trefoil, contents, evaluated, relax, stored
 from mobius_flow.addon.curves import bake, keyframes
 from mobius_flow.addon.curves.recorded import BakedKeys
@@ -13,15 +13,6 @@ from mobius_flow.core.collision import is_free
 from mobius_flow.core.curve import Mesh
 from mobius_flow.core.keys import key_options
 from mobius_flow.core.knots import knot
-
-
-def test_relax_on_a_baked_curve_is_bake_again():
-    obj = add_trefoil()
-    relax(max_iterations=4)
-    first = keyframes.end_of(obj.data)
-    relax(max_iterations=4)
-    np.testing.assert_array_equal(keyframes.end_of(obj.data), first)
-    assert [len(each) for each in blocks()] == [2, 1, 1], "the curve and its original"
 
 
 def test_clear_takes_a_fitted_tube_back_but_not_ones_own():
@@ -34,24 +25,6 @@ def test_clear_takes_a_fitted_tube_back_but_not_ones_own():
     obj.data.bevel_depth = 0.125
     clear()
     assert obj.data.bevel_depth == 0.125
-
-
-def test_several_together(tmp_path):
-    pair = two_rings()
-    before = [stored(obj.data) for obj in pair]
-    relax(max_iterations=3)
-    pair[0].name, pair[0].data.name = "Renamed", "Also"
-    go_on(max_iterations=3, timing="ITERATE")
-    assert [last_frame(obj) for obj in pair] == [7, 7]
-    reopen(tmp_path / "a.blend")
-    pair = [bpy.data.objects["Renamed"], bpy.data.objects["B"]]
-    again(max_iterations=2, timing="ITERATE")
-    assert [last_frame(obj) for obj in pair] == [3, 3]
-    assert pair[0].data.name == "Also"
-    clear()
-    for obj, points in zip(pair, before, strict=True):
-        np.testing.assert_array_equal(stored(obj.data), points)
-    assert [len(each) for each in blocks()] == [2, 0, 0]
 
 
 def test_frames_per_iterate_alone_means_by_iterate():
@@ -122,19 +95,6 @@ def test_no_motion_takes_no_length_but_the_rest_at_the_beginning_is_played(monke
     first, last = bake.scene_range([obj])
     assert first == 1
     assert 50 <= last <= 60
-
-
-def test_continuing_gets_where_a_longer_run_gets(capfd):
-    obj = add_trefoil()
-    relax(max_iterations=3)
-    go_on(max_iterations=1, timing="ITERATE")
-    assert "; 1 new key up to frame 5, proved" in capfd.readouterr().out
-    go_on(max_iterations=400)
-    split = keyframes.end_of(obj.data).astype(np.float64)
-    relax(max_iterations=400)
-    whole = keyframes.end_of(obj.data).astype(np.float64)
-    lengths = [np.sort(np.linalg.norm(p - p.mean(axis=0), axis=1)) for p in (split, whole)]
-    np.testing.assert_allclose(*lengths, atol=2e-2)
 
 
 @pytest.mark.parametrize("keyframes", [*KEYED, "RESULT"])
@@ -240,16 +200,6 @@ def test_to_continue_takes_the_points_that_there_are_and_clear_what_is_left():
     assert len(obj.data.splines[0].points) == 30
 
 
-@pytest.mark.parametrize("key", [0, -1])
-def test_keys_that_were_edited_are_not_lost(key):
-    obj = add_trefoil()
-    relax(max_iterations=4)
-    obj.data.shape_keys.key_blocks[key].data[7].co.x += 0.125
-    for call in (bpy.ops.curve.mobius_flow_relax, bpy.ops.curve.mobius_flow_continue, bpy.ops.curve.mobius_flow_clear):
-        with pytest.raises(RuntimeError, match="Keys of 'Knot' were edited; undo that, or remove the keys"):
-            call()
-
-
 def test_a_look_into_edit_mode_edits_nothing():
     obj = add_trefoil()
     relax(max_iterations=4)
@@ -291,18 +241,6 @@ def test_drivers_and_settings_of_the_curve_stay():
 
 
 MOVES = {"untangle": "always", "max_iterations": 3}
-
-
-@pytest.mark.parametrize(("keyframes", "size"), [("SHAPE_KEYS", "AUTO"), ("SHAPE_KEYS", "LENGTH"), ("FCURVES", "BOX")])
-def test_strand_moves_are_keyed(keyframes, size, capfd):
-    obj = add_curve([knot("goeritz").vertices])
-    start = stored(obj.data)
-    relax(**MOVES, keyframes=keyframes, keep_size=size, max_keys=60)
-    assert "proved free of contact with itself" in capfd.readouterr().out
-    keys = BakedKeys([obj])
-    assert len(keys.frames) >= 60
-    assert keys.unproved == 0
-    assert {tuple(point) for point in start} <= {tuple(point) for point in keys.frames[0]}
 
 
 def test_strand_moves_are_shown_and_tubes_fitted_at_all_keys(operator):

@@ -59,19 +59,6 @@ def test_new_points_have_values_in_between():
     assert radii[[0, -1]] == pytest.approx([1, 2])
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("kind", "ends"), [("BEZIER", True), ("NURBS", False), ("NURBS", True)])
-def test_smooth_splines_are_drawn_open(kind, ends):
-    obj = add_arc(kind=kind)
-    obj.data.splines[0].use_endpoint_u = ends
-    relax(**SHORT, sample_splines=True)
-    assert obj.data.splines[0].type == "POLY"
-    assert cyclic(obj) == [False]
-    clear()
-    assert obj.data.splines[0].type == kind
-    assert cyclic(obj) == [False]
-
-
 @pytest.mark.parametrize("kind", ["BEZIER", "NURBS"])
 def test_a_smooth_open_spline_becomes_a_polygon_from_end_to_end(kind):
     obj = add_arc(kind=kind)

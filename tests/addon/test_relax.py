@@ -13,7 +13,6 @@ from mobius_flow.addon.curves.surroundings import Surroundings
 from mobius_flow.addon.live.requirements import avoided
 from mobius_flow.core import Curve, MoebiusEnergy, RelaxOptions, minimize
 from mobius_flow.core.collision.embedded import clears
-from mobius_flow.core.curve.measures import bending
 from mobius_flow.core.knots import torus_knot
 from shapes import regular_polygon
 
@@ -50,15 +49,6 @@ def test_settings_come_from_the_scene_and_the_operators_own_win():
     result = expected([start], method="lbfgs", max_iterations=3)
     np.testing.assert_array_equal(stored(obj.data), result.astype(np.float32))
     assert bpy.context.scene.mobius_flow.method == "flow-l2"
-
-
-def test_it_relaxes_to_the_circle():
-    rng = np.random.default_rng(5)
-    obj = add_curve([regular_polygon(24).vertices + 0.04 * rng.standard_normal((24, 3))])
-    relax(keyframes="RESULT")
-    points = stored(obj.data).astype(np.float64)
-    distances = np.linalg.norm(points - points.mean(axis=0), axis=1)
-    assert np.ptp(distances) < 1e-2 * distances.mean()
 
 
 @pytest.mark.parametrize("keyframes", ["SHAPE_KEYS", "FCURVES", "RESULT"])
@@ -195,20 +185,6 @@ def test_grab_ends_balanced_unless_something_is_in_the_way(capfd):
     pins.pin(obj.data.splines[0], np.arange(60) == 7)
     assert bpy.ops.curve.mobius_flow_grab(vertices=60) == {"FINISHED"}
     assert "balance" not in capfd.readouterr().out
-
-
-@pytest.mark.slow
-def test_a_balanced_curve_goes_on_from_its_animation():
-    add_unbalanced(100)
-    obj = relax(vertices=100)
-    keys = BakedKeys([obj])
-    there, unbalanced = len(keys.frames), bending(keys.curves[-1])
-    assert bpy.ops.curve.mobius_flow_continue(balance=True, fit_bevel=False) == {"FINISHED"}
-    keys = BakedKeys([obj])
-    assert len(keys.frames) > there + 5, "the way has keys"
-    assert keys.unproved == 0
-    assert bending(keys.curves[-1]) < 0.95 * unbalanced
-    assert not bpy.context.scene.mobius_flow.balance
 
 
 def test_a_saddle_is_told_and_left(capfd):

@@ -1,6 +1,6 @@
 """The scene's settings, the operator's and the panels are the library's options: none is declared a second time."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from types import SimpleNamespace
 
 import bpy
@@ -10,21 +10,13 @@ from blender_scenes import add_trefoil, relax, sentence, stored
 from mobius_flow.addon import properties
 from mobius_flow.addon.sidebar.panels import VIEW3D_PT_mobius_flow, VIEW3D_PT_mobius_flow_expert
 from mobius_flow.core import METHODS, Curve, OptionError, RelaxOptions, minimize
-from mobius_flow.core.base.arguments import declared, option
+from mobius_flow.core.base.arguments import declared
 from option_values import unlike_default
-from panel_layout import Layout, shown
+from panel_layout import shown
 from shapes import torus_trefoil
 
 SHOWN = {each.name: each for each in declared(RelaxOptions) if each.is_setting}
 GIVEN = {name: unlike_default(each) for name, each in SHOWN.items()}
-
-
-@dataclass(frozen=True, kw_only=True)
-class OneMore(RelaxOptions):
-    """With options that nothing but these lines know of."""
-
-    patience: float | None = option(None, "Patience", "how long to wait", automatic="without limit", low=0, high=9)
-    colour: str = option("red", "Colour", "what it looks like", choices=("red", "blue"), row=True)
 
 
 def owners():
@@ -139,22 +131,6 @@ def test_the_expert_panel_shows_what_artists_might_set():
     wanted = ["untangle", "timing", "start_frame", "hold_start", "keyframes", "keep_size", "options"]
     assert shown(expert).settings == wanted
     assert "Sobolev Gradients for the Möbius Energy" in expert.bl_description
-
-
-def test_options_that_nothing_else_knows_of_appear_by_themselves(monkeypatch):
-    monkeypatch.setattr(properties, "RelaxOptions", OneMore)
-    declaration = properties.settings(set())
-    patience, colour = declaration["patience"].keywords, declaration["colour"].keywords
-    assert patience["description"] == "How long to wait; 0: without limit"
-    assert (patience["min"], patience["max"], patience["default"]) == (0.0, 9.0, 0.0)
-    assert ([item[0] for item in colour["items"]], colour["default"]) == (["red", "blue"], "red")
-    monkeypatch.setattr(Layout, "prop", lambda self, _owner, name, **_: self.settings.append(name))
-    assert "colour" in shown(VIEW3D_PT_mobius_flow_expert).settings
-    values = scene_values() | {"patience": 0.0, "colour": "blue"}
-    assert asdict(properties.relax_options(values))["patience"] is None
-    assert properties.relax_options(values | {"patience": 2.0}).patience == 2.0
-    with pytest.raises(OptionError, match=r"patience is 10\.0; it must be a finite number above 0 and at most 9"):
-        properties.relax_options(values | {"patience": 10.0})
 
 
 @pytest.mark.parametrize(

@@ -69,15 +69,6 @@ def test_nothing_is_shown_that_nobody_could_translate(tmp_path):
     assert set(shown_texts.unmarked(path)) == set(range(1, len(lines) + 1)), "the search finds what is not marked"
 
 
-def test_sentences_are_found_wherever_they_are_made(tmp_path):
-    path = tmp_path / "module.py"
-    path.write_text(
-        "A, b = 'One', 1\nsaid = 'Two'\nMessage(A)\nrpt_(said if b else 'Three')\nvalue(box, 'Four', 'five')\n"
-        "layout.operator('mesh.six', text='Seven')\nlayout.label(text='…')\nprint('eight')\n"
-    )
-    assert shown_texts.sentences(path) == {"One", "Two", "Three", "Four", "Seven"}
-
-
 def test_po_files_are_read_as_blenders_own_tools_read_them():
     if importlib.util.find_spec("_bl_i18n_utils") is None:
         pytest.skip("this Blender has no translation tools")

@@ -5,10 +5,8 @@ import sys
 from importlib.machinery import ModuleSpec
 from types import ModuleType, SimpleNamespace
 
-import numpy as np
 import pytest
-from mobius_flow.core import write_curve
-from mobius_flow.core.knots import KnotType, smooth_knot
+from mobius_flow.core.knots import KnotType
 from mobius_flow.core.knots.exterior import names_by_census
 
 KEYS = {
@@ -116,17 +114,6 @@ def test_arcs_have_no_type_until_they_are_closed(tmp_path, run):
     assert "next " not in told
 
 
-def test_noise_that_may_have_changed_the_type_is_told(trefoil, tmp_path, run):
-    assert "noise of" not in run("info", trefoil)[1]
-    curve = smooth_knot("3_1", 300)
-    noise = np.random.default_rng(3).standard_normal(curve.vertices.shape) * curve.length / 300
-    write_curve(tmp_path / "noisy.txt", curve.with_vertices(curve.vertices + noise))
-    assert (
-        ": far below the edges, so that noise of this size may have changed the type"
-        in run("info", tmp_path / "noisy.txt")[1]
-    )
-
-
 @pytest.mark.parametrize("installed", [False, True])
 def test_larger_knots_are_named_by_snappy(installed, tmp_path, run, monkeypatch):
     """By one that knows a single knot."""
@@ -143,12 +130,3 @@ def test_larger_knots_are_named_by_snappy(installed, tmp_path, run, monkeypatch)
     names_by_census.cache_clear()
     assert ("K11n34 or mK11n34 (not proved; it fits its complement" in told) is installed
     assert ("pip install snappy" in told) is not installed
-
-
-def test_a_relaxed_shape_of_many_vertices(tmp_path, run):
-    (tmp_path / "knot.txt").write_text(
-        "\n".join(" ".join(map(repr, point)) for point in smooth_knot("7_4", 2000).vertices.tolist())
-    )
-    found = json.loads(run("info", tmp_path / "knot.txt", "--json")[1])
-    assert found["type"]["name"] == "7_4"
-    assert found["at_rest"] is False

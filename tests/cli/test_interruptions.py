@@ -10,14 +10,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from mobius_flow.cli import places, signals
-from mobius_flow.core import Trajectory, read_curve, relax, write_curve
+from mobius_flow.core import Trajectory, read_curve, relax
 from mobius_flow.core.base.deadline import termination_raises
 from mobius_flow.core.driver import finish
 from mobius_flow.core.proof import verify
 from mobius_flow.lab.compare import command as compare_command
 from mobius_flow.lab.compare.comparison import compare
-from processes import finished, running
-from shapes import regular_polygon, torus_trefoil
+from processes import running
+from shapes import torus_trefoil
 
 pytestmark = [pytest.mark.skipif(os.name != "posix", reason="signals"), pytest.mark.usefixtures("room")]
 BOTH = pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])  # SIGINT is ignored in background jobs
@@ -236,43 +236,3 @@ def test_compare_keeps_the_methods_that_are_done(memory, status, said, terminate
     assert found[0] == status
     assert said in found[2].splitlines()[-1]
     assert [run["method"] for run in json.loads(Path("c.json").read_text())] == ["cg"]
-
-
-KILLED_WRITES = r"""
-import json, os, signal, sys, time
-from mobius_flow.cli.places import writing
-from mobius_flow.core import RelaxOptions, Trajectory, minimize, read_curve, write_curve
-curve, trajectory = read_curve("source.txt"), Trajectory()
-minimize(curve, RelaxOptions(vertices=len(curve), max_iterations=2, edge_lengths="keep"), trajectory.add)
-def report(path):
-    with writing(path) as temporary:
-        temporary.write_text(json.dumps([0.0] * 9999))
-writers = {name: lambda path: write_curve(path, curve) for name in ("a.txt", "a.obj", "a.vect", "a.json")}
-for k, pause in enumerate((0.0007, 0.0053, 0.0111)):
-    for name, write in (writers | {"r.json": report, "t.npz": trajectory.save}).items():
-        path = f"{k}-{name}"
-        write(path)
-        child = os.fork()
-        while not child:
-            write(path)
-        time.sleep(pause)
-        os.kill(child, signal.SIGKILL)
-        os.waitpid(child, 0)
-"""
-
-
-def test_a_kill_while_writing_leaves_a_whole_file(room):
-    """Processes write the same file over and over, and are killed at odd moments."""
-    curve = regular_polygon(300)
-    write_curve("source.txt", curve)
-    done = finished([sys.executable, "-c", KILLED_WRITES])
-    assert done.returncode == 0, done.stderr
-    written = [path for path in room.iterdir() if path.name[0] in "012"]
-    assert len(written) == 18
-    for path in written:
-        if path.name.endswith("r.json"):
-            assert len(json.loads(path.read_text())) == 9999
-        elif path.name.endswith(".npz"):
-            assert verify(path).accepted
-        else:
-            assert np.array_equal(read_curve(path).vertices, curve.vertices)

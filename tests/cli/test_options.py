@@ -3,22 +3,15 @@
 import argparse
 import json
 import re
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
 from mobius_flow.cli import main
 from mobius_flow.cli import options as relax_options
-from mobius_flow.core import OptionError, RelaxOptions, read_curve
-from mobius_flow.core.base.arguments import declared, option
+from mobius_flow.core import RelaxOptions, read_curve
+from mobius_flow.core.base.arguments import declared
 from option_values import unlike_default
-
-
-@dataclass(frozen=True, kw_only=True)
-class OneMore(RelaxOptions):
-    """With an option that nothing but this line knows of."""
-
-    patience: float | None = option(None, "Patience", "how long to wait", automatic="without limit", low=0, high=9)
 
 
 def parsed(*words, **keywords):
@@ -74,17 +67,6 @@ def test_every_option_can_be_given(each):
     text = "=".join(map(str, value[0])) if each.repeated else str(value)
     words = [relax_options.flag(each), *([] if value is True else [text])]
     assert asdict(parsed(*words)) == asdict(RelaxOptions()) | {each.name: value}
-
-
-def test_one_more_option_appears_by_itself(monkeypatch):
-    monkeypatch.setattr(relax_options, "RelaxOptions", OneMore)
-    assert parsed().patience is None
-    assert parsed("--patience", "2.5").patience == 2.5
-    with pytest.raises(OptionError, match=r"patience is 9\.5; it must be a finite number above 0 and at most 9"):
-        parsed("--patience", "9.5")
-    parser = argparse.ArgumentParser()
-    relax_options.add_to(parser)
-    assert "how long to wait (default: without limit)" in " ".join(parser.format_help().split())
 
 
 @pytest.mark.parametrize(

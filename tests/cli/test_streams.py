@@ -199,43 +199,6 @@ def test_a_reader_who_leaves():
     assert shell("flow knot 3_1 - --vertices 20000 | head -c 1").stderr == ""
 
 
-@pytest.mark.skipif(os.name != "posix", reason="a new process")
-def test_the_backend_of_matplotlib_does_not_matter():
-    pytest.importorskip("matplotlib")
-    done = shell("flow compare trefoil.txt -o c.svg --methods cg --max-iterations 2", MPLBACKEND="nonsense")
-    assert done.returncode == 0, done.stderr
-    assert Path("c.svg").stat().st_size > 1000
-
-
-LIMITED = """
-import pathlib, re, sys
-from mobius_flow.cli import main
-status = main(sys.argv[1:])
-# not ru_maxrss, in which the process that started this one counts
-print(status, re.search("VmHWM: *\t* *([0-9]+) kB", pathlib.Path("/proc/self/status").read_text())[1])
-"""
-
-
-@pytest.mark.slow
-@linux
-@pytest.mark.parametrize("command", ["relax IN o.txt", "energy IN", "compare IN -o c.csv"])
-@pytest.mark.parametrize("kind", ["vertices", "more", "dimension", "zero"])
-def test_limits_are_looked_at_before_memory_is_taken(command, kind):
-    path = Path("in.json" if kind == "dimension" else "in.txt")
-    if kind == "dimension":
-        path.write_text(json.dumps([[float(k == i) for k in range(100_000)] for i in range(3)]))
-    elif kind == "zero":
-        path.symlink_to("/dev/zero")
-    else:
-        write_curve(path, regular_polygon(201_000 if kind == "vertices" else 400_000))
-    words = [sys.executable, "-c", LIMITED, *command.replace("IN", str(path)).split()]
-    done = subprocess.run(words, capture_output=True, text=True, check=True)
-    status, kilobytes = map(int, done.stdout.split()[-2:])
-    assert (status, done.stderr.count("\n")) == (2, 1)
-    assert str(path) in done.stderr
-    assert kilobytes < 400 << 10
-
-
 def test_written_curves_can_be_read():
     """The longest file that a relaxation can write is below the limit of files that are read."""
     curve = regular_polygon(2000)

@@ -9,7 +9,6 @@ from mobius_flow.addon.engine.knot_list import GROUPS, labels
 from mobius_flow.addon.pictures import icons
 from mobius_flow.core import Curve
 from mobius_flow.core.collision import check_embedded, gap
-from mobius_flow.core.curve import distances
 from mobius_flow.core.knots import KNOTS, knot, rounded, smooth_knot
 
 
@@ -136,19 +135,6 @@ def test_a_misspelt_name_gets_no_advice_for_the_command_line():
         added(knot="trefol")
     assert "--" not in sentence(error.value)
     assert "mobius-flow" not in sentence(error.value)
-
-
-@pytest.mark.parametrize(("p", "q"), [(60, 61), (61, 60), (3, 100)])
-def test_strands_wound_tightly_do_not_take_all_pairs_of_points(monkeypatch, p, q):
-    """All pairs within the thickest tube of T(60, 61) would be a hundred million."""
-    looked_at = []
-    counted = distances.arc_distance_of_vertices
-    monkeypatch.setattr(
-        distances, "arc_distance_of_vertices", lambda c, i, j: looked_at.append(len(i)) or counted(c, i, j)
-    )
-    data = added(kind="TORUS", p=p, q=q).data
-    assert data.bevel_depth > 0
-    assert 0 < sum(looked_at) < 40 * len(data.splines[0].points)
 
 
 def test_components_of_links_have_their_own_materials():

@@ -339,16 +339,6 @@ def test_components_are_coloured_through_all_objects_and_in_turn():
     assert colours(many)[5:] == colours(many)[:2]
 
 
-def test_colours_and_keys_do_not_mind_each_other():
-    obj = add_hopf_link()
-    relax(max_iterations=3)
-    OPS.mobius_flow_color_components()
-    OPS.mobius_flow_fit_tube()
-    before = colours(obj)
-    relax(max_iterations=2)
-    assert colours(obj) == before
-
-
 def test_a_tube_of_constant_thickness_stays_one_until_it_is_fitted_otherwise():
     obj = baked()
     for constant in (False, True, False):

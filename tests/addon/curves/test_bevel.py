@@ -88,12 +88,6 @@ def test_a_fitted_one_is_kept_fitting_also_in_a_file_that_is_opened_again(tmp_pa
     assert relaxed() == 0.0625, "it is the artist's own now"
 
 
-def test_added_knots_are_fitted_unless_a_thickness_is_given():
-    for options, fitted in (({}, True), ({"thickness": 0.125}, False), ({"fit_bevel": False}, False)):
-        bpy.ops.curve.mobius_flow_add_knot(**options)
-        assert bevel.is_fitted(bpy.context.object.data) == fitted
-
-
 def test_it_fits_in_the_world():
     """Two objects of different scales, as thick as half of what is between them."""
     vertices = hopf_link(80).vertices

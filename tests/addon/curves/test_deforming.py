@@ -4,13 +4,8 @@ import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_trefoil, contents, evaluated, sentence, show, stored
-from mobius_flow.addon.curves import member
 from mobius_flow.addon.curves.moving import deforms, what_deforms
-from mobius_flow.addon.curves.session import Session
 from mobius_flow.addon.live.requirements import RELAXABLE, Remedy
-from mobius_flow.core import Curve, CurveError, RelaxOptions
-from mobius_flow.core.collision import check_embedded
-from mobius_flow.core.keys.key_options import KeyOptions
 
 # what is left of the kinds of modifiers that curves can have adds to what is drawn
 ADDING = {"ARRAY", "BEVEL", "BUILD", "DECIMATE", "EDGE_SPLIT", "MIRROR", "MULTIRES", "NODES", "REMESH", "SCREW"}
@@ -29,17 +24,6 @@ def hook(obj, index, by):
     bpy.context.view_layer.update()
 
 
-def press(obj):
-    """Press a curve flat, onto a plane."""
-    plane = bpy.data.meshes.new("Plane")
-    plane.from_pydata([(-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)], [], [(0, 1, 2, 3)])
-    modifier = obj.modifiers.new("Press", "SHRINKWRAP")
-    modifier.target = bpy.data.objects.new("Plane", plane)
-    bpy.context.scene.collection.objects.link(modifier.target)
-    modifier.wrap_method, modifier.use_project_z, modifier.use_negative_direction = "PROJECT", True, True
-    bpy.context.view_layer.update()
-
-
 def nodes(obj, *kinds):
     """Geometry nodes, the last of which is in a group of its own."""
     trees = [bpy.data.node_groups.new(name, "GeometryNodeTree") for name in ("Outer", "Inner")]
@@ -49,27 +33,6 @@ def nodes(obj, *kinds):
     modifier = obj.modifiers.new("Nodes", "NODES")
     modifier.node_group = trees[0]
     return modifier
-
-
-def test_why_they_are_refused(monkeypatch):
-    """Past the checks, what is certified is shown crossing itself at every key; a hook holds another, refined point."""
-    monkeypatch.setattr(member, "what_deforms", lambda obj: None)
-    obj = add_trefoil()
-    press(obj)
-    report = Session([obj], RelaxOptions(max_iterations=3), KeyOptions(fit_bevel=False)).run()
-    assert report.certified
-    for frame in (1, report.last_frame):
-        shown = evaluated(obj, frame).astype(float)
-        assert np.abs(shown[:, 2]).max() < 1e-6
-        with pytest.raises(CurveError, match="cross"):
-            check_embedded(Curve.from_components([shown[:, :2]]))
-    obj = add_trefoil(30)
-    hook(obj, 20, (0, 0, 5))
-    held = stored(obj.data)[20]
-    Session([obj], RelaxOptions(max_iterations=1, vertices=90), KeyOptions(fit_bevel=False)).run()
-    start = np.array([point.co[:] for point in obj.data.shape_keys.key_blocks[0].data])
-    (lifted,) = np.flatnonzero((evaluated(obj, 1) - start)[:, 2] > 1)
-    assert np.linalg.norm(start[lifted] - held) > 1
 
 
 def refused():

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from blender_scenes import (
     add_curve,
-    add_hopf_link,
     add_trefoil,
     contents,
     evaluated,
@@ -148,23 +147,6 @@ def test_modifiers_are_not_part_of_the_proof(capfd):
     assert "proved free of contact with themselves and each other, before modifiers" in capfd.readouterr().out
 
 
-def test_what_is_not_a_selected_curve_stays():
-    other = add_hopf_link()
-    other.select_set(False)
-    before = stored(other.data)
-    obj, _ = rings()
-    show(bpy.data.objects.new("Mesh", bpy.data.meshes.new("Mesh")))
-    assert bpy.ops.curve.mobius_flow_relax(**SHORT) == {"FINISHED"}
-    assert obj.data.shape_keys is not None
-    np.testing.assert_array_equal(stored(other.data), before)
-    assert other.data.shape_keys is None
-
-
-def test_every_selected_object_is_looked_at():
-    rings()[0].data.dimensions = "2D"
-    assert "'A' is a 2D curve" in refused()
-
-
 def test_objects_that_touch_each_other_are_refused():
     points = hopf_link(24).vertices[:24].astype(np.float32)
     ring(points, "A")
@@ -299,26 +281,6 @@ def test_scripts_give_objects_and_operators_the_name_of_a_collection(capfd):
         shapes[way] = world_keys([obj])[-1]
     np.testing.assert_array_equal(shapes["name"], shapes["script"])
     np.testing.assert_array_equal(shapes["scene"], shapes["script"])
-
-
-@pytest.mark.parametrize("further", ["bake_again", "continue"])
-def test_what_goes_on_avoids_it_too(capfd, further):
-    tube, moving = torus(), add_curve([tangled()[1]], "Ring")
-    avoid(tube)
-    relax(**SHORT)
-    bpy.context.scene.mobius_flow.max_iterations = 5
-    assert getattr(bpy.ops.curve, f"mobius_flow_{further}")() == {"FINISHED"}
-    assert capfd.readouterr().out.count("and with 'Torus'") == 2
-    assert free(moving, Surroundings.of([tube], []).obstacles)
-
-
-def test_a_start_in_contact_is_refused_with_the_names_that_objects_have():
-    tube = torus(thickness=1.2)
-    tube.name = "edge of component 1"
-    add_curve([tangled()[1]], "Ring")
-    avoid(tube)
-    assert (said := refused()).startswith("Segment 1 of spline 1 of 'Ring' pierces ")
-    assert "'edge of component 1' at" in said
 
 
 def test_what_does_not_go_with_obstacles_is_refused():

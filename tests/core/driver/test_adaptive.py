@@ -5,8 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, Objective, RelaxOptions, Status, Trajectory, minimize, relax
-from mobius_flow.core.curve.distances import STRAND_RATIO, arc_distance_of_pairs
+from mobius_flow.core import Curve, RelaxOptions, Status, Trajectory, minimize, relax
 from mobius_flow.core.curve.pins import Pins
 from mobius_flow.core.curve.refine import (
     MIN_VERTICES,
@@ -21,7 +20,6 @@ from mobius_flow.core.curve.refine import (
 from mobius_flow.core.driver.move import Change
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.driver.run import Run
-from mobius_flow.core.energies.barrier import near_pairs
 from mobius_flow.core.knots import knot
 from shapes import hopf_link, lattice_knot, regular_polygon, torus_trefoil
 from tasks import proved
@@ -39,7 +37,7 @@ def near_strands(gap: float) -> Curve:
     return Curve(np.concatenate([upper, end, lower, np.stack([-np.cos(t), -np.sin(t), 0 * t], axis=1)]))
 
 
-def test_spacing_follows_gaps_and_is_graded():
+def test_spacing_follows_gaps_and_obstacles_and_is_graded():
     curve = near_strands(0.01)
     spacing = graded_spacing(curve, RULE)
     middle = (curve.vertices[:, 0] > 1) & (curve.vertices[:, 0] < 3)
@@ -47,10 +45,7 @@ def test_spacing_follows_gaps_and_is_graded():
     ratios = spacing / spacing[curve.mesh.previous]
     assert ratios.max() <= 1.3 * (1 + 1e-12)
     assert ratios.min() >= 1 / 1.3 * (1 - 1e-12)
-
-
-def test_spacing_follows_obstacles_and_is_graded():
-    """Two edges are to fit in between the curve and a wall."""
+    # two edges are to fit in between the curve and a wall
     curve = regular_polygon(200)
     rule = replace(RULE, clearance=lambda each: 0.005 + np.abs(each.midpoints[:, 0] - 1.0))
     spacing, plain = graded_spacing(curve, rule), graded_spacing(curve, RULE)
@@ -135,15 +130,3 @@ def test_granny_has_no_minimiser_and_is_told_so(mesh):
     assert result.status is Status.STALLED
     assert "pull tight" in result.message
     assert mesh == "adaptive" or len(result.phases) == 1
-
-
-def test_resolve_goes_on_until_strands_are_resolved():
-    result = minimize(lattice_knot("3_1"), RelaxOptions(vertices=60, mesh="finer"))
-    assert result.status is Status.CONVERGED
-    assert len(result.curve) > 60
-    i, j = near_pairs(result.curve)
-    distance = np.linalg.norm(result.curve.midpoints[i] - result.curve.midpoints[j], axis=1)
-    along = arc_distance_of_pairs(result.curve, i, j, 0.5)
-    assert (along < STRAND_RATIO * distance).all(), "edges that grow longer along a strand are near, strands are not"
-    assert Objective().barrier.value(result.curve) < 5e-6
-    assert result.energies[-1] == pytest.approx(74.412, rel=6e-3)

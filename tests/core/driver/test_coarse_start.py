@@ -123,10 +123,6 @@ def test_where_vertices_are_to_stay_they_do(options: dict[str, object]) -> None:
     assert {len(iterate.curve) for iterate in iterates} == {600}
 
 
-def test_small_curves_keep_their_vertices() -> None:
-    assert {len(iterate.curve) for iterate in relaxed(bent(torus_trefoil(600)), max_iterations=3)} == {600}
-
-
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_smooth_curves_through_polygons(dimension: int) -> None:
     coarse = regular_polygon(24, dimension)

@@ -8,18 +8,15 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, Mesh, Obstacle, RelaxOptions, Status, minimize
 from mobius_flow.core.curve import refine
-from mobius_flow.core.descent.hessian import lagrangian_hessian
 from mobius_flow.core.driver.moves import links
 from mobius_flow.core.driver.moves.links import DIRECTIONS, _near, open_knots, separate_parts
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.knots import knot, overhand
-from mobius_flow.core.knots.composite import Ball, knotted_ball
-from mobius_flow.core.solve.constraints import Barycenters, Constraints, weighted_barycenter
-from mobius_flow.core.solve.metrics import METRICS
+from mobius_flow.core.knots.composite import Ball
+from mobius_flow.core.solve.constraints import Barycenters, Constraints
 from shapes import opened, straight_arc
 from solids import box, plate, rod
 from tasks import wanted
-from taylor import taylor_slope
 
 SLOW = [pytest.param(method, marks=pytest.mark.slow) for method in ("cg", "flow-moebius", "trust-region")]
 
@@ -89,36 +86,6 @@ def parted():
     return curve, Constraints(1.1 * curve.edge_lengths, blocks)
 
 
-def test_barycenters_of_parts_add_up_and_have_their_derivatives(parted):
-    curve, constraints = parted
-    both = constraints.block(Barycenters).target.reshape(2, 3)
-    np.testing.assert_allclose(both.sum(axis=0), weighted_barycenter(curve))
-    np.testing.assert_allclose(constraints.residual(curve)[len(curve) :], 0)
-    u = np.random.default_rng(5).normal(size=curve.vertices.shape)
-    along = [constraints.residual(curve), constraints.derivative(curve).apply(u)]
-    slope = taylor_slope(lambda t: constraints.residual(curve.with_vertices(curve.vertices + t * u)), along)
-    assert slope == pytest.approx(2, abs=0.1)
-    link = knot("L2a1")
-    usual, one = Constraints.of(link), Constraints(link.edge_lengths, (Barycenters.of(link, parts=(0, 0)),))
-    np.testing.assert_array_equal(*(list(each.derivative(link).border()) for each in (usual, one)))
-
-
-def test_solver_with_parts_against_dense_matrix(parted):
-    curve, constraints = parted
-    derivative = constraints.derivative(curve)
-    n, m = curve.vertices.shape
-    inner = METRICS["moebius"].at(curve)
-    matrix = inner.dense()
-    rows = np.stack([derivative.apply(unit.reshape(n, m)) for unit in np.eye(n * m)], axis=1)
-    assert rows.shape == (n + 6, n * m)
-    dense = np.block([[np.kron(matrix, np.eye(m)), rows.T], [rows, np.zeros((n + 6, n + 6))]])
-    covector = np.random.default_rng(6).normal(size=(n, m))
-    expected = np.linalg.solve(dense, np.concatenate([covector.ravel(), np.zeros(n + 6)]))
-    u, multipliers = inner.tangent_space(derivative).gradient(covector)
-    np.testing.assert_allclose(u.ravel(), expected[: n * m], atol=1e-8 * np.abs(expected).max())
-    np.testing.assert_allclose(derivative.apply_transpose(multipliers).ravel(), rows.T @ multipliers, atol=1e-8)
-
-
 def test_barycenters_of_many_parts_take_no_more_memory_than_one():
     curve = rings(*(4.0 * k for k in range(50)), size=400)
     tracemalloc.start()
@@ -185,42 +152,6 @@ def test_strands_a_billionth_apart_come_apart(method):
         assert result.status is Status.CONVERGED
         assert result.certified
         assert result.energies[-1] < energy
-
-
-def test_second_derivative_along_held_parts():
-    """Against differences of energies along a path on the constraints."""
-    curve = Curve.from_components([ring([0, 0, 0], 1.0, 24), ring([5.0, 0.3, 0.2], 1.0, 24)])
-    problem = start_problem(curve, RelaxOptions())
-    vertices = problem.units.from_user(curve.vertices)
-    vertices = vertices + 0.02 * np.random.default_rng(8).normal(size=vertices.shape)
-    start = curve.with_vertices(vertices)
-    constraints = Constraints(start.edge_lengths, (Barycenters.of(start, parts=(0, 1)),))
-    problem = replace(problem, constraints=constraints)
-    point = problem.at(vertices)
-    v = point.tangent_space.project(np.random.default_rng(9).normal(size=vertices.shape))
-    # the Lagrangian's slope along tangents vanishes only at critical points: the path's own bend is what (42) adds
-    expected = float(np.sum(v * lagrangian_hessian(point)(v)))
-    errors = []
-    for h in (1e-3, 5e-4):
-        ahead, behind = (point.retract(vertices + sign * h * v, 0 * point.residual) for sign in (1.0, -1.0))
-        bend = ahead.vertices + behind.vertices - 2 * vertices
-        along = np.sum((point.derivative - point.tangent_space.constraints.apply_transpose(point.multipliers)) * bend)
-        errors.append((ahead.energy - 2 * point.energy + behind.energy - along) / h**2 - expected)
-    assert abs(errors[1]) < 1e-3 * abs(expected)
-    assert abs(errors[1]) < 0.3 * abs(errors[0])
-
-
-@pytest.mark.slow
-def test_parts_are_judged_one_by_one():
-    """Two split Hopf links, and a trefoil far from a ring: neither is composite."""
-    hopf = [ring([0, 0, 0]), ring([0, 0, 0])[:, [0, 2, 1]] + [1.0, 0, 0]]
-    two = Curve.from_components([*hopf, *(c + np.array([8.0, 0, 0]) for c in hopf)])
-    assert knotted_ball(two) is None
-    trefoil = knot("3_1").components[0]
-    assert knotted_ball(Curve.from_components([trefoil, trefoil + np.array([20.0, 0, 0])])) is None
-    result = minimize(two, RelaxOptions(vertices=80))
-    assert result.status is Status.CONVERGED
-    assert "unlinked" in result.message
 
 
 # -- composite -------------------------------------------------------------------------------------------------------

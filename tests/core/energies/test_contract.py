@@ -7,7 +7,7 @@ import pytest
 from energy_references import arc_density, circle_density, pair_sum, tangent_point_density
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mobius_flow.core import Curve, MoebiusEnergy, Objective
+from mobius_flow.core import Curve, Objective
 from mobius_flow.core.energies import (
     ENERGIES,
     TERMS,
@@ -246,11 +246,3 @@ def test_sphere_inversions_in_the_limit(name: str) -> None:
         inverted = curve.with_vertices(from_centre / np.sum(from_centre**2, axis=1)[:, None])
         differences.append(abs(ENERGIES[name].value(inverted) - ENERGIES[name].value(curve)))
     assert differences[1] < (0.3 if name == "moebius" else 0.6) * differences[0]
-
-
-def test_one_gauss_point_is_the_default_energy() -> None:
-    curve = random_polygon(5, (9, 7), 3)
-    value, derivative = moebius_kpoint(1).value_and_derivative(curve)
-    expected, slope = MoebiusEnergy().value_and_derivative(curve)
-    assert value == pytest.approx(expected, rel=1e-13)
-    np.testing.assert_allclose(derivative, slope, rtol=0, atol=1e-12 * np.abs(slope).max())

@@ -9,28 +9,7 @@ from hypothesis import strategies as st
 from knot_diagrams import pairwise_linking
 from knot_type import knot_invariants
 from mobius_flow.core.base.errors import CurveError, MobiusFlowError
-from mobius_flow.core.curve import Curve
 from mobius_flow.core.knots import braid_closure, torus_knot
-
-
-def midpoint_energy(curve: Curve) -> float:
-    """Möbius energy by the midpoint rule, straight from its formula (Section 6.1.1 of [RS21])."""
-    e, m, lengths = curve.edge_vectors, curve.midpoints, curve.edge_lengths
-    d = m[:, None] - m[None]
-    index = np.arange(len(curve))
-    squared = np.where(curve.mesh.disjoint(index[:, None], index[None]), (d * d).sum(axis=2), np.inf)
-    along, across = np.einsum("ijk,ik->ij", d, e), np.einsum("ijk,jk->ij", d, e)
-    pairs = (np.outer(lengths, lengths) + e @ e.T) / squared - 2 * along * across / squared**2
-    return 4 * len(curve.mesh.component_sizes) + float(pairs.sum())
-
-
-def test_torus_trefoil_of_least_energy() -> None:
-    # 74.4120428860 is the minimum over torus trefoils (Kim & Kusner 1993), with this tube.
-    energies = [midpoint_energy(torus_knot(2, 3, n, minor=0.47407312473)) for n in (100, 200, 400)]
-    errors = np.array(energies) - 74.4120428860
-    assert np.log2(errors[:-1] / errors[1:]) == pytest.approx(2.0, abs=0.02)
-    assert errors[-1] < 0.014
-
 
 TORUS = [(2, 3), (2, 7), (3, 4), (3, 5), (5, 3), (4, 5), (5, 2), (7, 2), (1, 1), (1, 6), (6, 1)]
 

@@ -26,23 +26,6 @@ def test_the_type_is_kept(name: str, seed: int) -> None:
         assert knot_invariants(part) == knot_invariants(before)
 
 
-@pytest.mark.slow
-def test_moves_pierce_nothing_in_exact_arithmetic() -> None:
-    curve, count = knot("4_1", 40), 0
-    points, n = curve.vertices, len(curve)
-    for moves in range(1, 150):  # the first ones are always the same
-        after = scramble(curve, 11, moves=moves).vertices
-        for v in np.flatnonzero((after != points).any(axis=1)):
-            for pivot in ((v - 1) % n, (v + 1) % n):
-                triangle = (exact(points[pivot]), exact(points[v]), exact(after[v]))
-                for i in range(n):
-                    if not {pivot, v} & {i, (i + 1) % n}:
-                        assert not exactly_pierced(triangle, exact(points[i]), exact(points[(i + 1) % n]))
-            count += 1
-        points = after
-    assert count > 15
-
-
 def test_it_is_messy_and_keeps_its_gap() -> None:
     curve = knot("3_1")
     messy = scramble(curve, 7, gap=0.05)

@@ -5,10 +5,9 @@ import json
 import os
 import re
 import shutil
-import subprocess
 import sys
 import time
-from contextlib import ExitStack, contextmanager, nullcontext
+from contextlib import ExitStack, nullcontext
 from functools import partial
 
 import numpy as np
@@ -18,7 +17,7 @@ from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, read_curve, w
 from mobius_flow.lab.batch import campaign, single
 from mobius_flow.lab.batch.folder import new_folder
 from mobius_flow.lab.batch.job import inputs, jobs
-from processes import finished, listening, running
+from processes import listening, running
 from shapes import regular_polygon
 
 pytest.importorskip("pyarrow")
@@ -26,7 +25,6 @@ psutil = pytest.importorskip("psutil")  # which Dask needs
 PROGRAM = [sys.executable, "-m", "mobius_flow", "batch"]
 QUICK = ["--vertices", "12", "--max-iterations", "0"]
 OTHERWISE = ["--vertices", "24", "--max-iterations", "0"]  # by which results are to be replaced
-KEPT = "ring/curve.txt", "ring/report.json", "ring/trajectory.npz", "results.csv"
 OLD = time.time() - 1e6
 
 
@@ -221,13 +219,6 @@ def test_a_curve_in_four_dimensions_is_refused_at_once(tmp_path, monkeypatch):
     assert row.message.startswith(f"{tmp_path / 'a.json'}: the curve is in dimension 4, and curve.txt holds")
 
 
-@pytest.mark.slow
-def test_any_time_limit(results, tmp_path):
-    words = [str(results / "ring.txt"), "-o", str(tmp_path / "out"), *QUICK, "--time-limit", "1e300"]
-    ended = finished([*PROGRAM, *words])
-    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "1 run: 1 converged\n", "")
-
-
 def test_it_listens_to_nobody_and_leaves_nothing_in_the_temporary_directory(tmp_path):
     temporary = tmp_path / "tmp"
     temporary.mkdir()
@@ -242,41 +233,3 @@ def test_it_listens_to_nobody_and_leaves_nothing_in_the_temporary_directory(tmp_
         _, said = process.communicate()
     assert process.returncode == 130, said
     assert os.listdir(temporary) == []
-
-
-@contextmanager
-def full_disk(place):
-    """A file system of one megabyte."""
-    place.mkdir()
-    if os.name != "posix" or os.geteuid() != 0:
-        pytest.skip("only root may mount")
-    if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1m", "tmpfs", str(place)], capture_output=True).returncode:
-        pytest.skip("nothing may be mounted here")
-    try:
-        yield
-    finally:
-        subprocess.run(["umount", str(place)], check=True)
-
-
-@pytest.mark.slow
-def test_a_full_disk_costs_no_result(results, tmp_path, capsys):
-    with full_disk(tmp_path / "disk"):
-        out = tmp_path / "disk/out"
-        words = ["batch", str(results / "ring.txt"), str(tmp_path / "*.txt"), "-o", str(out), *QUICK]
-        write_curve(tmp_path / "a.txt", regular_polygon(12))
-        assert main(words) == 0
-        for k in range(3):
-            write_curve(tmp_path / f"b{k}.txt", regular_polygon(12))
-        blocker = tmp_path / "disk/blocker"
-        free = shutil.disk_usage(out).free
-        blocker.write_bytes(b"x" * (free - 8192))  # room for half a run
-        before = [(out / name).read_bytes() for name in KEPT]
-        capsys.readouterr()
-        assert main(words) == 2
-        said = capsys.readouterr().err
-        assert re.fullmatch(rf"mobius-flow: {out}/.*: cannot be written: No space left on device.*\n", said)
-        assert [(out / name).read_bytes() for name in KEPT] == before
-        assert not list(out.glob(".*"))
-        blocker.unlink()
-        assert main(words) == 0
-        assert capsys.readouterr().out == "5 runs: 5 converged\n"

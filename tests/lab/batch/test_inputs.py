@@ -31,11 +31,6 @@ def test_files_directories_and_patterns():
     assert inputs(["b.txt"]) == [Input("b", Path("b.txt").absolute())]
 
 
-def test_codes_are_files(tmp_path):
-    Path("more/trefoil.pd").write_text("PD[X[1,5,2,4], X[3,1,4,6], X[5,3,6,2]]")
-    assert names("more") == ["c", "trefoil"]
-
-
 @pytest.mark.parametrize(
     ("file", "name"), [("..txt", "..txt"), ("...txt", "...txt"), (b"n\xff.txt", "n\\xff"), ("a b ü.txt", "a b ü")]
 )

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, OptionError
-from mobius_flow.core.energies.barrier import near_pairs
 from mobius_flow.core.energies.hierarchy import BlockList
 from mobius_flow.core.energies.hierarchy.blocks import edge_clusters
 from shapes import hopf_link, opened, regular_polygon, scattered_rings, torus_trefoil
@@ -65,28 +64,6 @@ def test_a_list_is_of_one_mesh_only() -> None:
     curve = torus_trefoil(400)
     assert BlockList.of(curve, 0.25, 4).is_separated(curve, 0.25)
     assert not BlockList.of(curve, 0.25, 4).is_separated(opened(curve, 0), 0.25)
-
-
-@pytest.mark.parametrize("curve", [torus_trefoil(6_000), scattered_rings(1_000, 5, spread=40.0)], ids=["long", "many"])
-def test_row_sums_of_the_kernel_one(curve: Curve) -> None:
-    blocks, n = BlockList.of(curve, 0.25, 4), len(curve)
-    sums = np.zeros(n + 1)
-    a, b, c, d = blocks.ranges
-    for start, stop, partners in [(a, b, d - c), (c, d, b - a)]:
-        sums += np.bincount(start, partners, n + 1) - np.bincount(stop, partners, n + 1)
-    sums = np.cumsum(sums)[:-1]
-    near = np.bincount(blocks.near[0], minlength=n) + np.bincount(blocks.near[1], minlength=n)
-    np.testing.assert_array_equal(sums + near[blocks.tree.order], n - 3)
-
-
-@pytest.mark.parametrize("name", ["tangle", "small", "fourfold"])
-def test_pairs_of_the_barrier_are_near(name: str) -> None:
-    curve = CURVES[name]
-    blocks = BlockList.of(curve, 0.25, 4)
-    listed = {frozenset(pair) for pair in zip(*blocks.near, strict=True)}
-    counted = {frozenset(pair) for pair in zip(*near_pairs(curve), strict=True)}
-    assert counted
-    assert counted <= listed
 
 
 @CURVE

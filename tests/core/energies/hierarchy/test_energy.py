@@ -84,13 +84,6 @@ def test_products_with_the_second_derivative_to_four_digits(name: str, smooth: b
     assert np.sum(error * inner.solve(error)) < 1e-8 * np.sum(exact * inner.solve(exact))
 
 
-def test_products_with_nothing_and_with_a_shift_are_nothing() -> None:
-    curve = CURVES["uneven"]
-    for v in (np.zeros_like(curve.vertices), np.ones_like(curve.vertices)):
-        scale = np.abs(MoebiusEnergy().hessian_product(curve, direction_for(curve))).max()
-        np.testing.assert_allclose(with_small_leaves(curve).hessian_product(curve, v), 0.0, atol=1e-7 * scale)
-
-
 def test_taylor_slope_where_expansions_are_poor(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("mobius_flow.core.energies.hierarchy.energy.OUTDATED", 1.0)
     curve = torus_trefoil(200)
@@ -160,16 +153,6 @@ def test_leaving_out_is_exact_and_the_objective_that_of_the_default_energy() -> 
     exact, exact_derivative = Objective().value_and_derivative(curve)
     assert value == pytest.approx(exact, rel=1e-6)
     np.testing.assert_allclose(derivative, exact_derivative, atol=1e-5 * np.abs(exact_derivative).max())
-
-
-def test_left_out_pairs_must_be_near() -> None:
-    curve = torus_trefoil(300)
-    blocks = BlockList.of(curve, HierarchicalMoebiusEnergy.theta, 4)
-    far = blocks.tree.order[blocks.ranges[0, :1]], blocks.tree.order[blocks.ranges[2, :1]]
-    assert HierarchicalMoebiusEnergy(blocks, (far[0][:0], far[1][:0])).value(curve)
-    for pairs in (far, (np.append(blocks.near[0][:2], far[0]), np.append(blocks.near[1][:2], far[1]))):
-        with pytest.raises(MobiusFlowError, match="not a near one"):
-            HierarchicalMoebiusEnergy(blocks, pairs).value(curve)
 
 
 def test_a_frozen_list_stays_until_strands_come_near() -> None:

@@ -105,15 +105,6 @@ def test_what_is_too_large_is_not_computed() -> None:
     assert jones(braid_diagram(tuple(range(1, 24)) * 24)) is None
 
 
-DETERMINANTS = {"0_1": 1, "3_1": 3, "4_1": 5, "5_1": 5, "5_2": 7, "6_1": 9, "6_2": 11, "6_3": 13, "7_7": 21, "8_19": 3}
-
-
-@pytest.mark.parametrize("name", DETERMINANTS)
-def test_determinants(name):
-    value = quick_invariants(knot(name)).alexander[0][0]
-    assert min(value, FIELD.prime - value) == DETERMINANTS[name]
-
-
 def test_quick_invariants_tell_knots_apart_and_are_kept_by_scrambles_and_turns():
     """Δ = t − 1 + t⁻¹ is −2 at a cube root of unity."""
     assert quick_invariants(knot("3_1")).alexander[0][1] == 2
