@@ -18,7 +18,7 @@ from ..base.tolerances import BULK
 from ..base.types import FloatArray
 from ..energies.moebius import OwnBlocks
 from ..solve.saddle import TangentSpace
-from ..solve.saddle.krylov import LinearMap, conjugate_gradients
+from ..solve.saddle.iterative import LinearMap, conjugate_gradients
 from .problem import Point
 
 ASSEMBLED_SIZE = 3000  # unknowns up to which one assembled matrix beats products that go through all pairs

@@ -18,7 +18,7 @@ from ...curve.pins import NOWHERE
 from ...energies.quadrature import Rule
 from ..constraints import ConstraintDerivative
 from ..saddle import TangentSpace
-from ..saddle.dense import DenseTangentSpace, SparseTangentSpace, cholesky, factorised
+from ..saddle.tangent_space import DenseTangentSpace, SparseTangentSpace, cholesky, factorised
 
 MAX_DENSE_ROWS = 12_000  # some six matrices of so many rows make 7 GB
 MAX_SPARSE_ROWS = 50_000  # energies, sums over all pairs of edges, take half a minute there
@@ -69,15 +69,13 @@ class DenseInnerProduct:
         return _filled(self._matrix.copy(order="F"))
 
     def tangent_space(self, constraints: ConstraintDerivative, weights: FloatArray | None = None) -> TangentSpace:
-        return DenseTangentSpace(self._vanishing_at(constraints.pins), constraints, weights)
-
-    def _vanishing_at(self, pins: IntArray) -> "DenseInnerProduct":
-        """The same on functions that vanish at pins; kept, with its inverse, as a metric outlives tangent spaces."""
-        if np.array_equal(pins, self._pins):
-            return self
-        if self._pinned is None or not np.array_equal(pins, self._pinned._pins):
-            self._pinned = DenseInnerProduct(self._matrix, pins)
-        return self._pinned
+        # on functions that vanish at pins; kept, with its inverse, as a metric outlives tangent spaces
+        pins, own = constraints.pins, self
+        if not np.array_equal(pins, self._pins):
+            if self._pinned is None or not np.array_equal(pins, self._pinned._pins):
+                self._pinned = DenseInnerProduct(self._matrix, pins)
+            own = self._pinned
+        return DenseTangentSpace(own, constraints, weights)
 
     @cached_property
     def inverse(self) -> FloatArray:

@@ -1,22 +1,180 @@
-"""Models of inner products on links, and on functions that vanish at pins: by symbols, and by resolvents.
+"""Models of inner products, cheaply inverted: by symbols, what a wave along the curve costs by frequency; and of links.
 
-Resolvents of the Laplacian along the curve serve for order 3/2 and any edge lengths.  For λ > 0 we have λ^{-3/2} = 2/π
-∫ σ^{1/2} (λ + σ)⁻² dσ and λ^{1/2} = 1/π ∫ σ^{-1/2} λ (λ + σ)⁻¹ dσ.  By the trapezoidal rule in log σ both are sums over
-a few σ, and with a symbol f(σ) in place of σ^{3/2}, or one in place of σ^{1/2}, slowly varying in comparison, they are
-near 1/f(λ), or near this one at λ.  Each resolvent is a sparse factorisation with three entries a row, for all
-components at once: together several times slower than a Fourier transform, but insensitive to the mesh.
+Fast Fourier transforms serve where edges are alike, resolvents of the Laplacian along the curve for order 3/2 and any
+edge lengths.  For λ > 0 we have λ^{-3/2} = 2/π ∫ σ^{1/2} (λ + σ)⁻² dσ and λ^{1/2} = 1/π ∫ σ^{-1/2} λ (λ + σ)⁻¹ dσ.  By
+the trapezoidal rule in log σ both are sums over a few σ, and with a symbol f(σ) in place of σ^{3/2}, or one in place of
+σ^{1/2}, slowly varying in comparison, they are near 1/f(λ), or near this one at λ.  Each resolvent is a sparse
+factorisation with three entries a row, for all components at once: together several times slower than a Fourier
+transform, but insensitive to the mesh.
 """
+
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.linalg import cho_factor, cho_solve
+from scipy.fft import irfft, rfft
 
-from ...base.types import FloatArray, IntArray
+from ...base.types import FloatArray
 from ...curve import Mesh
-from ...curve.pins import holds
-from .dense import factorised
-from .krylov import LinearMap, Model
-from .symbol import Parameter, modulated
+from .iterative import LinearMap, Model
+from .tangent_space import factorised
+
+LEAST = 1e-6  # modulated value, relative to the largest one: where edges double back it may be 0
+
+Symbol = Callable[[FloatArray], FloatArray]
+"""A positive function of frequencies."""
+
+
+@dataclass(frozen=True, eq=False)
+class Parameter:
+    """A way to run along the components of a mesh, each at its own constant speed: by index, or by arc length."""
+
+    mesh: Mesh
+    positions: FloatArray  # of each vertex, 0 at the first one of its component; shape (n,)
+    periods: FloatArray  # of each component; shape (components,)
+
+    @classmethod
+    def of_steps(cls, mesh: Mesh, steps: FloatArray) -> "Parameter":
+        """The parameter that grows by so much from each vertex to the next one; shape (n,)."""
+        ends = np.cumsum(steps) - steps
+        starts = mesh.offsets[:-1]
+        return cls(mesh, ends - ends[starts][mesh.component], np.add.reduceat(steps, starts))
+
+    def waves(self, frequencies: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Cosines and sines of about these frequencies, 0 on components that are too short; shapes (n, k)."""
+        turns = np.rint(np.multiply.outer(self.periods, frequencies) / (2.0 * np.pi))
+        phase = (2.0 * np.pi * turns / self.periods[:, None])[self.mesh.component] * self.positions[:, None]
+        # of either sign at random, lest components move together
+        signs = np.random.default_rng(1).choice(np.array([-1.0, 1.0]), len(self.periods))
+        amplitude = ((turns > 0.0) * signs[:, None])[self.mesh.component]
+        return amplitude * np.cos(phase), amplitude * np.sin(phase)
+
+    def symbol(self, apply: LinearMap, weights: FloatArray, highest: float) -> Symbol:
+        """Rayleigh quotients Σ u A u / Σ w u² of waves u, interpolated between logarithms.
+
+        Below the lowest frequency, one turn, the symbol is constant; above the ``highest`` one tried, in radians per
+        unit of the parameter, it grows like its third power, as that of an inner product of order 3/2 does.  ``apply``
+        is u to A u, (n, k) to (n, k), ``weights`` w has shape (n,).  A LinAlgError says if a quotient is not positive.
+        """
+        turn = 2.0 * np.pi / float(self.periods.max())
+        # more than twelve, spread evenly on a logarithmic scale, do not save an iteration
+        frequencies = turn * np.unique(np.rint(np.geomspace(1.0, max(1.0, highest / turn), 12)))
+        waves = np.stack(self.waves(frequencies))
+        images = np.stack([apply(wave) for wave in waves])
+        quotients = np.sum(waves * images, axis=(0, 1)) / np.sum(weights[:, None] * waves**2, axis=(0, 1))
+        constant = np.ones((len(weights), 1))
+        rounding = 100.0 * np.finfo(np.float64).eps * float(np.abs(apply(constant)).sum() / weights.sum())
+        if not quotients.min() > rounding:
+            raise np.linalg.LinAlgError("matrix is not positive definite: a Rayleigh quotient is not positive")
+        logarithms, last = (np.log(frequencies), np.log(quotients)), frequencies[-1]
+        return lambda f: np.exp(np.interp(np.log(np.maximum(f, turn)), *logarithms)) * np.maximum(f / last, 1.0) ** 3
+
+
+def autocorrelation(t: FloatArray) -> FloatArray:
+    """Means of ⟨t_I, t_{I+d}⟩ over I, for t of period k; shapes (..., k, m) -> (..., k)."""
+    count = t.shape[-2]
+    return np.asarray(irfft(np.sum(np.abs(rfft(t, axis=-2)) ** 2, axis=-1), count) / count)
+
+
+def modulated(symbol: Symbol, tau: FloatArray, lengths: FloatArray) -> Symbol:
+    """What Σ_k diag(τ_k) K diag(τ_k) costs waves on edges, on an average along the curve, for K of a symbol.
+
+    The kernel of K is multiplied by the autocorrelation of τ, on a uniform grid on which components follow each other.
+    Waves that are too short for this grid do not see the curve turn.  Unit tangents have shape (edges, m), edge
+    ``lengths`` (edges,).
+    """
+    ends, count = np.cumsum(lengths), 2 * len(lengths)
+    spacing = ends[-1] / count
+    nearest = np.searchsorted(ends[:-1], spacing * (np.arange(count) + 0.5))
+    frequencies = 2.0 * np.pi / ends[-1] * np.arange(count // 2 + 1)
+    values = rfft(autocorrelation(tau[nearest]) * irfft(symbol(frequencies), count)).real
+    values = np.maximum(values, LEAST * values.max())
+    return lambda f: np.where(f < frequencies[-1], np.interp(f, frequencies, values), symbol(f))
+
+
+class Circulants:
+    """M = W⁻¹ F W⁻¹, F circulant on each component, of one symbol, and W the mean edge length of the component.
+
+    For edges of similar lengths: on a polygon of equal edges the seminorm of W^{3/2,2} is a circulant matrix, and J_C
+    is spectrally equivalent to one.  It grows like ℓ⁻² with the edge length ℓ.  Where this varies from component to
+    component, u/ℓ is the right unknown; along one component it is not, because multiplying by a function with jumps is
+    not bounded in W^{3/2,2}: iterations would grow with n, whereas with one scale they only grow with the ratio of
+    lengths.
+
+    A model of the product ``apply``, u to A u, (n, k) to (n, k), on a mesh of closed components; ``lengths`` are those
+    of the edges, shape (n,).  A LinAlgError says if A is not positive definite.
+    """
+
+    def __init__(self, mesh: Mesh, lengths: FloatArray, apply: LinearMap) -> None:
+        self._transform = ComponentTransform(mesh)
+        sizes = np.asarray(mesh.component_sizes)
+        means = np.add.reduceat(lengths, mesh.offsets[:-1]) / sizes
+        self._scale = means[mesh.component, None]
+        one = np.ones(mesh.size)
+        symbol = Parameter.of_steps(mesh, one).symbol(lambda v: self._scale * apply(self._scale * v), one, np.pi)
+        values = self._transform.sampled(symbol)
+        scales = (means[sizes == size, None] for size in np.unique(sizes))
+        self._inverse = [scale**2 / value for scale, value in zip(scales, values, strict=True)]
+        stretches = self._transform.sampled(lambda theta: 4.0 * np.sin(0.5 * theta) ** 2)
+        self._compliance = [stretch / value for value, stretch in zip(values, stretches, strict=True)]
+
+    def solve(self, f: FloatArray) -> FloatArray:
+        return self._transform.filtered(f, self._inverse)
+
+    def tension(self, tangents: FloatArray) -> LinearMap:
+        """With D F⁻¹ Dᵀ, which is circulant, modulated by the directions of edges."""
+        weighted = self._scale * tangents
+        size = np.linalg.norm(weighted, axis=1, keepdims=True)
+        modulated = self._transform.modulated(self._compliance, weighted / size)
+        factors = [1.0 / np.maximum(each, LEAST * each.max(axis=1, keepdims=True)) for each in modulated]
+        return lambda g: self._transform.filtered(g[:, None] / size, factors)[:, 0] / size[:, 0]
+
+
+class ComponentTransform:
+    """Products with circulant matrices, one of the same symbol on each component.
+
+    Components of one size are transformed together.  There are at most √(2n) different sizes, so thousands of small
+    components are no slower than a large one.
+    """
+
+    def __init__(self, mesh: Mesh) -> None:
+        sizes = np.asarray(mesh.component_sizes)
+        self._sizes = [int(size) for size in np.unique(sizes)]
+        self._rows = [mesh.offsets[:-1][sizes == size, None] + np.arange(size) for size in self._sizes]
+
+    def sampled(self, symbol: Symbol) -> list[FloatArray]:
+        """A symbol at the angles θ ∈ [0, π] from vertex to vertex that every size of components has."""
+        return [symbol(2.0 * np.pi / size * np.arange(size // 2 + 1, dtype=np.float64)) for size in self._sizes]
+
+    def modulated(self, factors: list[FloatArray], t: FloatArray) -> list[FloatArray]:
+        """Factors of the circulant matrices nearest to Σ_k diag(t_k) F diag(t_k), F that of sampled factors.
+
+        Their entries are the means along the diagonals: those of F times the autocorrelation of t on the component
+        (Chan, An optimal circulant preconditioner for Toeplitz systems, SIAM J. Sci. Stat. Comput. 9, 1988).  For every
+        size of components ``factors`` have shape (frequencies,), the result (components, frequencies); t has (n, m).
+        """
+        return [
+            rfft(autocorrelation(t[rows]) * irfft(factor, size)).real
+            for size, rows, factor in zip(self._sizes, self._rows, factors, strict=True)
+        ]
+
+    def filtered(self, u: FloatArray, factors: list[FloatArray]) -> FloatArray:
+        """The circulant matrix of sampled factors, or those of modulated ones, times u; shape (n, k)."""
+        if len(self._sizes) == 1:  # all components, one after the other
+            return _filtered(u.reshape(-1, self._sizes[0], u.shape[1]), factors[0]).reshape(u.shape)
+        result = np.empty_like(u)
+        for rows, factor in zip(self._rows, factors, strict=True):
+            result[rows] = _filtered(u[rows], factor)
+        return result
+
+
+def _filtered(u: FloatArray, factor: FloatArray) -> FloatArray:
+    """Of components of one size; shape (components, size, k)."""
+    waves = rfft(u, axis=1)
+    waves *= factor[..., None]
+    return np.asarray(irfft(waves, u.shape[1], axis=1))
+
 
 SPACING = 3.5  # of log σ: with 2.3 there is no iteration less, with 5 there are half as many more
 
@@ -44,43 +202,6 @@ class TwoLevel:
         padded = np.concatenate([force, np.zeros((self._rank, f.shape[1]))])
         shift = self._factor.solve(padded)[: len(force)]
         return np.asarray(self._fine.solve(f) + shift.take(self._component, axis=0))
-
-
-class PinnedModel:
-    """A model M restricted to functions that vanish at pins: its inverse, continued by 0 to the pins.
-
-    That is M⁻¹ − M⁻¹E (Eᵀ M⁻¹ E)⁻¹ Eᵀ M⁻¹, E the unit functions of the pins.  A restriction inherits the bounds of
-    eigenvalues.  Of many pins in a row only the first and the last ones count: beyond them hardly anything is left.
-    For k pins near free vertices it takes k solves with M, and room for k·n numbers.  A LinAlgError says if M is not
-    positive definite.
-    """
-
-    def __init__(self, whole: Model, mesh: Mesh, pins: IntArray) -> None:
-        self._whole, self._pins = whole, pins
-        self.tension = whole.tension  # pins change the Schur complement by a matrix of low rank, for a few iterations
-        near = ~holds(mesh, pins)
-        for _ in range(2):  # pins that count on either side of those in a row
-            ahead, behind = mesh.heads[near[mesh.tails]], mesh.tails[near[mesh.heads]]
-            near[ahead] = near[behind] = True
-        self._near = pins[near[pins]] if near.any() else pins
-        units = np.zeros((mesh.size, len(self._near)))
-        units[self._near, np.arange(len(self._near))] = 1.0
-        self._responses = whole.solve(units)
-        self._compliance = cho_factor(self._responses[self._near], lower=True)
-
-    def solve(self, f: FloatArray) -> FloatArray:
-        """The solution with M, and forces at the pins that bring these back; shape (n, k)."""
-        force = f.copy()
-        force[self._pins] = 0.0
-        u = self._whole.solve(force)
-        u = u - self._responses @ cho_solve(self._compliance, u[self._near])
-        u[self._pins] = 0.0
-        return np.asarray(u)
-
-
-def vanishing_at(pins: IntArray, model: Model, mesh: Mesh) -> Model:
-    """A model on functions that vanish at pins, if there are any."""
-    return PinnedModel(model, mesh, pins) if len(pins) else model
 
 
 class Resolvents:

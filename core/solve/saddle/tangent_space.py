@@ -1,14 +1,25 @@
-"""What methods ask of a tangent space, which `dense` and `iterative` answer."""
+"""Tangent spaces of the constraints: what methods ask of them, and dense and sparse ones, by the structure of (41).
+
+The paper [RS21] factorises the dense matrix of (m+1) n + m rows.  With J = A ⊗ Id_m, D the edge differences and
+t_I = τ_I/ℓ_I the Schur complement of the length rows is the Hadamard product (t tᵀ) ∘ (D A⁻¹ Dᵀ), to which p
+barycenters add p·m rows, so two Cholesky factorisations of size n do.  Pins leave to A⁻¹ the functions that vanish
+there.
+
+A sparse matrix is factorised as it is; barycenters, whose rows are dense, are a border of as many more solves.
+"""
 
 from abc import ABC, abstractmethod
 from typing import Protocol
 
 import numpy as np
-from scipy.linalg import lapack
+import scipy.sparse as sp
+from scipy.linalg import blas, lapack
+from scipy.sparse.linalg import SuperLU, splu
 
 from ...base.types import FloatArray
 from ...curve import Curve
 from ...curve.pins import free_edges, holds
+from ...energies.edge_pairs import ROWS_TIMES_COLUMNS
 from ..constraints import ConstraintDerivative, Constraints
 
 
@@ -103,3 +114,128 @@ def euclidean_correction(constraints: Constraints, curve: Curve, residual: Float
     for block, own in constraints.of_blocks(residual[len(rows) :]):
         u = None if u is None else block.corrected(curve, u, stretch, own)
     return u
+
+
+class WithInverse(Applied, Protocol):
+    """A Gram matrix A whose inverse is at hand, on functions that vanish at pins continued by 0."""
+
+    @property
+    def inverse(self) -> FloatArray:
+        """A⁻¹ in full, shape (n, n), in Fortran order."""
+
+    def solve(self, f: FloatArray) -> FloatArray:
+        """A⁻¹ f, shape (n, k)."""
+
+
+class DenseTangentSpace(TangentSpace):
+    """Constraints of full rank, or any with weights; LinAlgError unless A and the Schur complement are definite."""
+
+    _inner: WithInverse
+
+    def __init__(
+        self, inner: WithInverse, constraints: ConstraintDerivative, weights: FloatArray | None = None
+    ) -> None:
+        super().__init__(inner, constraints, weights)
+        schur = _schur_complement(inner, constraints)
+        if weights is not None:  # (S + 1/w)⁻¹ = √w (√w S √w + 1)⁻¹ √w, a form that allows for w = 0
+            schur *= np.sqrt(np.multiply.outer(weights, weights))
+            schur[np.diag_indices_from(schur)] += 1.0
+        self._schur = cholesky(schur)
+
+    def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
+        """Solve the Schur complement's system for λ, then for u; with weights by Sherman, Morrison and Woodbury."""
+        c = self.constraints
+        free = np.zeros(c.shape) if eta is None else self._inner.solve(eta)
+        right = c.apply(free)
+        if self.weights is not None:
+            scale = np.sqrt(self.weights)
+            pull, multipliers = scale * substituted(self._schur, scale * right), np.zeros(c.count)
+        else:
+            pull = multipliers = substituted(self._schur, right if xi is None else right - xi)
+        return free - self._inner.solve(c.apply_transpose(pull)), multipliers
+
+
+def _schur_complement(inner: WithInverse, c: ConstraintDerivative) -> FloatArray:
+    """C J⁻¹ Cᵀ in Fortran order, the lower triangle.
+
+    D A⁻¹ Dᵀ comes from differences of rows and columns, block by block in the processor's cache.
+    """
+    edges, rows = len(c.tangents), len(c.edges)
+    schur = np.zeros((edges + c.count - rows,) * 2, order="F")
+    inverse, upper, tails, heads = inner.inverse.T, schur.T, c.mesh.tails, c.mesh.heads
+    width = max(1, ROWS_TIMES_COLUMNS // edges)
+    for first in range(0, edges, width):
+        block = slice(first, min(edges, first + width))
+        change = inverse[heads[block]]
+        change -= inverse[tails[block]]
+        part = upper[block, first:edges]
+        np.subtract(change.take(heads[first:], axis=1), change.take(tails[first:], axis=1), out=part)
+        part *= c.tangents[block] @ c.tangents[first:].T
+    if rows < edges:
+        kept = np.concatenate([c.edges, np.arange(edges, len(schur))])
+        schur = np.asfortranarray(schur[np.ix_(kept, kept)])
+    for k, row in enumerate(c.border(), rows):
+        schur[k, :] = c.apply(inner.solve(row))
+    return schur
+
+
+def cholesky(matrix: FloatArray) -> FloatArray:
+    """Lower factor of a symmetric positive definite matrix in Fortran order, which is overwritten."""
+    factor, info = lapack.dpotrf(matrix, lower=1, clean=0, overwrite_a=1)
+    if info != 0:
+        raise np.linalg.LinAlgError(f"matrix is not positive definite: pivot {info} of {len(matrix)}")
+    return np.asarray(factor)
+
+
+def substituted(factor: FloatArray, right: FloatArray) -> FloatArray:
+    """Solve L Lᵀ x = right for one right side; LAPACK's dpotrs is made for many and takes twice the time."""
+    if not len(right):  # which BLAS refuses
+        return right
+    return np.asarray(blas.dtrsv(factor, blas.dtrsv(factor, right, lower=1), lower=1, trans=1))
+
+
+class SparseTangentSpace(TangentSpace):
+    """Constraints of full rank, or lengths with weights, for a sparse A; LinAlgError if singular."""
+
+    def __init__(self, inner: "Sparse", constraints: ConstraintDerivative, weights: FloatArray | None = None) -> None:
+        super().__init__(inner, constraints, weights)
+        n, m = constraints.shape
+        self._free = np.ones((n, 1))  # 0 at pins, whose rows and columns are those of the identity
+        self._free[constraints.pins] = 0.0
+        gram, free = inner.matrix, sp.diags_array(self._free[:, 0])
+        if len(constraints.pins):
+            gram = free @ gram @ free + sp.diags_array(1.0 - self._free[:, 0])
+        full, lengths = sp.kron(gram, sp.eye_array(m)), constraints.length_rows()
+        if weights is not None:
+            full, lengths = full + lengths.T @ sp.diags_array(weights) @ lengths, lengths[:0]
+        self._factor = factorised(sp.block_array([[full, lengths.T], [lengths, None]]))
+        border = np.reshape(list(constraints.border()), (-1, full.shape[0]))
+        self._border = np.hstack([border, np.zeros((len(border), lengths.shape[0]))])
+        self._response = self._factor.solve(self._border.T)
+        self._held = self._border @ self._response
+
+    def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
+        (n, m), c = self.constraints.shape, self.constraints
+        rows, size = len(c.edges) if self.weights is None else 0, n * m
+        force = np.zeros(size) if eta is None else (self._free * eta).ravel()
+        missing = np.zeros(c.count) if xi is None or self.weights is not None else xi
+        free = self._factor.solve(np.concatenate([force, missing[:rows]]))
+        pull = np.linalg.solve(self._held, self._border @ free - missing[len(c.edges) :])
+        both = free - self._response @ pull
+        return both[:size].reshape(n, m), np.concatenate([both[size:], np.zeros(len(c.edges) - rows), pull])
+
+
+class Sparse(Applied, Protocol):
+    """A Gram matrix that has few entries a row."""
+
+    @property
+    def matrix(self) -> sp.csr_array:
+        """A, shape (n, n)."""
+
+
+def factorised(matrix: sp.sparray) -> SuperLU:
+    """LU factors; a LinAlgError says if there are none."""
+    try:
+        return splu(sp.csc_array(matrix))
+    except RuntimeError as error:  # SuperLU's word for a singular matrix
+        raise np.linalg.LinAlgError(f"matrix is singular: {error}") from error

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from mobius_flow.core.solve.saddle.krylov import conjugate_gradients, relative, stopping
+from mobius_flow.core.solve.saddle.iterative import conjugate_gradients, relative, stopping
 
 RNG = np.random.default_rng(53)
 FACTOR = RNG.normal(size=(30, 30))

@@ -9,9 +9,8 @@ from mobius_flow.core.knots import knot
 from mobius_flow.core.solve.constraints import ConstraintDerivative
 from mobius_flow.core.solve.hierarchical import moebius_inner_product
 from mobius_flow.core.solve.metrics import MoebiusMetric
-from mobius_flow.core.solve.saddle.krylov import conjugate_gradients, relative
-from mobius_flow.core.solve.saddle.models import Resolvents
-from mobius_flow.core.solve.saddle.symbol import Circulants, ComponentTransform, Parameter
+from mobius_flow.core.solve.saddle.iterative import conjugate_gradients, relative
+from mobius_flow.core.solve.saddle.models import Circulants, ComponentTransform, Parameter, Resolvents
 from scipy.linalg import circulant, eigvalsh
 from shapes import chain_of_rings, graded_trefoil, regular_polygon, torus_trefoil
 

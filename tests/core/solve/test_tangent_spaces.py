@@ -13,8 +13,7 @@ from mobius_flow.core.solve.constraints import Barycenters, ConstraintDerivative
 from mobius_flow.core.solve.hierarchical import fractional_inner_product, moebius_inner_product
 from mobius_flow.core.solve.metrics import METRICS, DenseInnerProduct, SparseInnerProduct
 from mobius_flow.core.solve.metrics.inner_product import InnerProduct
-from mobius_flow.core.solve.saddle.iterative import Tolerances
-from mobius_flow.core.solve.saddle.models import PinnedModel
+from mobius_flow.core.solve.saddle.iterative import PinnedModel, Tolerances
 from mobius_flow.core.solve.saddle.tangent_space import euclidean_correction
 from shapes import half_circle, hopf_link, opened, regular_polygon, torus_trefoil
 from taylor import taylor_slope

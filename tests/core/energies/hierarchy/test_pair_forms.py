@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve
 from mobius_flow.core.energies.hierarchy import BlockList
-from mobius_flow.core.solve.pair_forms import PairForms, RunningSum
+from mobius_flow.core.solve.hierarchical import PairForms, RunningSum
 from shapes import chain_of_rings, hopf_link, opened, torus_trefoil
 from smooth_curves import random_polygon
 
