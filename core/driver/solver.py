@@ -39,7 +39,9 @@ class Solver:
 
     def objective(self, obstacles: Iterable[Obstacle] = ()) -> Objective:
         """The objective to minimise among obstacles, which are in the units of curves."""
-        energy = HierarchicalMoebiusEnergy.instead_of(self._energy) if self.hierarchical else self._energy
+        energy = self._energy
+        if self.hierarchical and isinstance(energy, MoebiusEnergy):
+            energy = HierarchicalMoebiusEnergy(without=energy.without)
         terms = []
         for given, weight in self.options.terms:
             term = TERMS[given] if isinstance(given, str) else given

@@ -81,14 +81,9 @@ class Objective:
         return any(scale_exponent(term) != 0.0 for term in self.terms)
 
     @property
-    def has_hessian(self) -> bool:
-        """Whether all terms come with a second derivative."""
-        return self.without_hessian is None
-
-    @property
     def is_assembled(self) -> bool:
         """Whether the second derivative comes as a matrix too."""
-        return self.has_hessian and hasattr(self.energy, "hessian")
+        return self.without_hessian is None and hasattr(self.energy, "hessian")
 
     @property
     def without_hessian(self) -> Term | None:

@@ -117,7 +117,7 @@ def test_the_error_of_an_energy_that_is_not_exact(monkeypatch: pytest.MonkeyPatc
 
     told = dict(_energies(short(300), short(300).curve, 1e-4))
     assert "(mesh error about " in told["energy"]
-    monkeypatch.setattr("mobius_flow.core.energies.hierarchy.sampling.EXACT_UP_TO", 200)
+    monkeypatch.setattr("mobius_flow.core.energies.hierarchy.energy.EXACT_UP_TO", 200)
     result = short(300)
     told = dict(_energies(result, result.curve, 1e-4))
     assert told["energy"].endswith(f" (± {100.0 * result.final_energy_error:.1g} %, from a sample)")

@@ -95,7 +95,7 @@ class Push(RandomMotion):
 
     def fits(self, point: Point) -> bool:
         """Whether, in addition, the energy has a second derivative."""
-        return super().fits(point) and point.problem.objective.has_hessian
+        return super().fits(point) and point.problem.objective.without_hessian is None
 
     def field(self, point: Point, rng: np.random.Generator) -> Field:
         start = point.tangent_space.project(rng.normal(size=point.vertices.size).reshape(point.vertices.shape))

@@ -13,7 +13,7 @@ import scipy.sparse as sp
 
 from ...base.types import FloatArray, IntArray
 from ..edge_pairs import EdgePairIndices
-from ..moebius_pairs import EdgeDerivatives, Edges, Pairs, PartnerSums
+from ..moebius import EdgeDerivatives, Edges, Pairs, PartnerSums
 from .blocks import BlockList
 from .polynomials import kernel_derivatives, polynomials
 

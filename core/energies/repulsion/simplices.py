@@ -17,9 +17,9 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval
 
 from ...base.types import FloatArray, IntArray, frozen
+from ..barrier import CONTACT
 from ..clusters import ClusterTree, ranges
 from ..edge_pairs import arctan2
-from ..inverse_square import CONTACT
 
 Form = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
 """N², D, ∇N² and ∇D."""

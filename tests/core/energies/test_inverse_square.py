@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from energy_references import inverse_square_integral
 from families import crossed
+from mobius_flow.core.energies.barrier import inverse_square
 from mobius_flow.core.energies.edge_pairs import EdgePairs, change, stepped
-from mobius_flow.core.energies.inverse_square import inverse_square
 
 Points = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 

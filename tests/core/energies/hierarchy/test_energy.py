@@ -5,7 +5,7 @@ import pytest
 from families import crossed
 from mobius_flow.core import Curve, MobiusFlowError, MoebiusEnergy, Objective
 from mobius_flow.core.curve.refine import refine, subdivide
-from mobius_flow.core.energies import ENERGIES, Energy
+from mobius_flow.core.energies import Energy
 from mobius_flow.core.energies.barrier import replaced_pairs
 from mobius_flow.core.energies.hierarchy import BlockList, HierarchicalMoebiusEnergy
 from mobius_flow.core.knots import knot
@@ -184,12 +184,3 @@ def test_densely_packed_strands_are_summed_pair_by_pair(monkeypatch: pytest.Monk
         for one, other in zip(fast.value_and_derivative(packed), slow.value_and_derivative(packed), strict=True):
             np.testing.assert_array_equal(one, other)
     assert HierarchicalMoebiusEnergy().value(loose) == listed != MoebiusEnergy().value(loose)
-
-
-def test_other_energies_have_no_fast_form() -> None:
-    pairs = (np.array([0]), np.array([2]))
-    assert isinstance(HierarchicalMoebiusEnergy(), Energy)
-    assert HierarchicalMoebiusEnergy.instead_of(MoebiusEnergy(pairs)).without is pairs
-    for name in ENERGIES.keys() - {"moebius"}:
-        with pytest.raises(MobiusFlowError, match=f"{name!r} has no fast form"):
-            HierarchicalMoebiusEnergy.instead_of(ENERGIES[name])

@@ -12,8 +12,8 @@ from mobius_flow.core.descent import Point
 from mobius_flow.core.driver import RelaxOptions
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.energies.barrier import replaced_pairs
-from mobius_flow.core.energies.hierarchy import HierarchicalMoebiusEnergy, SampledErrors, moebius_energy, sampling
-from mobius_flow.core.energies.hierarchy.sampling import Estimate, energy_error, sampled_edges, slope_error
+from mobius_flow.core.energies.hierarchy import HierarchicalMoebiusEnergy, SampledErrors, moebius_energy
+from mobius_flow.core.energies.hierarchy.energy import Estimate, energy_error, sampled_edges, slope_error
 from mobius_flow.core.knots import knot
 from shapes import chain_of_rings, graded_trefoil, torus_trefoil
 
@@ -121,6 +121,6 @@ def test_the_reported_energy_says_its_error_where_it_is_not_exact(monkeypatch: p
     curve = bent_trefoil(2000)
     exact, error = moebius_energy(curve)
     assert error == 0.0
-    monkeypatch.setattr(sampling, "EXACT_UP_TO", 1000)
+    monkeypatch.setattr("mobius_flow.core.energies.hierarchy.energy.EXACT_UP_TO", 1000)
     value, bound = moebius_energy(curve)
     assert 0.0 < abs(value - exact) < bound * value < 1e-6 * value
