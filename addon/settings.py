@@ -10,11 +10,11 @@ from bpy.props import BoolProperty, EnumProperty, PointerProperty, StringPropert
 
 from ..core import OptionError
 from .curves import bake
-from .engine.knot_list import GROUPS, group, labels
 from .live import registry
 from .live.modal import redraw_views
 from .live.requirements import shown_curves
 from .pictures import icons, staging
+from .pictures.icons import GROUPS, group, labels
 from .pictures.looks import LOOKS
 from .pictures.movie import CHOICES
 from .properties import FURTHER, QUALITIES, Further, quality_of, settings, timing

@@ -11,8 +11,8 @@ from ...core.base.messages import Message
 from ...core.base.types import FloatArray
 from ..curves import bevel
 from ..curves.splines import box, new_curve_data, write_points
-from ..engine.knot_list import labels, name_of
 from ..live.requirements import Condition
+from ..pictures.icons import labels, name_of
 from ..pictures.materials import colour_components
 from .button import Button
 

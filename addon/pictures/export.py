@@ -17,10 +17,12 @@ from ...core import Curve, Iterate, Mesh, MobiusFlowError
 from ...core.base.deadline import termination_raises
 from ...core.base.errors import OutputError
 from ...core.base.files import atomic_write
+from ...core.base.types import FloatArray
 from ...core.collision import is_free
+from ...core.keys.key_options import Output
 from ...core.keys.motion import Key, Keys, Playing, check_dimension, recorded
 from ...core.keys.placement import Measure, Origin
-from ...core.keys.tube import rounded
+from ...core.keys.tube import rounded, tube_radii
 from .looks import DEFAULT, LOOKS
 
 ONCE = Playing()
@@ -53,11 +55,11 @@ def write_blend(path: Target, iterates: Sequence[Iterate], playing: Playing = ON
     Blender's module is missing or the file cannot be written.
     """
     require_blender()
-    from . import film, rendering
+    from . import rendering
 
     style = LOOKS[playing.look or DEFAULT]
     _, certified = _played(iterates, lambda scene: rendering.use_cycles(scene, style, *_PICTURE), playing, True)
-    _make(path, film.save)
+    _make(path, rendering.save)
     return certified
 
 
@@ -93,7 +95,7 @@ def _played(
 
     ``in_place``: in its own size and place, with its corners; otherwise these are rounded.
     """
-    from . import film
+    from . import rendering
 
     motion, origin = recorded(iterates, Measure.LENGTH if in_place else Measure.RADIUS)
     playing = playing.timed(motion)
@@ -102,11 +104,81 @@ def _played(
     frames = timing.frames(motion.course(keys))
     if not in_place:
         mesh, keys = rounded(mesh, keys, is_free)
-    scene = film.empty_scene()
+    scene = rendering.empty_scene()
     set_up(scene)
-    film.compose(scene, keys, frames, mesh, playing, origin if in_place else None)
+    compose(scene, keys, frames, mesh, playing, origin if in_place else None)
     scene.frame_start, scene.frame_end = timing.scene_range(frames)
     return scene, keys.certified
+
+
+def compose(
+    scene: Any,
+    keys: Keys,
+    frames: FloatArray,
+    mesh: Mesh,
+    playing: Playing,
+    origin: Origin | None = None,
+    cut_out: bool = False,
+) -> None:
+    """Put a keyed curve on a look's stage, by default near the scene's origin, and fit the scene's frames to it.
+
+    ``cut_out``: it is seen down the third axis, and nothing of the floor is in the picture but shadows.
+    """
+    import bpy
+
+    from ..curves import keyframes
+    from ..curves.splines import new_curve_data
+    from . import stage
+    from .materials import bundled, colour_components
+
+    points, look = [key.points for key in keys.keys], playing.look or DEFAULT
+    radii = tube_radii(mesh, [each.astype(np.float64) for each in points], frames)
+    radii = np.full_like(radii, radii.min()) if playing.constant_radius else radii
+    data = new_curve_data("Curve", mesh)
+    data.bevel_depth, data.bevel_resolution = float(radii.max()), 5
+    data.use_fill_caps = True  # at the ends of arcs
+    obj = stage.add(scene.collection, "Curve", data)
+    obj.select_set(True)
+    bpy.context.view_layer.objects.active = obj
+    output = Output.SHAPE_KEYS if len(points) > 1 else Output.RESULT
+    for _ in keyframes.writing(obj, keys, frames, output, radii / radii.max()):
+        pass
+    along = None
+    if len(mesh.component_sizes) == 1:
+        # the share of the length at each vertex, and at its end; the mean of all keys
+        lengths = np.array([Curve(each.astype(np.float64), mesh).edge_lengths for each in points])
+        passed = np.cumsum((lengths / lengths.sum(axis=1, keepdims=True)).mean(axis=0))
+        along = np.concatenate([[0.0], passed / passed[-1]])
+    colour_components(data, look=look, along=along)
+    # up is where the last shape extends least, rather up than down
+    least = np.linalg.svd(points[-1] - points[-1].mean(axis=0, dtype=np.float64), full_matrices=False)[2][2]
+    ground = stage.Stage.around(points, None if cut_out else least * np.sign(least[np.abs(least).argmax()]))
+    size = scene.render.resolution_x, scene.render.resolution_y
+    floor = stage.build(scene.collection, ground, LOOKS[look])
+    floor.is_shadow_catcher = scene.render.film_transparent = cut_out
+    scene.camera = stage.follow(scene.collection, size, ground, floor, points, radii.max(axis=1), frames)
+    if playing.timing.loop:
+        for curve in keyframes.all_fcurves():
+            keyframes.mirror(curve, frames[-1] + playing.timing.hold_end)
+    scene.world = bundled("worlds", LOOKS[look].label)
+    scene.world.name = "World"
+    key = next(each for each in scene.collection.objects if each.type == "LIGHT")
+    stage.light_workbench(scene, key.matrix_world.col[2][:3])
+    if origin is not None and (origin.scale != 1.0 or origin.location.any()):
+        # move and scale everything from the curve's coordinates to the world's
+        objects = list(scene.objects)
+        root = stage.add(scene.collection, "Stage", None)
+        root.location, root.scale = origin.location, 3 * [origin.scale]
+        for each in objects:
+            each.parent = root
+            if each.type == "LIGHT":
+                each.data.energy *= origin.scale**2
+            elif each.type == "CAMERA":
+                each.data.clip_start *= origin.scale
+                each.data.clip_end *= origin.scale
+                each.data.dof.aperture_fstop /= origin.scale
+    scene.frame_start, scene.frame_end = round(frames[0]), int(np.ceil(frames[-1]))
+    scene.frame_set(scene.frame_start)
 
 
 def write_still(path: Target, iterates: Sequence[Iterate], look: str | None = None) -> bool:
@@ -146,12 +218,12 @@ def _render(
     cut_out: bool = False,
 ) -> bool:
     require_blender()
-    from . import film, rendering
+    from . import rendering
 
     mesh, keys = rounded(mesh, keys, is_free)
-    scene = film.empty_scene()
+    scene = rendering.empty_scene()
     rendering.use_cycles(scene, LOOKS[look or DEFAULT], *size, samples)
-    film.compose(scene, keys, np.ones(1), mesh, Playing(look), cut_out=cut_out)
+    compose(scene, keys, np.ones(1), mesh, Playing(look), cut_out=cut_out)
     _make(path, lambda temporary: rendering.render_still(scene, temporary))
     return keys.certified
 

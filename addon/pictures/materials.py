@@ -12,9 +12,7 @@ import bpy
 import numpy as np
 
 from ...core.base.types import FloatArray
-from ...core.curve import Mesh
 from ...core.keys.colours import flatly_lit
-from ..curves.outputs import write_values
 from .looks import DEFAULT, LOOKS
 
 _ASSETS = Path(__file__).parents[1] / "assets" / "assets.blend"
@@ -96,20 +94,6 @@ def vertex_colours(attribute: str) -> bpy.types.Material:
     colours.name, colours.layer_name = "colors", attribute
     _tint_by(made, colours)
     return made
-
-
-def compute_values(tube: bpy.types.Object, curve: Mesh) -> None:
-    """Let Blender's nodes compute numbers of a tube's curve at any frame, also between keys and without the extension.
-
-    ``tube``: a mesh object with the attribute `COMPONENT`, whose rings, of as many vertices each, are those of a curve.
-    At the middles of the rings as shown they store the arc length from the start of a component; the curvature, the
-    angle by which the polygon turns over half the length of both edges, and 0 at open ends; and the distance to the
-    nearest other strand, as `core.keys.colours.strand_distances`, but to its edges.
-    """
-    name, closed = "Möbius Flow Attributes", np.array(curve.closed, dtype=np.float64)[curve.component]
-    write_values(tube.data, {"ring": np.arange(curve.size, dtype=np.float64), "closed": closed})
-    tree = bpy.data.node_groups.get(name) or bundled("node_groups", name)
-    tube.modifiers.new(name, "NODES").node_group = tree
 
 
 def bundled(kind: str, name: str) -> Any:

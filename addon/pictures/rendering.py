@@ -31,6 +31,13 @@ def use_cycles(scene: bpy.types.Scene, look: Look, width: int, height: int, samp
     _set_size(scene, width, height)
 
 
+def empty_scene() -> bpy.types.Scene:
+    """An empty factory scene, which replaces what is open in Blender."""
+    with quiet():
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+    return bpy.context.scene
+
+
 def look_fine(scene: bpy.types.Scene, look: Look, samples: int | None = None) -> None:
     """Let a scene be rendered by Cycles; drafts, of so few samples, are denoised less well, in a third of the time."""
     cycles = scene.cycles
@@ -109,6 +116,11 @@ def render_still(scene: bpy.types.Scene, path: Path) -> None:
         bpy.ops.render.render(write_still=True, scene=scene.name)
     if not path.read_bytes().endswith(end):
         raise OSError(NOT_WHOLE)
+
+
+def save(path: Path) -> None:
+    with quiet():
+        bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True, compress=True)
 
 
 def is_rendering() -> bool:

@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import bpy
 
-from ..engine.knot_list import COMMON, labels
 from ..pictures import icons
+from ..pictures.icons import COMMON, labels
 from .layout import operator
 
 _OPERATORS = (

@@ -15,12 +15,12 @@ from ..buttons.presets import VIEW3D_PT_mobius_flow_presets
 from ..curves import bake, pins, surroundings
 from ..curves.moving import unsteady
 from ..curves.splines import length
-from ..engine.knot_list import labels
 from ..live import registry
 from ..live.modal import unseen
 from ..live.requirements import RELAXABLE, Remedy, avoided, closable, curves_at_hand, selected_curves, shown_curves
 from ..live.run import RunState
 from ..pictures import staging
+from ..pictures.icons import labels
 from ..properties import QUALITIES, shown, timing
 from ..translations import iface_
 from .layout import InSidebar, SubPanel, button, column, operator, refused, row, sentence, settings, value

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from blender_scenes import contents, sentence, stored
 from mobius_flow.addon import settings as gallery
-from mobius_flow.addon.engine.knot_list import GROUPS, labels
 from mobius_flow.addon.pictures import icons
+from mobius_flow.addon.pictures.icons import GROUPS, labels
 from mobius_flow.core import Curve
 from mobius_flow.core.collision import check_embedded, gap
 from mobius_flow.core.knots import KNOTS, knot, rounded, smooth_knot

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 import pytest
 from blender_scenes import evaluated, in_world
-from mobius_flow.addon.pictures import export, film, movie, rendering
+from mobius_flow.addon.pictures import export, movie, rendering
 from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, relax
 from mobius_flow.core.keys.motion import Playing, recorded
 from processes import finished
@@ -117,7 +117,7 @@ def test_a_film_rests_before_and_after(iterates):
     timing = Playing().timed(motion).timing
     frames = timing.frames(motion.course(keys))
     scene = bpy.context.scene
-    film.compose(scene, keys, frames, motion.start.mesh, Playing())
+    export.compose(scene, keys, frames, motion.start.mesh, Playing())
     scene.frame_start, scene.frame_end = timing.scene_range(frames)
     assert (frames[0] - scene.frame_start, scene.frame_end - frames[-1]) == (6, 12)
 
@@ -152,7 +152,11 @@ def test_what_cannot_be_written_is_said_in_one_line(tmp_path, tiny, iterates, wr
 
 @pytest.mark.parametrize(
     ("module", "function", "name"),
-    [(film, "save", "write_blend"), (rendering, "render_still", "write_still"), (movie, "render_movie", "write_movie")],
+    [
+        (rendering, "save", "write_blend"),
+        (rendering, "render_still", "write_still"),
+        (movie, "render_movie", "write_movie"),
+    ],
 )
 def test_what_blender_cannot_write_leaves_the_old_file(tmp_path, tiny, iterates, monkeypatch, module, function, name):
     def fail(*_arguments, **_options):

@@ -6,7 +6,7 @@ import pytest
 from blender_scenes import add_hopf_link, add_trefoil, contents
 from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
-from mobius_flow.addon.pictures import export, film, rendering, staging
+from mobius_flow.addon.pictures import export, rendering, staging
 from mobius_flow.addon.pictures.looks import LOOKS
 from mobius_flow.core import Curve
 from mobius_flow.core.keys.motion import Key, Keys, Playing
@@ -17,10 +17,10 @@ SIZE = (96, 54)
 
 def composed(curve, look):
     """A scene of one key, and its points."""
-    scene = film.empty_scene()
+    scene = rendering.empty_scene()
     rendering.use_cycles(scene, LOOKS[look], *SIZE, 4)
     points = curve.vertices.astype(np.float32)
-    film.compose(scene, Keys((Key(0.0, points),), 0), np.ones(1), curve.mesh, Playing(look))
+    export.compose(scene, Keys((Key(0.0, points),), 0), np.ones(1), curve.mesh, Playing(look))
     return scene, points
 
 

@@ -10,7 +10,7 @@ from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
 from mobius_flow.addon.curves import surroundings
 from mobius_flow.addon.curves.recorded import world_motion
-from mobius_flow.addon.pictures import film, rendering, stage, staging
+from mobius_flow.addon.pictures import export, rendering, stage, staging
 from mobius_flow.addon.pictures.looks import LOOKS
 from mobius_flow.core import CurveError
 from mobius_flow.core.curve import Mesh
@@ -57,7 +57,7 @@ def tumbling(keys):
 def composed(keys, size=SIZES[0], origin=None):
     scene = bpy.context.scene
     rendering.use_cycles(scene, LOOKS["PAPER"], *size, 1)
-    film.compose(scene, keys, 1.0 + 10 * np.arange(len(keys.keys)), Mesh((40,)), Playing(), origin)
+    export.compose(scene, keys, 1.0 + 10 * np.arange(len(keys.keys)), Mesh((40,)), Playing(), origin)
     return scene
 
 
