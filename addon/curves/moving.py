@@ -32,26 +32,22 @@ _CHANGING_NODES = {"GeometryNodeInputSceneTime", "GeometryNodeSimulationInput"}
 
 def what_moves(obj: bpy.types.Object) -> Message | None:
     """Say what may move an object or one of its parents by itself, or return None if nothing does."""
-    return next(_movers(obj), None)
-
-
-def _movers(obj: bpy.types.Object) -> Iterator[Message]:
     animation = obj.animation_data
     if animation and animation.nla_tracks:
-        yield Message("an NLA track")
+        return Message("an NLA track")
     if animation and animation.action and _any_of(fcurves_of(obj), _TRANSFORMS):
-        yield Message("animation")
+        return Message("animation")
     if animation and _any_of(animation.drivers, _TRANSFORMS):
-        yield Message("a driver")
+        return Message("a driver")
     if any(not (each.mute or sizes.is_own(each)) for each in obj.constraints):
-        yield Message("a constraint")
+        return Message("a constraint")
     if obj.rigid_body and obj.rigid_body.type == "ACTIVE":  # a passive one is hit, and stays where it is
-        yield Message("physics")
+        return Message("physics")
     # a parent carries an object along when it moves, and some do when they change their shape or pose
     if obj.parent and (obj.parent_type != "OBJECT" or (obj.parent.type == "CURVE" and obj.parent.data.use_path)):
-        yield Message("its parent")
-    for reason in _movers(obj.parent) if obj.parent else ():
-        yield Message("{mover} of its parent", mover=reason) if reason != "its parent" else reason
+        return Message("its parent")
+    mover = what_moves(obj.parent) if obj.parent else None
+    return mover if mover in (None, "its parent") else Message("{mover} of its parent", mover=mover)
 
 
 def _any_of(curves: Iterable[bpy.types.FCurve], paths: tuple[str, ...] | str) -> bool:

@@ -23,16 +23,6 @@ SOLID = {"CURVE", "MESH", "SURFACE", "META", "FONT"}  # what Blender makes meshe
 WITHOUT_SHAPE = {"ARMATURE", "CAMERA", "LATTICE", "LIGHT", "LIGHT_PROBE", "SPEAKER"}
 
 
-def avoidable(
-    collection: bpy.types.Collection | None, relaxed: Sequence[bpy.types.Object]
-) -> Iterator[bpy.types.Object]:
-    """Yield the objects of a collection that are visible, have a shape, and are not relaxed themselves."""
-    for obj in collection.all_objects if collection is not None else ():
-        bare = obj.type == "EMPTY" and obj.instance_type == "NONE"
-        if not bare and obj.type not in WITHOUT_SHAPE and obj not in relaxed and obj.visible_get():
-            yield obj
-
-
 def add(scene: bpy.types.Scene, objects: Sequence[bpy.types.Object]) -> bpy.types.Collection:
     """Add objects to the collection that the scene's curves avoid, which is made if there is none.
 

@@ -13,7 +13,7 @@ from ...core.base.messages import Message
 from ..curves import bake, bevel, splines
 from ..curves.moving import what_deforms, what_moves
 from ..curves.splines import box
-from ..curves.surroundings import TUBE_OF, avoidable
+from ..curves.surroundings import TUBE_OF, WITHOUT_SHAPE
 from . import registry
 
 
@@ -142,7 +142,7 @@ def convertible(context: bpy.types.Context) -> list[bpy.types.Object]:
 
 
 def avoided(context: bpy.types.Context, name: str | None = None) -> list[bpy.types.Object]:
-    """What the selected curves must not touch: visible objects of a collection, and the container they lie in.
+    """What selected curves must not touch: visible objects with a shape of a collection, and the container they lie in.
 
     The collection is the scene's, or one given by name, and then there is no container. An empty name means to avoid
     nothing; raises MobiusFlowError if there is no collection of that name.
@@ -150,7 +150,11 @@ def avoided(context: bpy.types.Context, name: str | None = None) -> list[bpy.typ
     collection = context.scene.mobius_flow_surroundings.avoid if name is None else bpy.data.collections.get(name)
     if name and collection is None:
         raise MobiusFlowError(Message("There is no collection '{name}' to avoid", name=name))
-    found = list(avoidable(collection, selected_curves(context)))
+    found, relaxed = list[bpy.types.Object](), selected_curves(context)
+    for obj in collection.all_objects if collection is not None else ():
+        bare = obj.type in WITHOUT_SHAPE or (obj.type == "EMPTY" and obj.instance_type == "NONE")
+        if not bare and obj not in relaxed and obj.visible_get():
+            found.append(obj)
     outer = container(context) if name is None else None
     return found if outer is None or outer in found or not outer.visible_get() else [*found, outer]
 
