@@ -1,6 +1,5 @@
 """The data package: tables, curves, and files that describe them, separately and in one archive."""
 
-import csv
 import io
 import json
 import math
@@ -13,6 +12,7 @@ from importlib.util import find_spec
 
 from ... import __version__
 from ...core.io import FORMATS
+from ..batch.table import as_csv
 from .entries import Values, curve_of
 from .folder import Folder
 
@@ -43,8 +43,8 @@ def write(folder: Folder, entries: Sequence[Values]) -> None:
             energy = {"energy": rounded(row["energy"], row["error"]), "error": f"{row['error']:.0e}"}
             short.append(told | bounds(row) | energy)
     package: dict[str, str | bytes] = {
-        "atlas.csv": _csv(short),
-        "minima.csv": _csv(rows),
+        "atlas.csv": as_csv(list(short[0]), short, "\n"),
+        "minima.csv": as_csv(list(rows[0]), rows, "\n"),
         "atlas.json": _json([entry | {"minima": list(map(_without_curve, entry["minima"]))} for entry in entries]),
         **_descriptions(entries, len(rows)),
     }
@@ -122,11 +122,3 @@ def rounded(energy: float, error: float) -> str:
 
 def _json(values: object) -> str:
     return json.dumps(values, indent=1, ensure_ascii=False) + "\n"
-
-
-def _csv(rows: Sequence[Values]) -> str:
-    stream = io.StringIO(newline="")
-    writer = csv.DictWriter(stream, list(rows[0]), lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    return stream.getvalue()

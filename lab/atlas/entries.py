@@ -1,29 +1,129 @@
-"""What an atlas contains on one knot or link: its minima and saddles, measured, as plain values that files hold."""
+"""What an atlas contains on one knot or link: the runs that count and their minima, as plain values for files."""
 
 import hashlib
 import json
 import shlex
 from collections import Counter, defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
 from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from ... import __version__
 from ...cli.options import flags
 from ...cli.terminal import one_line
-from ...core.base.errors import CurveError
+from ...core import CurveError, MobiusFlowError, read_curve
+from ...core.base.errors import counted
 from ...core.collision.gap import thickness
 from ...core.curve.fourier import FourierCurve
 from ...core.curve.measures import writhe_and_crossings
 from ...core.curve.symmetry import standing, symmetries
-from ...core.knots import knot_type
-from ..batch.job import folder_name
+from ...core.knots import KNOTS, knot_type
+from ...core.knots.names import table_name
+from ...core.proof import stages, verify
+from ..batch.folder import results
+from ..batch.job import CURVE, TRAJECTORY, folder_name
 from ..batch.table import Row
 from ..smooth.least import lower_bound
 from ..smooth.minima import balanced, distinct
-from ..smooth.rest import index_of
+from ..smooth.rest import RestingCurve, index_of, is_at_rest
 from .folder import Folder
-from .runs import AtlasRun
+
+SMOOTH = "without a smooth shape (run batch with --extrapolate)"
+CHECKED = "that verify did not accept"
+PROVED = "whose type is not proved to be one of the table"
+APART = "whose trajectory does not end at their curve"
+UNLIKE = "whose curve, or smooth shape, is not of the type reported"
+MOVING = "whose smooth shape is not at rest with the energy reported"
+
+
+@dataclass(frozen=True, eq=False)
+class AtlasRun:
+    """A run that ended as a knot or link of the table, and the smooth curve of the table's chirality that it led to."""
+
+    row: Row
+    folder: Path
+    curve: FourierCurve
+    mark: str  # the hash of its results
+
+    @property
+    def rest(self) -> RestingCurve:
+        """The curve at rest."""
+        return RestingCurve(self.curve, self.row.extrapolated_energy or 0.0, self.row.extrapolated_energy_error or 0.0)
+
+    def doubt(self, name: str) -> str:
+        """Why the run does not count as one of a type, by its files, as reports may say anything; empty if it does."""
+        trajectory = self.folder / TRAJECTORY
+        if not verify(trajectory).accepted:
+            return CHECKED
+        *_, last = (frame for _, _, frames in stages(trajectory) for frame in frames)
+        try:
+            end = read_curve(self.folder / CURVE)
+        except CurveError:
+            return APART
+        if not np.array_equal(end.vertices, last):
+            return APART
+        for curve in (end, self.curve.polygon(self.curve.sizes)):
+            if name not in {each.removeprefix("m") for each in knot_type(curve).names}:
+                return UNLIKE
+        return "" if is_at_rest(self.rest) else MOVING
+
+
+@dataclass
+class Runs:
+    """Runs by the names of the table, in its order, and the names of the runs left out, by reason."""
+
+    by_type: dict[str, list[AtlasRun]] = field(default_factory=lambda: defaultdict(list))
+    left_out: dict[str, list[str]] = field(default_factory=lambda: defaultdict(list))
+
+    @classmethod
+    def of(cls, directories: Iterable[Path]) -> "Runs":
+        """The runs in directories that batches wrote to, each once; a MobiusFlowError if there are none."""
+        found = cls()
+        for directory in {directory.resolve(): directory for directory in directories}.values():
+            for folder, report, row in results(directory):
+                try:
+                    curve = FourierCurve.of_lists(report["smooth"])
+                except (KeyError, TypeError, ValueError):
+                    found.left_out[SMOOTH].append(folder.name)
+                    continue
+                name, mirrored = _type_of(row)
+                if not (row.certified and row.verified):
+                    found.left_out[CHECKED].append(folder.name)
+                elif not name:
+                    found.left_out[PROVED].append(folder.name)
+                else:
+                    curve = curve.mirrored if mirrored else curve
+                    found.by_type[name].append(AtlasRun(row, folder, curve, json.dumps(report["files"])))
+        if not found.by_type:
+            raise MobiusFlowError(f"there is nothing for an atlas: {found.missing}")
+        for each in found.by_type.values():
+            each.sort(key=lambda run: (run.row.name, run.row.start, run.mark))
+        found.by_type = {name: found.by_type[name] for name in KNOTS if name in found.by_type}
+        return found
+
+    @property
+    def missing(self) -> str:
+        """The runs left out, and why."""
+        return "; ".join(
+            f"{counted(len(names), 'run')} {why}: {', '.join(names[:8])}{', …' * (len(names) > 8)}"
+            for why, names in self.left_out.items()
+        )
+
+
+def _type_of(row: Row) -> tuple[str, bool]:
+    """The table's name of the type that a run, which keeps it, began with or ended as, and whether it is mirrored."""
+    made = row.input_sha256 is None and row.type_before == row.type_after
+    for name, known in ((row.name, made), (row.type_after or "", row.proved)):
+        with suppress(MobiusFlowError):
+            if known:
+                return table_name(name)
+    return "", False
+
 
 Values = dict[str, Any]
 
@@ -43,7 +143,10 @@ def entry(folder: Folder, name: str, runs: Sequence[AtlasRun]) -> tuple[Values |
             by_doubt[run.doubt(name)].append(run)
         good = by_doubt.pop("", [])
         left_out = {reason: [run.folder.name for run in each] for reason, each in by_doubt.items()}
-        known = {"made_from": made_from, "entry": _made(name, good) if good else None, "left_out": left_out}
+        groups = enumerate(distinct([run.rest for run in good]), start=1)
+        minima = [{"number": number} | _described(name, [good[k] for k in group]) for number, group in groups]
+        made = {"type": name, "lower_bound": lower_bound(name), "runs": len(good), "minima": minima}
+        known = {"made_from": made_from, "entry": made if good else None, "left_out": left_out}
     folder.put(file, json.dumps(known) + "\n")
     return known["entry"], known["left_out"]
 
@@ -51,12 +154,6 @@ def entry(folder: Folder, name: str, runs: Sequence[AtlasRun]) -> tuple[Values |
 def curve_of(minimum: Mapping[str, Any]) -> FourierCurve:
     """The smooth curve of an entry's minimum."""
     return FourierCurve.of_lists(minimum["fourier"])
-
-
-def _made(name: str, runs: Sequence[AtlasRun]) -> Values:
-    groups = enumerate(distinct([run.rest for run in runs]), start=1)
-    minima = [{"number": number} | _described(name, [runs[k] for k in group]) for number, group in groups]
-    return {"type": name, "lower_bound": lower_bound(name), "runs": len(runs), "minima": minima}
 
 
 def _described(name: str, runs: Sequence[AtlasRun]) -> Values:

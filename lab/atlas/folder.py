@@ -23,8 +23,10 @@ class Folder:
         self._ours: dict[str, set[str]] = {}  # hashes that files may have
         self._kept: dict[str, str] = {}  # hashes of the files kept or written this time
         text = self._sums.read_text(encoding="utf-8", errors="replace") if self._sums.is_file() else ""
-        if not text.startswith(_MARK) and (path.is_symlink() or (path.exists() and not path.is_dir()) or self._any()):
-            raise foreign(path, "atlas")
+        if not text.startswith(_MARK):
+            taken = path.is_symlink() or (path.exists() and not path.is_dir())
+            if taken or (path.is_dir() and next(path.iterdir(), None) is not None):
+                raise foreign(path, "atlas")
         for line in text.splitlines()[1:]:
             digest, _, name = line.partition("  ")
             if not (Path(name).is_absolute() or ".." in Path(name).parts):  # files elsewhere are not ours
@@ -67,9 +69,6 @@ class Folder:
                 (self.path / name).unlink()
         lines = (f"{digest}  {name}\n" for name, digest in sorted(self._kept.items()))
         self._write(SUMS, "".join([_MARK, *lines]).encode())
-
-    def _any(self) -> bool:
-        return self.path.is_dir() and next(self.path.iterdir(), None) is not None
 
     def _check(self, name: str) -> str | None:
         """The hash of a file, None if there is none; a MobiusFlowError if it is not ours, or behind a link."""

@@ -44,7 +44,10 @@ def inputs(words: Iterable[str]) -> list[Input]:
                     files = sorted(each for each in path.iterdir() if each.suffix.lower() in FORMATS)
                 if not files:
                     raise MobiusFlowError(f"{path}: holds no curve files; they end in {', '.join(FORMATS)}")
-                found += map(_of_file, files)
+                for file in files:  # after which results are named
+                    name = file.stem if file.stem.strip(".") else file.name  # nothing but dots is another directory
+                    shown = os.fsencode(name).decode(errors="backslashreplace")  # tables have text only
+                    found.append(Input(as_text(shown), Path(os.path.abspath(file))))
         elif is_code(word):
             raise MobiusFlowError(f"{word[:60]}: a code cannot name a folder; put it in a .pd, .dt or .gauss file")
         elif glob.has_magic(word):
@@ -66,12 +69,6 @@ def inputs(words: Iterable[str]) -> list[Input]:
     if not found:
         raise MobiusFlowError("there is nothing to relax: name a file, a directory or a knot")
     return list(dict.fromkeys(found))
-
-
-def _of_file(path: Path) -> Input:
-    """Results are named after the file; undecodable bytes are shown in hexadecimal, as tables have text only."""
-    name = path.stem if path.stem.strip(".") else path.name  # a name of nothing but dots is another directory
-    return Input(as_text(os.fsencode(name).decode(errors="backslashreplace")), Path(os.path.abspath(path)))
 
 
 def as_text(text: str) -> str:

@@ -82,9 +82,8 @@ class Sandbox:
             self._process.communicate()
 
     @property
-    def alive(self) -> bool:
-        """Whether it can do a run."""
-        return self._process.poll() is None
+    def ended(self) -> bool:
+        return self._process.poll() is not None
 
     def _answer(self, line: str = "") -> str:
         """The child's next line, after sending it one."""
@@ -111,7 +110,7 @@ class Sandbox:
 def run(job: Job) -> Row:
     """Do a run in the child of this thread; raises as `Sandbox.run` does."""
     box: Sandbox | None = getattr(_own, "box", None)
-    if box is None or not box.alive:
+    if box is None or box.ended:
         box = _own.box = Sandbox()
     return box.run(job)
 

@@ -18,8 +18,7 @@ import numpy as np
 from ...core.base.arguments import checked
 from ...core.base.errors import CurveError, OptionError
 from ...core.base.types import ComplexArray
-from .balls import arb, points, precise
-from .covering import CurveArcs, cover, scaled
+from .covering import CurveArcs, arb, cover, points, precise, scaled
 
 
 @checked

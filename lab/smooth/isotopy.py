@@ -12,8 +12,7 @@ from ...core.base.errors import CurveError
 from ...core.base.types import ComplexArray, FloatArray
 from ...core.curve import Curve
 from ...core.curve.fourier import FourierCurve
-from .balls import points
-from .covering import CurveArcs, PolygonEdges, cover, scaled
+from .covering import CurveArcs, PolygonEdges, cover, points, scaled
 
 _REFUSAL = "the curve meets itself or has a cusp, or nearly so: its type cannot be proved"
 

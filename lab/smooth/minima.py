@@ -12,8 +12,7 @@ from ...core.base.types import FloatArray
 from ...core.curve.fourier import FourierCurve
 from ...core.curve.measures import bending
 from ...core.driver.moves.balance import MoebiusImages, least_bending
-from .basis import Basis
-from .energy import SampledPairs
+from .energy import Basis, SampledPairs
 from .rest import RestingCurve, energy_of
 
 SAME_ENERGY = 1e-6  # of the energy: ends at one curve differ by up to 4e-8

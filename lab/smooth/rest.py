@@ -17,8 +17,7 @@ from ...core.curve import Curve, check_closed
 from ...core.curve.fourier import FourierCurve
 from ...core.energies import MoebiusEnergy
 from ...core.knots.inscribed import equal_steps, is_isotopic
-from .basis import Basis, parameters, sliding
-from .energy import SampledPairs
+from .energy import Basis, SampledPairs, parameters, sliding
 
 MODES = (24, 36, 54, 80, 120, 180, 270)  # of a component of average length
 ACCURACY = 1e-6  # of the energy: how much half as many modes again may change it
@@ -69,7 +68,8 @@ def at_rest(polygon: Curve) -> RestingCurve | None:
         way += trail
         if last and (error := found.error + abs(found.energy - last.energy)) <= ACCURACY * found.energy:
             polished, trail = _stationary(found.curve, found.energy, (1e-11, 20))  # the same in the end
-            proved = polished and _is_isotopic([(given, at), *map(_inscribed, way + trail)])
+            polygons = [curve.polygon(curve.sizes) for curve in way + trail]
+            proved = polished and _is_isotopic([(given, at), *((each, equal_steps(each)) for each in polygons)])
             return replace(polished, error=error + polished.error) if polished and proved else None
         last = found
     return None
@@ -103,12 +103,13 @@ def index_of(curve: FourierCurve) -> int:
     z = basis.unknowns(curve)
     energy, _, hessian = _derivatives(basis, z)
     _, directions = eigh(hessian, subset_by_value=(-np.inf, 0.0))
-    return sum(_mean_beside(basis, z, each.reshape(z.shape)) < (1.0 - _ROUNDING) * energy for each in directions.T)
-
-
-def _inscribed(curve: FourierCurve) -> Placed:
-    polygon = curve.polygon(curve.sizes)
-    return polygon, equal_steps(polygon)
+    falling = 0
+    for step in (each.reshape(z.shape) for each in directions.T):
+        # by 0.03 of strands' distances forwards and backwards: slopes cancel
+        little = 0.03 / _strain(basis.values @ z, basis.values @ step) * step
+        mean = 0.5 * (SampledPairs.of(basis, z + little).energy + SampledPairs.of(basis, z - little).energy)
+        falling += mean < (1.0 - _ROUNDING) * energy
+    return falling
 
 
 def _is_isotopic(way: Sequence[Placed]) -> bool:
@@ -128,8 +129,15 @@ def _stationary(start: FourierCurve, energy: float, enough: tuple[float, int]) -
         return None, []
     model, trail, (gain, steps) = QuadraticModel.of(basis, z), [start], enough
     while model.gain >= gain * model.energy and len(trail) <= steps:
-        better = _searched(basis, z, model)
-        if better is None or ((there := QuadraticModel.of(basis, better)).gain >= model.gain and model.is_near):
+        # towards lower energy along the step, by up to 0.3 of strands' distances
+        share = min(1.0, 0.3 / _strain(basis.values @ z, basis.values @ model.step))
+        while share > 1e-6 and not model.is_near:
+            trial = SampledPairs.of(basis, z + share * model.step)
+            if trial.energy <= model.energy - 1e-4 * share * model.gain:
+                break
+            share *= 0.5
+        better = z + share * model.step
+        if share <= 1e-6 or ((there := QuadraticModel.of(basis, better)).gain >= model.gain and model.is_near):
             break
         z, model = better, there
         trail.append(basis.curve(z))
@@ -179,26 +187,6 @@ def _free(slope: FloatArray, hessian: FloatArray, fields: FloatArray) -> tuple[F
     across = hessian @ fixed
     shifts = 0.5 * fixed @ (fixed.T @ across + np.trace(hessian) / len(hessian) * np.eye(fixed.shape[1])) - across
     return slope - fixed @ (fixed.T @ slope), hessian + shifts @ fixed.T + fixed @ shifts.T
-
-
-def _searched(basis: Basis, z: FloatArray, model: QuadraticModel) -> FloatArray | None:
-    """Unknowns of lower energy along the step, which is short against strands' distances; None if there are none."""
-    step = model.step
-    # 0.3 of their distance: how far a Newton step moves points towards each other, or away
-    share = min(1.0, 0.3 / _strain(basis.values @ z, basis.values @ step))
-    while share > 1e-6:
-        trial: FloatArray = z + share * step
-        if model.is_near or SampledPairs.of(basis, trial).energy <= model.energy - 1e-4 * share * model.gain:
-            return trial
-        share *= 0.5
-    return None
-
-
-def _mean_beside(basis: Basis, z: FloatArray, step: FloatArray) -> float:
-    """The mean of the energies a little forwards and backwards along a direction: slopes cancel."""
-    # 0.03 of strands' distances: change by which directions at rest are tried
-    little = 0.03 / _strain(basis.values @ z, basis.values @ step) * step
-    return 0.5 * (SampledPairs.of(basis, z + little).energy + SampledPairs.of(basis, z - little).energy)
 
 
 def _strain(points: FloatArray, shifts: FloatArray) -> float:

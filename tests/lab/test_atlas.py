@@ -22,7 +22,7 @@ from mobius_flow.addon.pictures import export
 from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, minimize, read_curve, write_curve
 from mobius_flow.core.curve.symmetry import symmetries
 from mobius_flow.core.knots import knot, knot_type
-from mobius_flow.lab.atlas import data, entries, make, pages, runs
+from mobius_flow.lab.atlas import data, entries, make
 from mobius_flow.lab.batch.table import Row
 from mobius_flow.lab.smooth.rest import at_rest, energy_of
 
@@ -39,7 +39,7 @@ def trefoil():
 @pytest.fixture
 def results(tmp_path, trefoil, monkeypatch):
     """Two runs to the trefoil, one of them turned and mirrored, one said to be higher; and two that do not count."""
-    monkeypatch.setattr(runs, "is_at_rest", lambda rest: True)
+    monkeypatch.setattr(entries, "is_at_rest", lambda rest: True)
     place = tmp_path / "results"
     turned = replace(trefoil.curve, coefficients=tuple(np.roll(c, 1, axis=1) for c in trefoil.curve.coefficients))
     for start, curve, columns in (
@@ -126,9 +126,9 @@ def test_made_knots_have_the_type_of_their_name_and_files_what_is_proved():
     kinds = {"start": 2, "seed": 2, "status": "converged", "message": "", "options": "{}", "kind": "scrambled"}
     made = Row(name="m10_71", type_before="10_71 or m10_71", type_after="10_71 or m10_71", proved=False, **kinds)
     file = Row(name="5_1", type_before="5_2", type_after="5_2", proved=True, input_sha256="1f", **kinds)
-    assert runs._type_of(made) == ("10_71", True)
-    assert runs._type_of(file) == ("5_2", False)
-    assert runs._type_of(replace(file, proved=False)) == ("", False)
+    assert entries._type_of(made) == ("10_71", True)
+    assert entries._type_of(file) == ("5_2", False)
+    assert entries._type_of(replace(file, proved=False)) == ("", False)
 
 
 def test_links_lead_to_files(atlas, tmp_path):
@@ -142,7 +142,7 @@ def test_links_lead_to_files(atlas, tmp_path):
 def test_the_second_time_nothing_is_made(atlas, tmp_path, monkeypatch):
     atlas()
     before = {path: path.stat().st_mtime_ns for path in tmp_path.glob("atlas/**/*") if path.is_file()}
-    monkeypatch.setattr(entries, "_made", None)
+    monkeypatch.setattr(entries, "_described", None)
     atlas()
     after = {path: path.stat().st_mtime_ns for path in before}
     assert [path.name for path in before if before[path] != after[path]] == ["SHA256SUMS"]
@@ -175,10 +175,10 @@ def test_interrupted_it_goes_on(atlas, tmp_path, monkeypatch):
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
-        patch.setattr(pages, "write", interrupt)
+        patch.setattr(make, "write_pages", interrupt)
         atlas(status=130)
     assert (tmp_path / "atlas/data/minima.csv").exists()
-    monkeypatch.setattr(entries, "_made", None)
+    monkeypatch.setattr(entries, "_described", None)
     atlas()
     assert (tmp_path / "atlas/index.html").exists()
 
@@ -240,11 +240,11 @@ def five(folder, curve):
 
 
 FORGERIES: dict[str, tuple[Callable[[Path, Curve], None] | float, str]] = {
-    "the motion of a link": (hopf, runs.APART),
-    "a motion through itself": (through_itself, runs.CHECKED),
-    "another knot": (five, runs.UNLIKE),
-    "no curve": (lambda folder, curve: (folder / "curve.txt").write_text("x"), runs.APART),
-    "less energy": (-4.4, runs.MOVING),
+    "the motion of a link": (hopf, entries.APART),
+    "a motion through itself": (through_itself, entries.CHECKED),
+    "another knot": (five, entries.UNLIKE),
+    "no curve": (lambda folder, curve: (folder / "curve.txt").write_text("x"), entries.APART),
+    "less energy": (-4.4, entries.MOVING),
 }
 
 
@@ -330,7 +330,7 @@ def test_balanced_curves_may_miss_their_symmetries_by_little(trefoil, monkeypatc
     row = Row(name="3_1", start=1, seed=None, status="converged", message="", options="{}")
     for width, name in ((0.92, "D3"), (0.5, "C2")):
         curve = replace(trefoil.curve, coefficients=tuple(c * [1.0, width, 1.0] for c in trefoil.curve.coefficients))
-        assert entries._described("3_1", [runs.AtlasRun(row, Path(), curve, "")])["symmetry"] == name
+        assert entries._described("3_1", [entries.AtlasRun(row, Path(), curve, "")])["symmetry"] == name
 
 
 def test_bounds_are_rounded_outwards():
@@ -354,7 +354,7 @@ def test_energies_are_rounded_to_their_errors():
 @pytest.mark.skipif(shutil.which("chromium") is None, reason="a browser")
 def test_the_index_is_sorted_and_filtered_in_a_browser(tmp_path):
     rows = "".join(f'<tr data-name="{name}"><td {value}></td></tr>' for name, value in ORDER)
-    script = (Path(pages.__file__).parent / "sort.js").read_text(encoding="utf-8")
+    script = (Path(make.__file__).parent / "sort.js").read_text(encoding="utf-8")
     done = """
         document.querySelector("button").click();
         document.querySelector("button").click();

@@ -17,7 +17,7 @@ from mobius_flow.core.curve.fourier import FourierCurve
 from mobius_flow.core.curve.measures import writhe_and_crossings
 from mobius_flow.core.knots import knot
 from mobius_flow.core.proof import verify
-from mobius_flow.lab.batch import campaign, cluster, sandbox, single
+from mobius_flow.lab.batch import campaign, sandbox, single
 from mobius_flow.lab.batch.job import Job
 from mobius_flow.lab.batch.table import Row
 from shapes import regular_polygon, torus_trefoil
@@ -115,14 +115,14 @@ def test_starts_of_knots_of_the_table_are_of_several_kinds(batch, tmp_path):
 
 def test_what_is_finished_is_not_repeated(batch, ring, tmp_path, monkeypatch):
     done: list[tuple[str, int]] = []
-    run = cluster.rows
+    run = campaign.outcomes
 
     def spied(submit, jobs):
         jobs = list(jobs)
         done.extend((job.name, job.start) for job in jobs)
         return run(submit, jobs)
 
-    monkeypatch.setattr(cluster, "rows", spied)
+    monkeypatch.setattr(campaign, "outcomes", spied)
 
     def again(*words):
         done.clear()
@@ -234,17 +234,17 @@ def test_an_interrupt_leaves_the_table(batch, ring, monkeypatch, capsys):
 
 
 def test_few_runs_are_submitted_at_a_time(scheduler, tmp_path, monkeypatch):
-    monkeypatch.setattr(cluster, "WINDOW", 3)
+    monkeypatch.setattr(campaign, "WINDOW", 3)
     monkeypatch.setattr(sandbox, "run", lambda job: Row.failure(job, "as asked for"))
     jobs = [Job(f"{k}", 1, None, None, None, f"{tmp_path}/{k}", {}, False) for k in range(20)]
     submitted = []
-    with cluster.submitting(scheduler) as submit:
+    with campaign.submitting(scheduler) as submit:
 
         def counted(*words):
             submitted.append(1)
             return submit(*words)
 
-        for done, (job, row) in enumerate(cluster.rows(counted, jobs), 1):
+        for done, (job, row) in enumerate(campaign.outcomes(counted, jobs), 1):
             assert (row.name, row.message) == (job.name, "as asked for")
             assert len(submitted) <= done + 3
     assert done == 20 == len(submitted)
@@ -267,7 +267,7 @@ def test_few_runs_are_submitted_at_a_time(scheduler, tmp_path, monkeypatch):
 )  # fmt: skip
 def test_one_sentence(words, told, tmp_path, monkeypatch, refused):
     pytest.importorskip("distributed")
-    monkeypatch.setattr(cluster, "_PATIENCE", 1.0)
+    monkeypatch.setattr(campaign, "_PATIENCE", 1.0)
     monkeypatch.chdir(tmp_path)
     threads = threading.enumerate()
     assert told in refused("batch", "-o", "out", *words)
@@ -275,7 +275,7 @@ def test_one_sentence(words, told, tmp_path, monkeypatch, refused):
 
 
 def test_a_directory_that_cannot_be_written_is_told_before_the_work(tmp_path, monkeypatch, refused):
-    monkeypatch.setattr(cluster, "submitting", lambda *_: pytest.fail("work for nothing"))
+    monkeypatch.setattr(campaign, "submitting", lambda *_: pytest.fail("work for nothing"))
     with monkeypatch.context() as read_only:
         read_only.setattr(os, "access", lambda path, _mode: Path(path) != tmp_path)  # root may write everywhere
         assert f": {tmp_path}/results.csv: is write-protected\n" in refused("batch", "3_1", "-o", tmp_path)
@@ -319,8 +319,8 @@ def test_codes_in_files_and_names_that_are_no_text(batch, ring, tmp_path):
 
 def test_a_peer_that_takes_the_call_and_says_nothing(monkeypatch):
     pytest.importorskip("distributed")
-    monkeypatch.setattr(cluster, "_PATIENCE", 1.0)
+    monkeypatch.setattr(campaign, "_PATIENCE", 1.0)
     with socket.create_server(("127.0.0.1", 0)) as peer:
         address = f"tcp://127.0.0.1:{peer.getsockname()[1]}"
-        with pytest.raises(MobiusFlowError, match="no Dask scheduler answers there"), cluster.submitting(address):
+        with pytest.raises(MobiusFlowError, match="no Dask scheduler answers there"), campaign.submitting(address):
             pass

@@ -5,7 +5,7 @@ import pytest
 from fourier_curves import values
 from mobius_flow.core.knots.shapes import shapes
 
-balls = pytest.importorskip("mobius_flow.lab.smooth.balls")
+balls = pytest.importorskip("mobius_flow.lab.smooth.covering")
 TREFOIL = shapes()["3_1"].coefficients[0]
 
 

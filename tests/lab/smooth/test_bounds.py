@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 from mobius_flow.core import CurveError, OptionError, RelaxOptions, minimize
 from mobius_flow.core.curve.fourier import FourierCurve
 from mobius_flow.core.knots.shapes import shapes, smooth_knot
-from mobius_flow.lab.smooth.basis import Basis
-from mobius_flow.lab.smooth.energy import SampledPairs
+from mobius_flow.lab.smooth.energy import Basis, SampledPairs
 from mobius_flow.lab.smooth.least import lower_bound
 from smooth_curves import SMOOTH_CURVES
 from torus_energies import torus_knot_energy
