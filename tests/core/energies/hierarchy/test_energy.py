@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from families import crossed
-from mobius_flow.core import Curve, MobiusFlowError, MoebiusEnergy, Objective
+from mobius_flow.core import Curve, MoebiusEnergy, Objective
 from mobius_flow.core.curve.refine import refine, subdivide
 from mobius_flow.core.energies import Energy
 from mobius_flow.core.energies.barrier import replaced_pairs
