@@ -16,9 +16,7 @@ from typing import Any
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
 from ..core import OptionError, RelaxOptions
-from ..core.base.arguments import Option, declared
-from ..core.base.errors import choice, likeliest
-from ..core.base.messages import Message
+from ..core.base import Message, Option, choice, declared, likeliest
 from ..core.keys.key_options import FRAMES_PER_ITERATE, LAST_FRAME, KeyOptions, Output, Pace, Timing
 from ..core.keys.placement import Measure
 

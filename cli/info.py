@@ -7,8 +7,7 @@ from collections.abc import Iterator, Mapping
 from importlib.util import find_spec
 
 from ..core import CurveError
-from ..core.base.arguments import check_known
-from ..core.base.errors import counted
+from ..core.base import check_known, counted
 from ..core.curve.refine import closed_far_away
 from ..core.driver.info import Info, info, measure
 from ..core.energies import ENERGIES

@@ -12,9 +12,7 @@ from .. import __version__
 from ..addon.pictures.looks import DEFAULT as DEFAULT
 from ..addon.pictures.looks import LOOKS
 from ..core import RelaxOptions, Task, read_obstacle
-from ..core.base.arguments import Option, declared
-from ..core.base.errors import OptionError, choice
-from ..core.base.threads import THREADS
+from ..core.base import THREADS, Option, OptionError, choice, declared
 from ..core.io import CurveFile
 from .parser import further
 

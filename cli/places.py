@@ -15,8 +15,7 @@ from pathlib import Path
 
 from ..addon.pictures import export
 from ..core import Curve, Iterate, MobiusFlowError, Result
-from ..core.base.errors import OptionError, OutputError, wrong_suffix
-from ..core.base.files import atomic_write, status_of
+from ..core.base import OptionError, OutputError, atomic_write, status_of, wrong_suffix
 from ..core.curve import check_closed
 from ..core.io import FORMATS, written_formats
 from ..core.keys.motion import Playing, check_dimension

@@ -4,8 +4,7 @@
 """
 
 from .base.errors import CurveError, CurveFileError, MobiusFlowError, OptionError
-from .curve import Curve, Mesh
-from .curve.obstacle import Obstacle
+from .curve import Curve, Mesh, Obstacle
 from .descent import METHODS
 from .descent.task import Task
 from .driver import Hand, Outcome, RelaxOptions, Result, Status, WithOutcome, minimize, relax

@@ -17,8 +17,7 @@ from ..cli.places import check_place, export, writing
 from ..cli.progress import live
 from ..cli.terminal import say_written
 from ..core import Curve, MobiusFlowError, Status, read_curve
-from ..core.base.errors import wrong_suffix
-from ..core.base.types import FloatArray
+from ..core.base import FloatArray, wrong_suffix
 from ..core.driver.moves.balance import balanced
 from .atlas.data import TITLE, curve_path
 from .atlas.folder import SUMS

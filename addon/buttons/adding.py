@@ -7,8 +7,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, St
 from bpy_extras.object_utils import AddObjectHelper, object_data_add
 
 from ...core import Curve, OptionError, knots
-from ...core.base.messages import Message
-from ...core.base.types import FloatArray
+from ...core.base import FloatArray, Message
 from ..curves import bevel
 from ..curves.splines import box, new_curve_data, write_points
 from ..live.requirements import Condition

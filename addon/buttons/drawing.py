@@ -12,8 +12,7 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d, region_2d_to_locat
 from mathutils import Vector
 
 from ...core import Curve, MobiusFlowError
-from ...core.base.messages import Message
-from ...core.base.types import FloatArray
+from ...core.base import FloatArray, Message
 from ...core.curve import Mesh
 from ...core.curve.refine import arc_lengths, smoothed
 from ...core.keys.placement import DrawingPlane

@@ -8,8 +8,7 @@ import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 from ...core import Curve
-from ...core.base.messages import Message
-from ...core.base.types import FloatArray
+from ...core.base import FloatArray, Message
 from ...core.curve import Mesh
 from ...core.curve.tube import caps, places_between, quads, rings
 from ...core.driver.words import named

@@ -8,8 +8,7 @@ import bpy
 import numpy as np
 
 from ...core import MobiusFlowError
-from ...core.base.messages import Message
-from ...core.base.types import FloatArray
+from ...core.base import FloatArray, Message
 from ...core.keys.key_options import Course, KeyOptions, Output, Timing
 from ...core.keys.placement import Similarity
 from . import keyframes

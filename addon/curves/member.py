@@ -11,8 +11,7 @@ import bpy
 import numpy as np
 
 from ...core import Curve
-from ...core.base.messages import Message
-from ...core.base.types import FloatArray
+from ...core.base import FloatArray, Message
 from ...core.keys.key_options import Course, KeyOptions, Output
 from ...core.keys.motion import Keys
 from ...core.keys.placement import Frame

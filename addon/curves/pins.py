@@ -12,8 +12,7 @@ import bpy
 import numpy as np
 
 from ...core import CurveError, Mesh
-from ...core.base.messages import Message
-from ...core.base.types import BoolArray, IntArray
+from ...core.base import BoolArray, IntArray, Message
 from ...core.keys.placement import Frame
 from .splines import control_points, coordinates, kind, read
 

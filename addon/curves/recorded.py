@@ -9,8 +9,7 @@ import numpy as np
 from mathutils import Matrix
 
 from ...core import Curve, CurveError, MobiusFlowError
-from ...core.base.messages import Message
-from ...core.base.types import FloatArray
+from ...core.base import FloatArray, Message
 from ...core.collision import check_embedded, is_free
 from ...core.curve import Mesh
 from ...core.curve.refine import along, interpolated

@@ -15,9 +15,7 @@ import bpy
 import numpy as np
 
 from ...core import Curve, Hand, Iterate, Obstacle, Outcome, RelaxOptions, Status, Task, WithOutcome
-from ...core.base.errors import CurveError, MobiusFlowError, OptionError, Place
-from ...core.base.messages import Message, Sentence
-from ...core.base.types import FloatArray
+from ...core.base import CurveError, FloatArray, Message, MobiusFlowError, OptionError, Place, Sentence
 from ...core.collision import is_free
 from ...core.driver.words import in_blenders_words, named, spline_names
 from ...core.keys.key_options import Course, KeyOptions, Output

@@ -10,8 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...core import Curve, CurveError, Mesh
-from ...core.base.messages import Message
-from ...core.base.types import FloatArray
+from ...core.base import FloatArray, Message
 from ...core.curve.refine import along, on_refined
 from ...core.keys.placement import Frame, Link
 from .sizes import placement

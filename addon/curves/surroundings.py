@@ -10,8 +10,7 @@ import bpy
 import numpy as np
 
 from ...core import CurveError, MobiusFlowError, Obstacle
-from ...core.base.messages import Message
-from ...core.base.types import FloatArray, IntArray
+from ...core.base import FloatArray, IntArray, Message
 from ...core.driver.words import named
 from ...core.keys.placement import Placement
 from .moving import unsteady, unsteady_object

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...core import Curve, RelaxOptions, Task
-from ...core.base.messages import Message
-from ...core.base.types import FloatArray
+from ...core.base import FloatArray, Message
 from ...core.knots.diagrams import quick_invariants
 
 CIRCLE = 4.0  # Möbius energy of the round circle, the least of any closed curve: Freedman, He and Wang (1994)

@@ -26,8 +26,7 @@ import scipy
 import threadpoolctl
 
 from ...core import Curve, Hand, Iterate, MobiusFlowError, Obstacle, Outcome, RelaxOptions, Task, WithOutcome, relax
-from ...core.base.messages import Message
-from ...core.base.types import FloatArray
+from ...core.base import FloatArray, Message
 from ...core.collision import is_free
 from ...core.curve import Mesh
 from ...core.driver import Relaxation

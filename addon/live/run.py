@@ -15,9 +15,7 @@ import bpy
 import numpy as np
 
 from ...core import CurveError, Iterate, MobiusFlowError, Outcome, Status
-from ...core.base.errors import Place
-from ...core.base.messages import Message
-from ...core.base.types import FloatArray
+from ...core.base import FloatArray, Message, Place
 from ...core.curve import Mesh
 from ...core.driver import TimeLeft
 from ...core.keys.motion import Proof

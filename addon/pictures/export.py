@@ -14,10 +14,7 @@ from typing import Any
 import numpy as np
 
 from ...core import Curve, Iterate, Mesh, MobiusFlowError
-from ...core.base.deadline import termination_raises
-from ...core.base.errors import OutputError
-from ...core.base.files import atomic_write
-from ...core.base.types import FloatArray
+from ...core.base import FloatArray, OutputError, atomic_write, termination_raises
 from ...core.collision import is_free
 from ...core.keys.key_options import Output
 from ...core.keys.motion import Key, Keys, Playing, check_dimension, recorded

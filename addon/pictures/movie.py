@@ -15,8 +15,7 @@ from pathlib import Path
 import bpy
 
 from ...core import MobiusFlowError
-from ...core.base.errors import OutputError, choice
-from ...core.base.messages import Message
+from ...core.base import Message, OutputError, choice
 from ..curves.keyframes import all_fcurves
 from . import rendering, stage, staging
 from .looks import LOOKS

@@ -10,11 +10,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from ..base.tolerances import PLANE_UNDERFLOW
-from ..base.types import BoolArray, FloatArray, IntArray
-from ..curve import Mesh
-from ..curve.mesh import component_order, near_to_near
-from ..curve.obstacle import Obstacle
+from ..base import PLANE_UNDERFLOW, BoolArray, FloatArray, IntArray
+from ..curve import Mesh, Obstacle, component_order, near_to_near
 
 CHUNK = 1 << 14  # pairs of boxes handled at once: bounds the memory whatever the curve
 _HALVES = {  # numbers of the halves of the first and of the second box, if they are halved

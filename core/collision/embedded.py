@@ -8,8 +8,7 @@ from ..base.errors import CurveError
 from ..base.messages import COMPONENT, EDGE, VERTEX, Message
 from ..base.tolerances import MIN_GAP, MIN_SPACING, ON_EDGE_UNITS, PLANE_ROUNDING
 from ..base.types import BoolArray, FloatArray, IntArray
-from ..curve import Curve, Mesh, at_edges, at_vertices
-from ..curve.obstacle import Obstacle
+from ..curve import Curve, Mesh, Obstacle, at_edges, at_vertices
 from .boxes import BoxTree, Level, corners, still_triangles
 from .exact import EDGES, crossing, first_contact
 from .gap import folds, minimal_gap, near_edges, scaled_points, squared_gaps, squared_segment_distances, written

@@ -4,10 +4,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from ..base.errors import CurveError, Place
-from ..base.messages import Message
-from ..base.tolerances import MIN_GAP
-from ..base.types import BoolArray, FloatArray, IntArray
+from ..base import MIN_GAP, BoolArray, CurveError, FloatArray, IntArray, Message, Place
 from ..curve import Curve, Mesh
 from ..curve.distances import arc_distance_of_points
 from ..curve.measures import bending_radii

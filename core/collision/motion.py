@@ -7,11 +7,8 @@ from typing import TypeVar
 
 import numpy as np
 
-from ..base.deadline import check_time
-from ..base.messages import EDGE, Message
-from ..base.types import BoolArray, FloatArray, IntArray
-from ..curve import Mesh
-from ..curve.obstacle import Obstacle
+from ..base import EDGE, BoolArray, FloatArray, IntArray, Message, check_time
+from ..curve import Mesh, Obstacle
 from .boxes import BoxTree, Level, contact_window, still_triangles
 from .exact import first_contact, first_contact_with_triangle
 from .gap import folds

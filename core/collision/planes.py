@@ -7,8 +7,7 @@ if all are positive at two times, a plane orthogonal to n separates the two at e
 
 import numpy as np
 
-from ..base.tolerances import PLANE_ROUNDING, PLANE_UNDERFLOW
-from ..base.types import BoolArray, FloatArray, IntArray
+from ..base import PLANE_ROUNDING, PLANE_UNDERFLOW, BoolArray, FloatArray, IntArray
 
 _TINY = np.finfo(np.float64).tiny
 _PARALLEL = 1e-14  # sin² of the angle below which a cross product is mostly rounding

@@ -1,7 +1,7 @@
 """Polygons: vertices, connectivity, refinement, files."""
 
-from .curve import Curve, at_edges, at_vertices, check_closed
-from .mesh import Mesh
+from .curve import MAKERS, Curve, at_edges, at_vertices, check_closed
+from .mesh import Mesh, component_order, near_to_near
+from .obstacle import MAX_COORDINATE, Obstacle
+from .pins import NO_PINS, NOWHERE, TAUT, Pins, arcs, free_edges, holds, spans
 from .refine import refine
-
-__all__ = ["Curve", "Mesh", "at_edges", "at_vertices", "check_closed", "refine"]

@@ -8,9 +8,7 @@ from typing import cast
 import numpy as np
 import numpy.typing as npt
 
-from ..base.arguments import is_list
-from ..base.errors import CurveError, Place, counted
-from ..base.types import FloatArray, frozen, real
+from ..base import CurveError, FloatArray, Place, counted, frozen, is_list, real
 from .mesh import Mesh
 
 MAKERS: list[Callable[[object], "Curve | None"]] = []

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from ..base.errors import CurveError
-from ..base.types import FloatArray
+from ..base import CurveError, FloatArray
 from .curve import Curve
 
 _ROWS = 64  # of edge pairs processed together

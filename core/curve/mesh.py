@@ -11,9 +11,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
-from ..base.arguments import is_list
-from ..base.errors import CurveError, shown
-from ..base.types import BoolArray, FloatArray, IntArray, frozen
+from ..base import BoolArray, CurveError, FloatArray, IntArray, frozen, is_list, shown
 
 _KINDS = {True: (3, "a closed polygon"), False: (2, "an open polygon")}  # by whether closed: least number of vertices
 

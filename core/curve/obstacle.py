@@ -7,10 +7,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from ..base.arguments import checked
-from ..base.errors import CurveError
-from ..base.messages import OBSTACLE, Message
-from ..base.types import BoolArray, FloatArray, IntArray, frozen, real
+from ..base import OBSTACLE, BoolArray, CurveError, FloatArray, IntArray, Message, checked, frozen, real
 
 NAMELESS = "obstacle"
 MAX_COORDINATE = 1e40  # and the inverse of the smallest size of a curve: even seventh powers of both are still numbers

@@ -19,9 +19,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 
-from ..base.arguments import checked
-from ..base.errors import CurveOptionError
-from ..base.types import FloatArray, IntArray
+from ..base import CurveOptionError, FloatArray, IntArray, checked
 from .curve import Curve
 from .distances import strand_gaps
 from .mesh import Mesh

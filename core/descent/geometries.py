@@ -4,10 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.errors import OptionError
-from ..base.types import FloatArray
-from ..curve import Curve
-from ..curve.pins import free_edges
+from ..base import FloatArray, OptionError
+from ..curve import Curve, free_edges
 from ..solve.constraints import ConstraintDerivative
 from ..solve.metrics import InnerProduct
 from ..solve.saddle import TangentSpace

@@ -14,8 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.tolerances import BULK
-from ..base.types import FloatArray
+from ..base import BULK, FloatArray
 from ..energies.moebius import OwnBlocks
 from ..solve.saddle import TangentSpace
 from ..solve.saddle.iterative import LinearMap, conjugate_gradients

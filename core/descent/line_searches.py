@@ -7,8 +7,7 @@ from typing import ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
-from ..base.tolerances import ENERGY_ROUNDING
-from ..base.types import FloatArray
+from ..base import ENERGY_ROUNDING, FloatArray
 from ..collision import Contact
 from ..energies.components import energy_scale
 from ..solve.metrics import Metric

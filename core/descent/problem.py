@@ -8,13 +8,9 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ..base.deadline import check_time
-from ..base.errors import OptionError
-from ..base.types import FloatArray
+from ..base import FloatArray, OptionError, check_time
 from ..collision import FreeMotion, Limit, free_motion, rope_motion
-from ..curve import Curve, Mesh
-from ..curve.obstacle import Obstacle
-from ..curve.pins import Pins
+from ..curve import Curve, Mesh, Obstacle, Pins
 from ..curve.symmetry import NO_SYMMETRY, Symmetry
 from ..energies import Objective
 from ..energies.pull import Pull

@@ -17,9 +17,7 @@ from typing import ClassVar
 import numpy as np
 from scipy.linalg import eigh
 
-from ..base.deadline import check_time
-from ..base.tolerances import ENERGY_ROUNDING
-from ..base.types import FloatArray
+from ..base import ENERGY_ROUNDING, FloatArray, check_time
 from ..energies.components import energy_scale
 from ..energies.energy import Approximate
 from ..solve.metrics import Metric, MoebiusMetric

@@ -7,8 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..base.messages import Message
-from ..base.types import FloatArray
+from ..base import FloatArray, Message
 from ..collision import Contact, FreeMotion
 from ..solve.saddle import TangentSpace
 from .problem import Point, Problem

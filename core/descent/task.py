@@ -11,15 +11,10 @@ from operator import itemgetter
 
 import numpy as np
 
-from ..base.arguments import checked_fields
-from ..base.errors import CurveError, CurveOptionError, OptionError
-from ..base.messages import VERTEX, Message
-from ..base.types import FloatArray, frozen
+from ..base import VERTEX, CurveError, CurveOptionError, FloatArray, Message, OptionError, checked_fields, frozen
 from ..collision import check_clear, check_embedded, check_gap, survives_rounding
 from ..collision.gap import written
-from ..curve import Curve, at_vertices, refine
-from ..curve.obstacle import MAX_COORDINATE, Obstacle
-from ..curve.pins import NO_PINS, Pins
+from ..curve import MAX_COORDINATE, NO_PINS, Curve, Obstacle, Pins, at_vertices, refine
 
 _log = logging.getLogger(__name__)
 

@@ -6,10 +6,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
-from ..base.arguments import check_known, checked
-from ..base.errors import CurveError, MobiusFlowError
-from ..base.plugins import Table
-from ..base.threads import BLAS
+from ..base import BLAS, CurveError, MobiusFlowError, Table, check_known, checked
 from ..collision import check_embedded, check_gap, minimal_gap
 from ..collision.gap import thickness
 from ..curve import Curve

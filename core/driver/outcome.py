@@ -6,9 +6,7 @@ from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
-from ..base.arguments import checked_fields
-from ..base.errors import Place, counted
-from ..base.messages import Message, joined
+from ..base import Message, Place, checked_fields, counted, joined
 from ..curve import Curve
 from ..curve.refine import halved
 from ..descent.task import Task, centred

@@ -5,13 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.errors import CurveError, OptionError
-from ..base.messages import Message
-from ..base.types import FloatArray, IntArray
+from ..base import CurveError, FloatArray, IntArray, Message, OptionError
 from ..collision import is_free, is_rope, minimal_gap, rope_motion, survives_rounding, thickness
-from ..curve import Curve, Mesh, at_edges, check_closed
-from ..curve.obstacle import Obstacle
-from ..curve.pins import TAUT, arcs, free_edges, spans
+from ..curve import TAUT, Curve, Mesh, Obstacle, arcs, at_edges, check_closed, free_edges, spans
 from ..curve.refine import Resolution, graded_spacing, normalised, refined_alike
 from ..curve.symmetry import TOLERANCE, Symmetry, SymmetryGroup, symmetries
 from ..descent import METHODS, Problem

@@ -8,11 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..base.arguments import checked
-from ..base.deadline import TimeIsUp, TimeLimit
-from ..base.errors import CurveError, OptionError
-from ..base.messages import COMPONENT, VERTEX_COUNT, Message
-from ..base.threads import BLAS
+from ..base import BLAS, COMPONENT, VERTEX_COUNT, CurveError, Message, OptionError, TimeIsUp, TimeLimit, checked
 from ..collision import thickness
 from ..curve import Curve
 from ..descent.task import Task

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..base.messages import Message
-from ..base.types import FloatArray
+from ..base import FloatArray, Message
 from ..curve import Curve, Mesh, at_edges
 from ..curve.refine import Resolution
 from ..descent import METHODS, NoStep, Point, Problem, SearchState, Step

@@ -4,10 +4,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 
-from ..base.errors import CurveError, OptionError
-from ..base.messages import VERTEX_COUNT, Message
-from ..curve import Curve
-from ..curve.obstacle import Obstacle
+from ..base import VERTEX_COUNT, CurveError, Message, OptionError
+from ..curve import Curve, Obstacle
 from ..descent import METHODS, Method
 from ..energies import ENERGIES, TERMS, Energy, MoebiusEnergy, Objective, Stiff, Weighted
 from ..energies.hierarchy import HierarchicalMoebiusEnergy

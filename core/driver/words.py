@@ -6,8 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ..base.messages import COMPONENT, EDGE, OBSTACLE, OF_GOAL, VERTEX, VERTEX_COUNT, Message
-from ..base.types import FloatArray
+from ..base import COMPONENT, EDGE, OBSTACLE, OF_GOAL, VERTEX, VERTEX_COUNT, FloatArray, Message
 from ..io.trajectory import Iterate
 from .moves.rest import ILL_CONDITIONED, MINIMUM, SADDLE
 from .options import RelaxOptions

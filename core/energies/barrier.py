@@ -24,8 +24,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.polynomial.polynomial import polyval
 
-from ..base.arguments import checked_fields
-from ..base.types import BoolArray, FloatArray, IntArray
+from ..base import BoolArray, FloatArray, IntArray, checked_fields
 from ..curve import Curve
 from ..curve.distances import near_by_octave
 from .edge_pairs import (

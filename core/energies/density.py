@@ -18,8 +18,7 @@ from typing import NamedTuple, Protocol, runtime_checkable
 import numpy as np
 from scipy.spatial.distance import cdist
 
-from ..base.errors import OptionError
-from ..base.types import BoolArray, FloatArray
+from ..base import BoolArray, FloatArray, OptionError
 from ..curve import Curve
 from ..curve.distances import arc_positions, periods
 from .edge_pairs import Tile, half_changes

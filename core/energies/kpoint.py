@@ -9,8 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.arguments import checked, checked_fields
-from ..base.types import FloatArray
+from ..base import FloatArray, checked, checked_fields
 from ..curve import Curve
 from ..curve.distances import points_at
 from .components import ComponentShares

@@ -26,8 +26,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial.distance import cdist
 
-from ..base.arguments import checked_fields
-from ..base.types import BoolArray, FloatArray, IntArray
+from ..base import BoolArray, FloatArray, IntArray, checked_fields
 from ..curve import Curve, Mesh
 from .components import ComponentShares
 from .edge_pairs import ROWS_TIMES_COLUMNS, EdgePairIndices, SteppedCurve, change, half_changes, pair_tiles

@@ -7,11 +7,8 @@ from typing import NamedTuple, cast
 import numpy as np
 import scipy.sparse as sp
 
-from ..base.arguments import checked_fields
-from ..base.errors import OptionError
-from ..base.types import FloatArray
-from ..curve import Curve
-from ..curve.obstacle import Obstacle
+from ..base import FloatArray, OptionError, checked_fields
+from ..curve import Curve, Obstacle
 from .barrier import Barrier, replaced_pairs
 from .energy import (
     Approximate,

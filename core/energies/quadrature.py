@@ -5,9 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ..base.arguments import checked, checked_fields
-from ..base.errors import OptionError
-from ..base.types import FloatArray, frozen
+from ..base import FloatArray, OptionError, checked, checked_fields, frozen
 
 MAX_POINTS = 1000  # beyond, finding them takes minutes
 

@@ -8,10 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import BinaryIO, TextIO
 
-from ..base.arguments import checked
-from ..base.errors import CurveError, CurveFileError, reason_of, wrong_suffix
-from ..base.files import atomic_write
-from ..base.plugins import Table
+from ..base import CurveError, CurveFileError, Table, atomic_write, checked, reason_of, wrong_suffix
 from ..curve.curve import Curve
 from . import codes, json_lists, obj, pdb, vect, xyz
 from .source import Polygon, Source, assemble

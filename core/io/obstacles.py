@@ -7,8 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..base.arguments import checked
-from ..base.errors import CurveError, CurveFileError
+from ..base import CurveError, CurveFileError, checked
 from ..curve.obstacle import Obstacle
 from . import load_curve
 from .obj import Content, Face, check_known, index_of, parsed

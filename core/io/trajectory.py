@@ -14,8 +14,7 @@ from ..base.arguments import checked, checked_fields
 from ..base.errors import MobiusFlowError, OutputError, counted
 from ..base.files import atomic_write
 from ..base.types import BoolArray, FloatArray, IntArray
-from ..curve import Curve, Mesh
-from ..curve.obstacle import Obstacle
+from ..curve import Curve, Mesh, Obstacle
 
 
 class StrandMoves(NamedTuple):

@@ -11,9 +11,7 @@ from functools import partial
 
 import numpy as np
 
-from ..base.arguments import checked
-from ..base.errors import CurveError
-from ..base.types import FloatArray, IntArray
+from ..base import CurveError, FloatArray, IntArray, checked
 from ..curve import Curve
 from ..curve.refine import arc_lengths
 from .diagrams import Diagram, Pass, diagram_of

@@ -13,10 +13,8 @@ from itertools import chain, compress, product
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
-from ..base.arguments import checked_fields, number
-from ..base.types import BoolArray, FloatArray, IntArray
-from ..curve import Curve
-from ..curve.obstacle import Obstacle
+from ..base import BoolArray, FloatArray, IntArray, checked_fields, number
+from ..curve import Curve, Obstacle
 from .diagrams import linking_numbers, quick_invariants
 from .diagrams.invariants import TRIVIAL
 

@@ -11,9 +11,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..base.arguments import checked
-from ..base.errors import CurveError, Place
-from ..base.types import BoolArray, FloatArray
+from ..base import BoolArray, CurveError, FloatArray, Place, checked
 from ..collision import check_embedded
 from ..curve import Curve, check_closed
 from ..curve.distances import arc_distance_of_pairs

@@ -7,9 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from ..base.arguments import checked
-from ..base.errors import CurveError
-from ..base.types import FloatArray
+from ..base import CurveError, FloatArray, checked
 from ..curve import Curve, Mesh
 from ..curve.distances import nearest_strands
 from ..curve.refine import cubic_spline, evenly

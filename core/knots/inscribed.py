@@ -5,9 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..base.arguments import checked
-from ..base.errors import CurveError, counted
-from ..base.types import FloatArray
+from ..base import CurveError, FloatArray, checked, counted
 from ..collision import is_free
 from ..curve import Curve, Mesh
 from ..curve.distances import nearest_strands

@@ -8,8 +8,7 @@ from functools import cache, cached_property
 from itertools import product
 from math import prod
 
-from ..base.arguments import checked, checked_fields, number
-from ..base.errors import counted
+from ..base import checked, checked_fields, counted, number
 from ..curve import Curve
 from .braids import braid_diagram
 from .diagrams import (

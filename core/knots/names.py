@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from configparser import ConfigParser
 from pathlib import Path
 
-from ..base.arguments import checked
-from ..base.errors import CurveError, MobiusFlowError
+from ..base import CurveError, MobiusFlowError, checked
 from ..curve import Curve
 from .braids import Word, braid_closure, checked_word, connected_sum, mirror, plat_diagram, torus_knot
 from .diagrams import PlanarCrossing

@@ -14,12 +14,9 @@ from itertools import islice, pairwise
 import numpy as np
 import scipy.sparse as sp
 
-from ..base.arguments import checked
-from ..base.errors import CurveError
-from ..base.types import FloatArray
+from ..base import CurveError, FloatArray, checked
 from ..collision import check_embedded
-from ..curve import Curve, refine
-from ..curve.curve import MAKERS
+from ..curve import MAKERS, Curve, refine
 from .diagrams import Diagram, PlanarCrossing, diagram_of
 from .diagrams.codes import diagram_from_code
 from .diagrams.rerouting import without_nugatory

@@ -9,9 +9,7 @@ import math
 
 import numpy as np
 
-from ..base.arguments import checked
-from ..base.errors import CurveError
-from ..base.types import FloatArray
+from ..base import CurveError, FloatArray, checked
 from ..collision.planes import closest_chord
 from ..curve import Curve, check_closed
 

@@ -13,10 +13,9 @@ import numpy as np
 from ..base.types import FloatArray
 from ..collision import is_free, survives_rounding
 from ..collision.motion import walk
-from ..curve import Curve, Mesh
+from ..curve import Curve, Mesh, Obstacle
 from ..curve.alignment import Alignment, Freedom, alignments
 from ..curve.measures import bending
-from ..curve.obstacle import Obstacle
 from ..curve.refine import refined_alike
 from ..driver.moves.balance import MoebiusImages, least_bending, turn
 from ..io.trajectory import Iterate

@@ -9,11 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise, product
 
-from ..base.arguments import checked
-from ..base.deadline import TimeLimit
-from ..base.errors import CurveError, MobiusFlowError, OptionError, counted
-from ..base.messages import OF_GOAL, Message
-from ..base.threads import BLAS
+from ..base import BLAS, OF_GOAL, CurveError, Message, MobiusFlowError, OptionError, TimeLimit, checked, counted
 from ..curve import Curve
 from ..curve.alignment import Alignment
 from ..descent.task import Task

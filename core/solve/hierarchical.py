@@ -18,8 +18,7 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 
-from ..base.errors import OptionError
-from ..base.types import BoolArray, FloatArray, IntArray
+from ..base import BoolArray, FloatArray, IntArray, OptionError
 from ..curve import Curve, Mesh
 from ..curve.distances import arc_distance_of_pairs
 from ..energies.hierarchy.blocks import BlockList

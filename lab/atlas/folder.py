@@ -3,8 +3,7 @@
 import hashlib
 from pathlib import Path
 
-from ...core.base.errors import OutputError
-from ...core.base.files import atomic_write
+from ...core.base import OutputError, atomic_write
 from ..batch.job import foreign, sha256_of
 
 SUMS = "SHA256SUMS"

@@ -12,8 +12,7 @@ from typing import get_args, get_type_hints
 from ... import __version__
 from ...cli.terminal import one_line
 from ...core import RelaxOptions
-from ...core.base.errors import OutputError
-from ...core.base.files import atomic_write
+from ...core.base import OutputError, atomic_write
 from .job import CSV, PARQUET, Job, as_text, foreign, sha256_of
 
 FAILED = "failed"

@@ -7,10 +7,7 @@ from dataclasses import dataclass, field, replace
 from fnmatch import filter as matching
 from itertools import pairwise, product
 
-from ...core.base.arguments import check_number, checked
-from ...core.base.deadline import TimeLimit
-from ...core.base.errors import OptionError, choice
-from ...core.base.threads import BLAS
+from ...core.base import BLAS, OptionError, TimeLimit, check_number, checked, choice
 from ...core.curve import Curve
 from ...core.descent import METHODS, Problem
 from ...core.descent.task import Task

@@ -15,9 +15,7 @@ from itertools import permutations
 
 import numpy as np
 
-from ...core.base.arguments import checked
-from ...core.base.errors import CurveError, OptionError
-from ...core.base.types import ComplexArray
+from ...core.base import ComplexArray, CurveError, OptionError, checked
 from .covering import CurveArcs, arb, cover, points, precise, scaled
 
 

@@ -16,8 +16,7 @@ from math import factorial
 
 import numpy as np
 
-from ...core.base.errors import CurveError, MobiusFlowError
-from ...core.base.types import BoolArray, ComplexArray, FloatArray
+from ...core.base import BoolArray, ComplexArray, CurveError, FloatArray, MobiusFlowError
 
 try:
     from flint import acb as acb

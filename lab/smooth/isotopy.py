@@ -7,9 +7,7 @@ from itertools import combinations_with_replacement
 
 import numpy as np
 
-from ...core.base.arguments import checked
-from ...core.base.errors import CurveError
-from ...core.base.types import ComplexArray, FloatArray
+from ...core.base import ComplexArray, CurveError, FloatArray, checked
 from ...core.curve import Curve
 from ...core.curve.fourier import FourierCurve
 from .covering import CurveArcs, PolygonEdges, cover, points, scaled

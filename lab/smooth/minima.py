@@ -7,8 +7,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.linalg import eigh
 
-from ...core.base.arguments import checked
-from ...core.base.types import FloatArray
+from ...core.base import FloatArray, checked
 from ...core.curve.fourier import FourierCurve
 from ...core.curve.measures import bending
 from ...core.driver.moves.balance import MoebiusImages, least_bending

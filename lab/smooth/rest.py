@@ -9,10 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve, eigh, orth
 
-from ...core.base.arguments import checked
-from ...core.base.errors import CurveError
-from ...core.base.tolerances import ENERGY_ROUNDING
-from ...core.base.types import FloatArray
+from ...core.base import ENERGY_ROUNDING, CurveError, FloatArray, checked
 from ...core.curve import Curve, check_closed
 from ...core.curve.fourier import FourierCurve
 from ...core.energies import MoebiusEnergy

@@ -10,9 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from ...base.arguments import check_number, checked
-from ...base.errors import CurveError
-from ...base.types import FloatArray, IntArray
+from ...base import CurveError, FloatArray, IntArray, check_number, checked
 from .. import Curve, Mesh, check_closed
 from ..alignment import Freedom, alignments
 from ..refine import at_shares

@@ -6,11 +6,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
-from ...base.arguments import checked
-from ...base.errors import MobiusFlowError, shown
-from ...base.types import FloatArray
-from ...curve.obstacle import MAX_COORDINATE
-from ...curve.pins import Pins
+from ...base import FloatArray, MobiusFlowError, checked, shown
+from ...curve import MAX_COORDINATE, Pins
 from ...descent import NoStep, Point, SearchState, Step
 from ...descent.line_searches import on_target
 from ...descent.step import leg

@@ -8,9 +8,7 @@ from itertools import islice
 
 import numpy as np
 
-from ...base.errors import CurveError
-from ...base.messages import Message
-from ...base.types import FloatArray
+from ...base import CurveError, FloatArray, Message
 from ...collision.motion import walk
 from ...curve import Curve
 from ...descent import Leg, Point, Step

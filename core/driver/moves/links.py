@@ -10,12 +10,9 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
-from ...base.errors import MobiusFlowError
-from ...base.messages import COMPONENT, Message
-from ...base.types import FloatArray
-from ...curve import Curve
+from ...base import COMPONENT, FloatArray, Message, MobiusFlowError
+from ...curve import Curve, Obstacle
 from ...curve.distances import STRAND_RATIO, arc_distance_of_pairs, near_by_octave
-from ...curve.obstacle import Obstacle
 from ...descent import Step
 from ...energies.barrier import near_pairs
 from ...energies.hierarchy import moebius_energy

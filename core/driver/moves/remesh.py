@@ -8,13 +8,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...base.errors import MobiusFlowError
-from ...base.messages import Message, joined
-from ...base.tolerances import BULK
-from ...base.types import FloatArray, IntArray
+from ...base import BULK, FloatArray, IntArray, Message, MobiusFlowError, joined
 from ...collision import Contact, survives_rounding
-from ...curve import Curve
-from ...curve.pins import arcs
+from ...curve import Curve, arcs
 from ...curve.refine import (
     Remeshed,
     Resolution,

@@ -5,10 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
-from ...base.errors import OptionError
-from ...base.types import BoolArray, FloatArray, IntArray
-from ...curve import Curve, Mesh
-from ...curve.mesh import component_order
+from ...base import BoolArray, FloatArray, IntArray, OptionError
+from ...curve import Curve, Mesh, component_order
 from ..clusters import ClusterTree, ranges
 from ..edge_pairs import EdgePairIndices
 

@@ -14,9 +14,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ...base.arguments import checked_fields, number
-from ...base.threads import BLAS
-from ...base.types import FloatArray, IntArray
+from ...base import BLAS, FloatArray, IntArray, checked_fields, number
 from ...curve import Curve
 from ..components import ComponentShares, energy_scale
 from ..edge_pairs import EdgePairIndices

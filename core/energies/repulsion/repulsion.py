@@ -15,8 +15,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from ...base.types import FloatArray
-from ...curve import Curve
-from ...curve.obstacle import Obstacle
+from ...curve import Curve, Obstacle
 from ..edge_pairs import change, stepped
 from ..quadrature import gauss_legendre
 from .schedule import Schedule

@@ -18,8 +18,7 @@ from collections.abc import Callable, Mapping, Sequence
 from itertools import islice
 from typing import Any, NamedTuple, cast
 
-from ...base.arguments import check_known
-from ...base.errors import CurveError
+from ...base import CurveError, check_known
 from .diagram import Diagram, Pass, diagram_of
 
 Nested = Sequence["int | str | Nested"]

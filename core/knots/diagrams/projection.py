@@ -6,8 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...base.errors import CurveError
-from ...base.types import FloatArray, IntArray
+from ...base import CurveError, FloatArray, IntArray
 from ...curve import Curve, Mesh
 from .diagram import PIN, Diagram
 

@@ -20,8 +20,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from ...base.types import FloatArray, IntArray
-from ...curve import Curve, Mesh
-from ...curve.pins import NO_PINS, NOWHERE, Pins, free_edges
+from ...curve import NO_PINS, NOWHERE, Curve, Mesh, Pins, free_edges
 from ...curve.symmetry import NO_SYMMETRY, Symmetry
 from .barycenters import Barycenters, Parts, weighted_barycenter
 

@@ -6,8 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...base.types import FloatArray, IntArray
-from ...curve import Curve, Mesh
-from ...curve.pins import NO_PINS, Pins
+from ...curve import NO_PINS, Curve, Mesh, Pins
 
 Parts = tuple[int, ...]
 

@@ -11,10 +11,8 @@ import scipy.sparse as sp
 from scipy.linalg import blas, lapack
 from scipy.sparse.linalg import SuperLU
 
-from ...base.arguments import checked
-from ...base.types import FloatArray, IntArray
-from ...curve import Curve
-from ...curve.pins import NOWHERE
+from ...base import FloatArray, IntArray, checked
+from ...curve import NOWHERE, Curve
 from ...energies.quadrature import Rule
 from ..constraints import ConstraintDerivative
 from ..saddle import TangentSpace

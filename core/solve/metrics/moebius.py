@@ -21,8 +21,7 @@ import numpy as np
 from scipy.linalg import blas
 from scipy.spatial.distance import cdist
 
-from ...base.arguments import checked_fields, number
-from ...base.types import FloatArray, IntArray
+from ...base import FloatArray, IntArray, checked_fields, number
 from ...curve import Curve, Mesh
 from ...curve.distances import arc_distance_of_pairs, arc_distances, points_at
 from ...energies.edge_pairs import ROWS_TIMES_COLUMNS

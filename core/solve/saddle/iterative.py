@@ -14,10 +14,8 @@ from typing import Protocol
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
-from ...base.deadline import check_time
-from ...base.types import FloatArray, IntArray
-from ...curve import Curve, Mesh
-from ...curve.pins import holds
+from ...base import FloatArray, IntArray, check_time
+from ...curve import Curve, Mesh, holds
 from ..constraints import ConstraintDerivative, Constraints
 from .tangent_space import Applied, TangentSpace
 

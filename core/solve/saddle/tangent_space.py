@@ -17,8 +17,7 @@ from scipy.linalg import blas, lapack
 from scipy.sparse.linalg import SuperLU, splu
 
 from ...base.types import FloatArray
-from ...curve import Curve
-from ...curve.pins import free_edges, holds
+from ...curve import Curve, free_edges, holds
 from ...energies.edge_pairs import ROWS_TIMES_COLUMNS
 from ..constraints import ConstraintDerivative, Constraints
 
