@@ -13,6 +13,7 @@ from .io import knot_list, read_curve, write_curve
 from .io.obstacles import read_obstacle
 from .io.trajectory import Iterate, Trajectory
 from .morph import NoMotionError, morph
+from .separate import separate
 
 __all__ = [
     "METHODS",
@@ -41,5 +42,6 @@ __all__ = [
     "read_curve",
     "read_obstacle",
     "relax",
+    "separate",
     "write_curve",
 ]

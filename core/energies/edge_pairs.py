@@ -25,7 +25,7 @@ Combination = tuple[float, float, float]
 DELTA, E, F = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 
 # how the tail and head of the first edge and of the second (rows) enter Δ, e and f (columns)
-_CORNERS = np.array([[0.5, -1.0, 0.0], [0.5, 1.0, 0.0], [-0.5, 0.0, -1.0], [-0.5, 0.0, 1.0]])
+CORNERS = np.array([[0.5, -1.0, 0.0], [0.5, 1.0, 0.0], [-0.5, 0.0, -1.0], [-0.5, 0.0, 1.0]])
 ROWS_TIMES_COLUMNS = 24_000  # doubles in one tile array; some ten of them should fit a second-level cache
 
 
@@ -114,7 +114,7 @@ def scatter_second(mesh: Mesh, i: IntArray, j: IntArray, second: FloatArray) -> 
     k, m = len(i), second.shape[1] // 3
     corners = np.stack([mesh.tails[i], mesh.heads[i], mesh.tails[j], mesh.heads[j]], axis=1)
     index = (m * corners[:, :, None] + np.arange(m)).reshape(k, 4 * m)
-    spread = np.kron(_CORNERS, np.eye(m))
+    spread = np.kron(CORNERS, np.eye(m))
     blocks = spread @ second @ spread.T
     rows, columns = np.broadcast_arrays(index[:, :, None], index[:, None, :])
     size = mesh.size * m

@@ -136,14 +136,18 @@ class Rope:
     def _bent(self, curve: Curve, i: IntArray, j: IntArray, pairs: EdgePairs) -> Jet:
         """The barrier of corners, for both edges' bending radii."""
         ell, r = self._seen(curve).edge_lengths, self._tightest[curve.mesh.edge_component[i]]
-        a, b, c = pairs.inner(E, E).sqrt(), pairs.inner(F, F).sqrt(), pairs.inner(E, F)
-        cotangent = ((a * b + c) * (a * b - c).reciprocal()).sqrt()  # of half the angle
-        sides = ((a, ell[i]), (b, ell[j]))
+        sides = zip(bends(pairs), (ell[i], ell[j]), strict=True)
         first, second = (
-            _barrier((side * cotangent).scaled(0.5), r, self.bend * r, 0.5 * self.weight * length / r)
-            for side, length in sides
+            _barrier(radius, r, self.bend * r, 0.5 * self.weight * length / r) for radius, length in sides
         )
         return first + second
+
+
+def bends(pairs: EdgePairs) -> tuple[Jet, Jet]:
+    """The bending radii ℓ/(2 tan(θ/2)) at corners between edges e and f, by the length of either."""
+    a, b, c = pairs.inner(E, E).sqrt(), pairs.inner(F, F).sqrt(), pairs.inner(E, F)
+    cotangent = ((a * b + c) * (a * b - c).reciprocal()).sqrt()  # of half the angle
+    return (a * cotangent).scaled(0.5), (b * cotangent).scaled(0.5)
 
 
 def closest(pairs: EdgePairs) -> tuple[FloatArray, FloatArray, FloatArray]:

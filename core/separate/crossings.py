@@ -1,0 +1,119 @@
+"""The first embedded curve: centre lines that meet are led apart, and who went over whom is told."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import spsolve
+from scipy.spatial import cKDTree
+
+from ..base.errors import CurveError
+from ..base.messages import COMPONENT, Message
+from ..base.types import BoolArray, FloatArray
+from ..collision.gap import near_edges, scaled_points, written
+from ..curve import Curve, at_edges
+from ..curve.distances import arc_distance_of_pairs
+from ..curve.obstacle import Obstacle
+from ..energies.edge_pairs import CORNERS, EdgePairs
+from ..energies.rope import closest
+from .contacts import contacts
+
+MEETS = 1e-3  # centre lines meet that are nearer to each other than that part of the smallest radius
+AXES = {name: sign * np.eye(3)[axis] for sign, mark in ((1, ""), (-1, "-")) for axis, name in enumerate(
+    (f"{mark}x", f"{mark}y", f"{mark}z"))}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """Centre lines that met: the components, from 0, that went over and under, and where."""
+
+    over: int
+    under: int
+    place: tuple[float, float, float]
+
+    @property
+    def sentence(self) -> Message:
+        over, under = (Message(COMPONENT, number=each + 1) for each in (self.over, self.under))
+        return Message("{over} went over {under} near {place}", over=over, under=under, place=written(self.place))
+
+
+def lead_apart(
+    curve: Curve,
+    radius: FloatArray,
+    stiffness: sp.csr_array,
+    held: BoolArray,
+    over: str | None = None,
+    obstacles: Sequence[Obstacle] = (),
+) -> tuple[FloatArray, list[Crossing]]:
+    """Vertices, shape (n, 3), at which no centre lines meet, and the crossings that had no side to stay on.
+
+    Two that meet part along their common normal, or where they are parallel along the direction ``over``.  Those that
+    are apart, however little, stay on their sides; of others the later one goes over, as seen from that direction: an
+    axis such as z or -x, by default the one in which the curve extends least where it meets itself.  The displacement is
+    the smoothest one by the quadratic form of ``stiffness``, (n, n), that does so, times a factor so small that nothing
+    else is met.  A CurveError names strands that are ``held``, (n,), where they meet.
+    """
+    mesh, p = curve.mesh, curve.vertices
+    points, unit = scaled_points(curve)
+    meets = MEETS * float(radius.min())
+    found = [(i, j) for i, j, _ in near_edges(curve, points, lambda: float(np.ldexp(meets, -unit)) ** 2)]
+    i, j = np.sort([np.concatenate(each) for each in zip(*found, strict=True)], axis=0) if found else ((), ())
+    if not len(i):
+        return p, []
+    far = arc_distance_of_pairs(curve, i, j, 0.5) - 0.5 * (curve.edge_lengths[i] + curve.edge_lengths[j]) > meets
+    i, j = i[far], j[far]
+    pairs = EdgePairs.of(mesh, p, i, j)
+    chord, s, t = closest(pairs)
+    distance, tau = np.linalg.norm(chord, axis=1), curve.edge_vectors / curve.edge_lengths[:, None]
+    met = distance <= 1e-12 * np.abs(p).max()  # what is left of them is rounding
+    if not len(i):
+        return p, []
+    tangents = tau[np.concatenate([i, j])]
+    least = np.linalg.eigh(tangents.T @ tangents)[1][:, 0]
+    up = AXES[over] if over else least * np.sign(least[np.abs(least).argmax()])
+    normal = np.cross(tau[i], tau[j])
+    sine = np.linalg.norm(normal, axis=1)
+    parallel = sine < 1e-3
+    normal = np.where(parallel[:, None], up, normal / np.where(parallel, 1.0, sine)[:, None])
+    normal *= np.where(normal @ up < 0.0, -1.0, 1.0)[:, None]
+    # the later one has the greater height, so that three through a point agree
+    part = (np.arange(mesh.edges) - mesh.edge_offsets[:-1][mesh.edge_component]) / mesh.edges
+    height = mesh.edge_component + part
+    goal = np.where(met, height[i] - height[j], 1.0)
+    normal = np.where(met[:, None], normal, chord / np.where(met, 1.0, distance)[:, None])
+    shares = np.stack([np.ones_like(s), s, -t], axis=1) @ CORNERS.T
+    ends = np.stack([mesh.tails[i], mesh.heads[i], mesh.tails[j], mesh.heads[j]], axis=1)
+    stuck = (held[ends] | (np.abs(shares) < 1e-9)).all(axis=1)
+    if stuck.any():
+        k = int(stuck.argmax())
+        one, other = (Message(COMPONENT, number=int(mesh.edge_component[each[k]]) + 1) for each in (i, j))
+        place = shares[k, :2] @ p[ends[k, :2]]
+        pinned = "{one} and {other} are both held at {place}; move one of them, or leave its pin out"
+        raise CurveError(
+            Message(pinned, one=one, other=other, place=written(place)), at_edges(curve, (int(i[k]), int(j[k])), place)
+        )
+    k = len(i)
+    rows, columns = np.broadcast_arrays(np.arange(k)[:, None, None], 3 * ends[:, :, None] + np.arange(3))
+    values = shares[:, :, None] * normal[:, None]
+    A = sp.csr_array((values.ravel(), (rows.ravel(), columns.ravel())), shape=(k, p.size))[:, np.repeat(~held, 3)]
+    K = sp.kron(stiffness[~held][:, ~held], sp.eye_array(3))
+    firm = 1e6 * float(stiffness.diagonal().max())
+    u = np.zeros(p.size)
+    u[np.repeat(~held, 3)] = spsolve((K + firm * A.T @ A).tocsc(), firm * A.T @ goal)
+    u = u.reshape(-1, 3)
+    others = contacts(curve, radius, curve.edge_lengths, 0.1, obstacles)
+    apart = others.value * np.where(others.edges[:, 1] < 0, 1.0, 2.0) * float(radius.min())
+    room = float(apart[apart > meets].min(initial=0.1 * float(radius.min())))
+    crossings = []
+    if met.any():  # neighbouring pairs of edges are one crossing
+        near = cKDTree(np.stack([i[met], j[met]], axis=1)).query_pairs(1.5, output_type="ndarray")
+        graph = sp.coo_array((np.ones(len(near)), (near[:, 0], near[:, 1])), shape=(int(met.sum()),) * 2)
+        places = np.einsum("kc,kcm->km", shares[:, :2], p[ends[:, :2]])[met]
+        label = connected_components(graph, directed=False)[1]
+        for number in range(label.max() + 1):
+            first = int(np.flatnonzero(label == number)[0])
+            under, above = (int(mesh.edge_component[each[met][first]]) for each in (i, j))
+            crossings.append(Crossing(above, under, tuple(places[label == number].mean(axis=0).tolist())))
+    return p + 0.4 * room / np.linalg.norm(u, axis=1).max() * u, crossings
