@@ -33,7 +33,9 @@ def bundle(seed: int) -> tuple[Curve, tuple[int, int, float, float]]:
     for here, there in zip(below, below[rng.permutation(strands)], strict=True):
         flat = (1.0 - t) * here + t * there
         if seed % 2:
-            flat = flat + gap * (np.sin(np.pi * t) ** 2 * rng.normal(size=2) + np.sin(2 * np.pi * t) * rng.normal(size=2) / 2)
+            flat = flat + gap * (
+                np.sin(np.pi * t) ** 2 * rng.normal(size=2) + np.sin(2 * np.pi * t) * rng.normal(size=2) / 2
+            )
         made.append(np.hstack([flat, height * t]))
     return Curve.from_components(made, [False] * strands), (strands, points, packing, height)
 

@@ -65,8 +65,8 @@ def contacts(
 ) -> Contacts:
     """All quantities below ``within`` times what they need, for ropes of a radius for each component.
 
-    Edges of one component count if they are half a circle apart along the curve that is as much wider, so that those
-    of a straight one never do.  ``lengths`` are those of edges for the weights, shape (edges,).
+    Edges of one component count if they are half a circle of the radius, or of that part of it, apart along the curve:
+    those of a straight one never do.  ``lengths`` are those of edges for the weights, shape (edges,).
     """
     mesh, p = curve.mesh, curve.vertices
     own = radius[mesh.edge_component]
@@ -75,7 +75,7 @@ def contacts(
     found = [(i, j) for i, j, _ in near_edges(curve, points, lambda: float(np.ldexp(reach, -unit)) ** 2)]
     i, j = (np.concatenate(each) for each in zip(*found, strict=True)) if found else np.zeros((2, 0), np.intp)
     along = arc_distance_of_pairs(curve, i, j, 0.5) - 0.5 * (curve.edge_lengths[i] + curve.edge_lengths[j])
-    far = along > np.pi * max(within, 1.0) * own[i]
+    far = along > np.pi * min(within, 1.0) * own[i]
     i, j = i[far], j[far]
     chord, s, t = closest(EdgePairs.of(mesh, p, i, j))
     need = own[i] + own[j]

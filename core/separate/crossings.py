@@ -13,7 +13,7 @@ from ..base.errors import CurveError
 from ..base.messages import COMPONENT, Message
 from ..base.types import BoolArray, FloatArray
 from ..collision.gap import near_edges, scaled_points, written
-from ..curve import Curve, at_edges
+from ..curve import Curve, at_vertices
 from ..curve.distances import arc_distance_of_pairs
 from ..curve.obstacle import Obstacle
 from ..energies.edge_pairs import CORNERS, EdgePairs
@@ -51,13 +51,19 @@ def lead_apart(
 
     Two that meet part along their common normal, or where they are parallel along the direction ``over``.  Those that
     are apart, however little, stay on their sides; of others the later one goes over, as seen from that direction: an
-    axis such as z or -x, by default the one in which the curve extends least where it meets itself.  The displacement is
-    the smoothest one by the quadratic form of ``stiffness``, (n, n), that does so, times a factor so small that nothing
-    else is met.  A CurveError names strands that are ``held``, (n,), where they meet.
+    axis such as z or -x, by default the one in which the curve extends least where it meets itself.  The displacement
+    is the smoothest one by the quadratic form of ``stiffness``, (n, n), times a factor so small that nothing else is
+    met.  A CurveError names strands that are ``held``, (n,), where they meet.
     """
     mesh, p = curve.mesh, curve.vertices
-    points, unit = scaled_points(curve)
     meets = MEETS * float(radius.min())
+    pinned = np.flatnonzero(held)
+    for k, other in pinned[cKDTree(p[pinned]).query_pairs(meets, output_type="ndarray")][:1]:
+        parts = [Message(COMPONENT, number=int(mesh.component[each]) + 1) for each in (k, other)]
+        pinned = "{one} and {other} are both held at {place}; move one of them, or let go of it"
+        message = Message(pinned, one=parts[0], other=parts[1], place=written(p[k]))
+        raise CurveError(message, at_vertices(curve, int(k), int(other)))
+    points, unit = scaled_points(curve)
     found = [(i, j) for i, j, _ in near_edges(curve, points, lambda: float(np.ldexp(meets, -unit)) ** 2)]
     i, j = np.sort([np.concatenate(each) for each in zip(*found, strict=True)], axis=0) if found else ((), ())
     if not len(i):
@@ -78,22 +84,16 @@ def lead_apart(
     parallel = sine < 1e-3
     normal = np.where(parallel[:, None], up, normal / np.where(parallel, 1.0, sine)[:, None])
     normal *= np.where(normal @ up < 0.0, -1.0, 1.0)[:, None]
-    # the later one has the greater height, so that three through a point agree
-    part = (np.arange(mesh.edges) - mesh.edge_offsets[:-1][mesh.edge_component]) / mesh.edges
-    height = mesh.edge_component + part
+    # edges in a row that meet others are one pass; later ones are higher, so that three through a point agree
+    edges = np.unique([i, j])
+    on = edges[np.isin(mesh.next[edges], edges)]
+    row = sp.coo_array((np.ones(len(on)), (on, mesh.next[on])), shape=(mesh.edges, mesh.edges))
+    label = connected_components(row, directed=False)[1]  # in the order of their first edges
+    height = np.searchsorted(np.unique(label[edges]), label).astype(float)
     goal = np.where(met, height[i] - height[j], 1.0)
     normal = np.where(met[:, None], normal, chord / np.where(met, 1.0, distance)[:, None])
     shares = np.stack([np.ones_like(s), s, -t], axis=1) @ CORNERS.T
     ends = np.stack([mesh.tails[i], mesh.heads[i], mesh.tails[j], mesh.heads[j]], axis=1)
-    stuck = (held[ends] | (np.abs(shares) < 1e-9)).all(axis=1)
-    if stuck.any():
-        k = int(stuck.argmax())
-        one, other = (Message(COMPONENT, number=int(mesh.edge_component[each[k]]) + 1) for each in (i, j))
-        place = shares[k, :2] @ p[ends[k, :2]]
-        pinned = "{one} and {other} are both held at {place}; move one of them, or leave its pin out"
-        raise CurveError(
-            Message(pinned, one=one, other=other, place=written(place)), at_edges(curve, (int(i[k]), int(j[k])), place)
-        )
     k = len(i)
     rows, columns = np.broadcast_arrays(np.arange(k)[:, None, None], 3 * ends[:, :, None] + np.arange(3))
     values = shares[:, :, None] * normal[:, None]
@@ -106,14 +106,16 @@ def lead_apart(
     others = contacts(curve, radius, curve.edge_lengths, 0.1, obstacles)
     apart = others.value * np.where(others.edges[:, 1] < 0, 1.0, 2.0) * float(radius.min())
     room = float(apart[apart > meets].min(initial=0.1 * float(radius.min())))
-    crossings = []
-    if met.any():  # neighbouring pairs of edges are one crossing
-        near = cKDTree(np.stack([i[met], j[met]], axis=1)).query_pairs(1.5, output_type="ndarray")
-        graph = sp.coo_array((np.ones(len(near)), (near[:, 0], near[:, 1])), shape=(int(met.sum()),) * 2)
-        places = np.einsum("kc,kcm->km", shares[:, :2], p[ends[:, :2]])[met]
-        label = connected_components(graph, directed=False)[1]
-        for number in range(label.max() + 1):
-            first = int(np.flatnonzero(label == number)[0])
-            under, above = (int(mesh.edge_component[each[met][first]]) for each in (i, j))
-            crossings.append(Crossing(above, under, tuple(places[label == number].mean(axis=0).tolist())))
-    return p + 0.4 * room / np.linalg.norm(u, axis=1).max() * u, crossings
+    places = np.einsum("kc,kcm->km", shares[:, :2], p[ends[:, :2]])[met]
+    lower, higher = np.sort(label[np.stack([i, j])[:, met]], axis=0)
+    _, first, number = np.unique(lower * mesh.edges + higher, return_index=True, return_inverse=True)
+    lie_under = goal[met] < 0.0
+    under, above = (
+        mesh.edge_component[np.where(lie_under, *each)[first]] for each in ((i[met], j[met]), (j[met], i[met]))
+    )
+    crossings = [
+        Crossing(int(above[k]), int(under[k]), tuple(places[number == k].mean(axis=0).tolist()))
+        for k in range(len(first))
+    ]
+    furthest = max(float(np.linalg.norm(u, axis=1).max()), 1e-300)
+    return p + 0.4 * room / furthest * u, crossings
