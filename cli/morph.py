@@ -117,7 +117,7 @@ def _run_same(options: argparse.Namespace) -> int:
         if agreed and not options.avoid:
             emit(f"same: {agreed}")
             return 0
-        result = finish(iterates, tasks[0], wanted, way.append)
+        result = finish(iterates, tasks[0], way.append)
     except NoMotionError as error:
         emit(f"{'different' if isinstance(error, DifferentError) else 'not known'}: {error}")
         return 1

@@ -15,6 +15,7 @@ from .terminal import emit, sentence
 COMMANDS = {  # the module of each, which has add_COMMAND(parser), and what it does; see also `joined`
     "relax": ("relax", "relax a curve"),
     "morph": ("morph", "find a proved motion from one curve to another"),
+    "separate": ("separate", "make ropes of curves that run through each other"),
     "same": ("morph", "tell whether two curves are the same knot or link"),
     "energy": ("info", "print the energy of a curve"),
     "info": ("info", "identify the knot type of curves, and measure them"),

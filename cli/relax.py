@@ -129,7 +129,7 @@ def run_to_end(
                 options.notes.show()  # the curve is accepted: there will be no refusal
             draw(iterate)
 
-        return finish(signals.interruptible(relaxation), task, wanted, on_iterate), iterates
+        return finish(signals.interruptible(relaxation), task, on_iterate), iterates
 
 
 def write_results(
@@ -189,15 +189,15 @@ def write_results(
         raise MobiusFlowError("; ".join(failures))
     signals.allow()
     if not options.quiet:
-        print(_said(options, result, iterates[0].curve, falls="to" not in origin), file=sys.stderr)
+        print(_said(options, result, iterates[0]), file=sys.stderr)
 
 
-def _said(options: argparse.Namespace, result: Result, first: Curve, falls: bool) -> str:
+def _said(options: argparse.Namespace, result: Result, start: Iterate) -> str:
     """How a run ended, what it reached, what was written, and what to do next.
 
     Energies have the digits that the mesh leaves them; those of a motion that does not fall are no achievement.
     """
-    failed = EXIT_STATUS[result.status] != 0
+    falls, failed = options.command == "relax", EXIT_STATUS[result.status] != 0
     mark, colour = ("✓", GREEN) if result.outcome.converged else ("✗", RED) if failed else ("–", YELLOW)
     took = counted(result.iterations, "iteration"), f"{result.seconds:.1f} s", f"{len(result.curve)} vertices"
     reason, *notes = result.outcome.clauses
@@ -207,12 +207,12 @@ def _said(options: argparse.Namespace, result: Result, first: Curve, falls: bool
     if not following and Path(options.output).suffix.lower() in written_formats():
         following = ["info", options.output]
     certified = "no contact on the whole path" if result.certified else "NO: contact is not ruled out everywhere"
-    if result.certified and result.last.radius:
+    if result.certified and result.last.radius and result.last.radius == start.radius:
         radii = ", ".join(f"{radius:.4g}" for radius in dict.fromkeys(result.last.radius))
         certified = f"a rope of radius {radii} on the whole path"
     rows = [
         ("reason", told),
-        *(_energies(result, first, options.tolerance) if falls else ()),
+        *(_energies(result, start.curve, options.tolerance) if falls else ()),
         ("certified", certified),
         *(("note", note) for note in notes),
         ("wrote", [quoted(path) for path in written]),

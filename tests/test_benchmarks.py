@@ -10,6 +10,7 @@ from soak import flow
 
 BENCHMARKS = Path(__file__).resolve().parents[1] / "benchmarks"
 ARGUMENTS = {
+    "bundles": ["1"],
     "batch": ["many", "2"],
     "collision": ["curves", "60"],
     "hops": ["T34", "--hops", "1"],

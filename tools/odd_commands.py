@@ -41,6 +41,7 @@ VALUES = ["", "-1", "0", "nan", "inf", "-inf", "1e999", "1e-999", "-0", "9" * 50
 VALUES += ["-", "a\nb", "٣", "\0", "\ufeff", "é", "🙂", "{", "]"]
 COMMANDS = {  # what each takes at least; IN is a good curve
     "relax": f"IN out.txt {SHORT}",
+    "separate": "IN out.txt --radius 0.1",
     "energy": "IN",
     "info": "IN",
     "knot": "3_1 k.txt",

@@ -113,30 +113,28 @@ def minimize(
     After a keyboard interrupt, or if memory runs out, the result is the curve reached so far.  ``callback`` gets every
     iterate, unless an interrupt cuts it short.  Raises as `relax` does.
     """
-    return finish(relax(curve, options), Task.of(curve), options or RelaxOptions(), callback)
+    return finish(relax(curve, options), Task.of(curve), callback)
 
 
-def finish(
-    relaxation: Relaxation, task: Task, options: RelaxOptions, callback: Callable[[Iterate], None] | None = None
-) -> Result:
-    """Run the relaxation of a task with some options to its end, as `minimize` does."""
+def finish(relaxation: Relaxation, task: Task, callback: Callable[[Iterate], None] | None = None) -> Result:
+    """Run the relaxation of a task to its end, as `minimize` does; the requested method is the start's."""
     started = time.perf_counter()
     energies: list[float] = []
     fallback: list[int] = []
     last: Iterate | None = None
-    given = 0  # vertices at the start
+    given, method = 0, ""  # vertices at the start, and the method that was requested
     meshes: list[tuple[int, int, float]] = []  # vertices, and when the mesh was new: iterate, seconds
     thinnest = math.inf
     run, cut_short = WithOutcome(relaxation), False
     try:
         for last in run:
-            given = given or len(last.curve)
+            given, method = given or len(last.curve), method or last.method
             energies.append(last.energy)
             moves = last.strand_moves
             iterations = last.index - (moves.iterates if moves else 0)
             if not last.path and (moves is None or moves.done):
                 meshes.append((len(last.curve), iterations, time.perf_counter() - started if meshes else 0.0))
-            if last.method != options.method:
+            if last.method != method:
                 fallback.append(last.index)
             if last.radius is not None:
                 thinnest = min(thinnest, thickness(last.curve))
@@ -160,4 +158,4 @@ def finish(
     ends = pairwise([*meshes, (0, iterations, seconds)])
     phases = tuple(Phase(size, end - begun, until - since) for (size, begun, since), (_, end, until) in ends)
     least = thinnest if math.isfinite(thinnest) else None
-    return Result(run.outcome, last, tuple(energies), tuple(fallback), seconds, options.method, task, phases, least)
+    return Result(run.outcome, last, tuple(energies), tuple(fallback), seconds, method, task, phases, least)

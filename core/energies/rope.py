@@ -124,22 +124,16 @@ class Rope:
         return self.radius if self.tightest is None else self.tightest
 
     def _apart(self, curve: Curve, i: IntArray, j: IntArray, pairs: EdgePairs) -> Jet:
-        """The barrier between strands; the distance changes as if its closest points stayed on their edges' places."""
-        chord, s, t = closest(pairs)
-        d = np.sqrt(np.einsum("km,km->k", chord, chord))
-        unit = chord / np.where(d == 0, 1.0, d)[:, None]
-        distance = Jet(d, np.concatenate([unit, s[:, None] * unit, -t[:, None] * unit], axis=1))
+        """The barrier between strands."""
         ell, r = self._seen(curve).edge_lengths, self.radius[curve.mesh.edge_component]
         width = r[i] + r[j]
-        return _barrier(distance, width, self.reach * width, self.weight * ell[i] * ell[j] / (0.5 * width) ** 2)
+        return _barrier(distance(pairs), width, self.reach * width, self.weight * ell[i] * ell[j] / (0.5 * width) ** 2)
 
     def _bent(self, curve: Curve, i: IntArray, j: IntArray, pairs: EdgePairs) -> Jet:
         """The barrier of corners, for both edges' bending radii."""
         ell, r = self._seen(curve).edge_lengths, self._tightest[curve.mesh.edge_component[i]]
         sides = zip(bends(pairs), (ell[i], ell[j]), strict=True)
-        first, second = (
-            _barrier(radius, r, self.bend * r, 0.5 * self.weight * length / r) for radius, length in sides
-        )
+        first, second = (_barrier(radius, r, self.bend * r, 0.5 * self.weight * length / r) for radius, length in sides)
         return first + second
 
 
@@ -148,6 +142,14 @@ def bends(pairs: EdgePairs) -> tuple[Jet, Jet]:
     a, b, c = pairs.inner(E, E).sqrt(), pairs.inner(F, F).sqrt(), pairs.inner(E, F)
     cotangent = ((a * b + c) * (a * b - c).reciprocal()).sqrt()  # of half the angle
     return (a * cotangent).scaled(0.5), (b * cotangent).scaled(0.5)
+
+
+def distance(pairs: EdgePairs) -> Jet:
+    """The distances of k pairs of edges, which change as if closest points stayed in their places on the edges."""
+    chord, s, t = closest(pairs)
+    d = np.sqrt(np.einsum("km,km->k", chord, chord))
+    unit = chord / np.where(d == 0, 1.0, d)[:, None]
+    return Jet(d, np.concatenate([unit, s[:, None] * unit, -t[:, None] * unit], axis=1))
 
 
 def closest(pairs: EdgePairs) -> tuple[FloatArray, FloatArray, FloatArray]:

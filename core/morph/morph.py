@@ -55,7 +55,7 @@ def morph(
     task, wanted = Task.of(a), options or RelaxOptions()
     if wanted.radius != "none":
         raise OptionError("radius is kept by relaxations, but not by morphs; leave it out")
-    return finish(morphing((task, Task.of(b)), wanted, NAMES), task, wanted, callback)
+    return finish(morphing((task, Task.of(b)), wanted, NAMES), task, callback)
 
 
 def morphing(tasks: Sequence[Task], options: RelaxOptions, names: Sequence[str]) -> Relaxation:

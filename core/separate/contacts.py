@@ -14,15 +14,15 @@ from typing import NamedTuple
 import numpy as np
 import scipy.sparse as sp
 
-from ..base.types import FloatArray, IntArray
+from ..base.types import BoolArray, FloatArray, IntArray
 from ..collision.boxes import BoxTree, Level, still_triangles
 from ..collision.gap import near_edges, scaled_points, squared_gaps
 from ..curve import Curve
 from ..curve.distances import arc_distance_of_pairs
 from ..curve.measures import bending_radii
 from ..curve.obstacle import Obstacle
-from ..energies.edge_pairs import CORNERS, EdgePairs, Jet
-from ..energies.rope import bends, closest
+from ..energies.edge_pairs import CORNERS, EdgePairs
+from ..energies.rope import bends, closest, distance
 
 
 class Contacts(NamedTuple):
@@ -73,15 +73,13 @@ def contacts(
     reach = within * 2.0 * float(radius.max())
     points, unit = scaled_points(curve)
     found = [(i, j) for i, j, _ in near_edges(curve, points, lambda: float(np.ldexp(reach, -unit)) ** 2)]
-    i, j = (np.concatenate(each) for each in zip(*found, strict=True)) if found else np.zeros((2, 0), np.intp)
+    none = np.zeros(0, dtype=np.intp)
+    i, j = (np.concatenate(each) for each in zip((none, none), *found, strict=True))
     along = arc_distance_of_pairs(curve, i, j, 0.5) - 0.5 * (curve.edge_lengths[i] + curve.edge_lengths[j])
     far = along > np.pi * min(within, 1.0) * own[i]
     i, j = i[far], j[far]
-    chord, s, t = closest(EdgePairs.of(mesh, p, i, j))
     need = own[i] + own[j]
-    unit_chord, x = _normalised(chord)
-    first = np.concatenate([unit_chord, s[:, None] * unit_chord, -t[:, None] * unit_chord], axis=1)
-    parts = [(Jet(x, first), i, j, need, lengths[i] * lengths[j] / (0.5 * need) ** 2)]
+    parts = [(distance(EdgePairs.of(mesh, p, i, j)), i, j, need, lengths[i] * lengths[j] / (0.5 * need) ** 2)]
     bent = mesh.inner[(bending_radii(curve) < within * radius[mesh.component])[mesh.inner]]
     before, after = mesh.incoming[bent], mesh.outgoing[bent]
     for jet, edge in zip(bends(EdgePairs.of(mesh, p, before, after)), (before, after), strict=True):
@@ -109,11 +107,12 @@ def _with_obstacles(
     points, nearest = np.ldexp(curve.vertices.T, -exponent, order="C"), float(np.ldexp(reach, -exponent))
     tree = BoxTree.build(mesh, points, points)
 
-    def near(level: Level, a: IntArray, other: Level, b: IntArray) -> IntArray:
+    def near(level: Level, a: IntArray, other: Level, b: IntArray) -> BoolArray:
         return squared_gaps(level.gaps(a, other, b)) <= nearest**2
 
     found = [*tree.pairs_with(still.tree, near)]
-    a, b = (np.concatenate(each) for each in zip(*found, strict=True)) if found else np.zeros((2, 0), np.intp)
+    none = np.zeros(0, dtype=np.intp)
+    a, b = (np.concatenate(each) for each in zip((none, none), *found, strict=True))
     edge, triangle = tree.order[a], still.tree.order[b]
     corners = still.vertices[still.tree.corners[:, b]]
     ends = np.stack([mesh.tails[edge], mesh.heads[edge]], axis=1)
@@ -127,24 +126,20 @@ def _with_obstacles(
     f, g = corners[1] - corners[0], corners[2] - corners[0]
     normal = np.cross(f, g)
     whole = np.maximum(np.einsum("km,km->k", normal, normal), np.finfo(np.float64).tiny)
-    for end, s in ((p, -0.5), (q, 0.5)):  # above the inside of the triangle
+    for end, place in ((p, -0.5), (q, 0.5)):  # above the inside of the triangle
         D = end - corners[0]
         r, t = (np.einsum("km,km->k", np.cross(*each), normal) for each in ((D, g), (f, D)))
         inside = (r > 0.0) & (t > 0.0) & (r + t < whole)
         chord = normal * (np.einsum("km,km->k", D, normal) / whole)[:, None]
         chords.append(np.where(inside[:, None], chord, np.inf))
-        places.append(np.full(len(edge), s))
+        places.append(np.full(len(edge), place))
     which = np.argmin([np.einsum("km,km->k", each, each) for each in chords], axis=0)
     chord, s = (np.stack(each)[which, np.arange(len(edge))] for each in (chords, places))
-    unit, distance = _normalised(chord)
-    kept = distance < within * radius[edge]
+    d = np.sqrt(np.einsum("km,km->k", chord, chord))
+    unit = chord / np.where(d == 0.0, 1.0, d)[:, None]
+    kept = d < within * radius[edge]
     edge, unit, s, need = edge[kept], unit[kept], s[kept], radius[edge[kept]]
     first = np.stack([0.5 - s, 0.5 + s, 0.0 * s, 0.0 * s], axis=1)[:, :, None] * unit[:, None] / need[:, None, None]
     four = np.concatenate([ends[kept], ends[kept]], axis=1)
     pairs = np.stack([edge, -1 - triangle[kept]], axis=1)
-    return Contacts(distance[kept] / need, first, four, lengths[edge] / need, pairs)
-
-
-def _normalised(vectors: FloatArray) -> tuple[FloatArray, FloatArray]:
-    length = np.sqrt(np.einsum("km,km->k", vectors, vectors))
-    return vectors / np.where(length == 0.0, 1.0, length)[:, None], length
+    return Contacts(d[kept] / need, first, four, lengths[edge] / need, pairs)

@@ -21,8 +21,7 @@ from ..energies.rope import closest
 from .contacts import contacts
 
 MEETS = 1e-3  # centre lines meet that are nearer to each other than that part of the smallest radius
-AXES = {name: sign * np.eye(3)[axis] for sign, mark in ((1, ""), (-1, "-")) for axis, name in enumerate(
-    (f"{mark}x", f"{mark}y", f"{mark}z"))}  # fmt: skip
+AXES = {f"{sign}{name}": float(f"{sign}1") * np.eye(3)[k] for sign in ("", "-") for k, name in enumerate("xyz")}
 
 
 @dataclass(frozen=True)
@@ -36,7 +35,9 @@ class Crossing:
     @property
     def sentence(self) -> Message:
         over, under = (Message(COMPONENT, number=each + 1) for each in (self.over, self.under))
-        return Message("{over} went over {under} near {place}", over=over, under=under, place=written(self.place))
+        return Message(
+            "{over} went over {under} near {place}", over=over, under=under, place=written(np.array(self.place))
+        )
 
 
 def lead_apart(
@@ -60,22 +61,20 @@ def lead_apart(
     pinned = np.flatnonzero(held)
     for k, other in pinned[cKDTree(p[pinned]).query_pairs(meets, output_type="ndarray")][:1]:
         parts = [Message(COMPONENT, number=int(mesh.component[each]) + 1) for each in (k, other)]
-        pinned = "{one} and {other} are both held at {place}; move one of them, or let go of it"
-        message = Message(pinned, one=parts[0], other=parts[1], place=written(p[k]))
+        both = "{one} and {other} are both held at {place}; move one of them, or let go of it"
+        message = Message(both, one=parts[0], other=parts[1], place=written(p[k]))
         raise CurveError(message, at_vertices(curve, int(k), int(other)))
+    none = np.zeros(0, dtype=np.intp)
     points, unit = scaled_points(curve)
     found = [(i, j) for i, j, _ in near_edges(curve, points, lambda: float(np.ldexp(meets, -unit)) ** 2)]
-    i, j = np.sort([np.concatenate(each) for each in zip(*found, strict=True)], axis=0) if found else ((), ())
-    if not len(i):
-        return p, []
+    i, j = np.sort([np.concatenate(each) for each in zip((none, none), *found, strict=True)], axis=0)
     far = arc_distance_of_pairs(curve, i, j, 0.5) - 0.5 * (curve.edge_lengths[i] + curve.edge_lengths[j]) > meets
     i, j = i[far], j[far]
-    pairs = EdgePairs.of(mesh, p, i, j)
-    chord, s, t = closest(pairs)
-    distance, tau = np.linalg.norm(chord, axis=1), curve.edge_vectors / curve.edge_lengths[:, None]
-    met = distance <= 1e-12 * np.abs(p).max()  # what is left of them is rounding
     if not len(i):
         return p, []
+    chord, s, t = closest(EdgePairs.of(mesh, p, i, j))
+    distance, tau = np.linalg.norm(chord, axis=1), curve.edge_vectors / curve.edge_lengths[:, None]
+    met = distance <= 1e-12 * np.abs(p).max()  # what is left of them is rounding
     tangents = tau[np.concatenate([i, j])]
     least = np.linalg.eigh(tangents.T @ tangents)[1][:, 0]
     up = AXES[over] if over else least * np.sign(least[np.abs(least).argmax()])

@@ -76,6 +76,17 @@ FINE: dict[str, tuple[Callable[..., object], dict[str, object]]] = {
     "Hand.release": (core.Hand().release, {"pin": True}),
     "minimize": (minimize, {"curve": TREFOIL, "options": SHORT, "callback": lambda *_: None}),
     "morph": (core.morph, {"a": TREFOIL, "b": TREFOIL, "options": SHORT, "callback": lambda *_: None}),
+    "separate": (
+        core.separate,
+        {
+            "curve": TREFOIL,
+            "radius": 0.01,
+            "over": "z",
+            "lengths": "keep",
+            "free_ends": True,
+            "callback": lambda *_: None,
+        },
+    ),
     "Iterate": (Iterate, vars(START)),
     "Outcome": (Outcome, {"status": Status.STALLED, "clauses": ("stuck",), "place": None}),
     "Result": (Result, vars(minimize(TREFOIL, SHORT))),

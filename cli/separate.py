@@ -1,0 +1,79 @@
+"""``mobius-flow separate``: curves that are nearer than their radii become ropes that keep clear."""
+
+import argparse
+from dataclasses import asdict
+
+from ..core import RelaxOptions
+from ..core.base.errors import OptionError
+from ..core.separate import Separated, SeparateOptions, separating
+from ..core.separate.crossings import AXES
+from . import curves
+from . import options as relax_options
+from .places import check_holds, check_output, check_places
+from .relax import EXIT_STATUS, add_outputs, places, run_to_end, write_results
+
+_EPILOG = """\
+examples:
+  mobius-flow separate cables.obj clear.obj --radius 0.05 --report report.json --trajectory path.npz
+  mobius-flow separate drawing.txt clear.txt --radius 0.5 --over z
+  mobius-flow separate hair.obj clear.obj --radius 0.02 --lengths keep --free-ends --pin 1,21,41
+
+Curves are moved as little as their radii allow. Where centre lines meet, the later component goes over the earlier one,
+and the report says so, with the place; from there on every motion is proved. The ends of open curves are held.
+
+exit status:
+  0    all ropes keep clear
+  1    there is less room, or lengths cannot be kept; one line says where, and what was reached is written
+  2    bad input or bad options, or an output that cannot be written; one line says what and where
+  130  interrupted by Ctrl-C, SIGTERM or SIGHUP; what was reached is written
+"""
+
+
+def add_separate(parser: argparse.ArgumentParser) -> None:
+    parser.description, parser.epilog = "Make ropes of curves that run through each other.", _EPILOG
+    curves.add_input(parser, "polygons, closed or open")
+    text = "radius of the ropes, one or one for each component with commas between"
+    parser.add_argument("--radius", metavar="R,R,…", required=True, help=text)
+    text = f"axis on whose side the later of two curves that meet goes over: {', '.join(AXES)}, such as --over=-z "
+    text += "(default: the direction in which they extend least there)"
+    parser.add_argument("--over", metavar="AXIS", help=text)
+    text = "whether edges may change their lengths: free or keep (default: free)"
+    parser.add_argument("--lengths", metavar="L", default="free", help=text)
+    parser.add_argument(
+        "--free-ends", action="store_true", help="hold the ends of open curves only where they are pins"
+    )
+    text = "stop after this many seconds of computing; what was reached so far is kept (default: no limit)"
+    parser.add_argument("--time-limit", metavar="SECONDS", type=float, help=text)
+    add_outputs(parser)
+    relax_options.add_task(parser)
+    parser.set_defaults(run=_run)
+
+
+def _run(options: argparse.Namespace) -> int:
+    """Separate, write every requested output, and return the exit status."""
+    check_output(options.output, options.format, options.look, options.loop or options.constant_radius)
+    try:
+        radius = tuple(map(float, options.radius.split(",")))
+    except ValueError:
+        raise OptionError(f"radius is {options.radius!r:.40}; give a number such as 0.1, or several: 0.1,0.2") from None
+    wanted = SeparateOptions(
+        radius=radius,
+        over=options.over,
+        lengths=options.lengths,
+        free_ends=options.free_ends,
+        time_limit=options.time_limit,
+    )
+    check_places(relax_options.inputs(options), places(options))
+    file = curves.read(options.input, options.format)
+    with curves.refusals(file):
+        task = relax_options.task(options, file)
+    check_holds(options.output, options.format, file.curve)
+    settings = asdict(wanted) | {"pins": task.pins, "avoid": [each.name for each in task.obstacles]}
+    origin = relax_options.provenance(settings, str(file.source.path), file.source.sha256)
+    with curves.refusals(file):
+        result, iterates = run_to_end(separating(task, wanted), task, RelaxOptions(), options)
+    if isinstance(result.outcome, Separated):
+        crossings = [asdict(each) for each in result.outcome.crossings]
+        origin |= {"share": result.outcome.share, "moved": result.outcome.moved, "crossings": crossings}
+    write_results(options, result, iterates, origin)
+    return EXIT_STATUS[result.status]
