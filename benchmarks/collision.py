@@ -64,9 +64,8 @@ def sphere(latitudes: int, bumps: float = 0.0) -> Obstacle:
     points = (radius * np.array([np.sin(p) * np.cos(q), np.sin(p) * np.sin(q), np.cos(p)])).reshape(3, -1).T
     i, j = np.indices((n - 1, n)).reshape(2, -1)
     a, b = n * i + j, n * i + (j + 1) % n
-    return Obstacle(
-        points, np.concatenate([[a, b, b + n], [a, b + n, a + n]], axis=1).T, "bumpy" if bumps else "sphere"
-    )
+    faces = np.concatenate([[a, b, b + n], [a, b + n, a + n]], axis=1).T
+    return Obstacle(points, faces, "bumpy" if bumps else "sphere")
 
 
 def field(points: FloatArray, waves: int) -> FloatArray:
@@ -114,10 +113,8 @@ def curves(sizes: Sequence[int]) -> None:
 
 def obstacle(sizes: Sequence[int], given: Obstacle) -> None:
     print(f"{given.name}, {len(given.faces)} triangles")
-    show(
-        "share of the room",
-        ("vertices", "contact at", "alone", "avoiding", "proof alone", "avoiding", "clear", "verify", "obstacle"),
-    )
+    titles = ("vertices", "contact at", "alone", "avoiding", "proof alone", "avoiding", "clear", "verify", "obstacle")
+    show("share of the room", titles)
     middle = 0.5 * (given.vertices.min(axis=0) + given.vertices.max(axis=0))
     reach = float(np.linalg.norm(given.vertices - middle, axis=1).min())
     for n, share in ((n, share) for n in sizes for share in (0.3, 0.6, 0.9)):  # of the largest curve that fits
@@ -140,10 +137,8 @@ def obstacle(sizes: Sequence[int], given: Obstacle) -> None:
 
 
 def repulsion(sizes: Sequence[int], surface: Obstacle) -> None:
-    show(
-        "obstacle, knot",
-        ("vertices", "simplices", "single", "clusters", "tree", "schedule", "suits", "R and DR", "error"),
-    )
+    titles = ("vertices", "simplices", "single", "clusters", "tree", "schedule", "suits", "R and DR", "error")
+    show("obstacle, knot", titles)
     sides = np.sort(np.concatenate([surface.faces[:, [i, i - 1]] for i in range(3)]), axis=1)
     net = Obstacle(surface.vertices, np.unique(sides, axis=0), "net")
     for n, shape in ((n, shape) for n in sizes for shape in (surface, net)):
@@ -194,14 +189,13 @@ def main() -> None:
     parser.add_argument("--latitudes", type=int, default=120, metavar="N", help="of spheres (default: 120)")
     given = parser.parse_args()
     sizes = given.sizes or SIZES[given.table]
-    if given.table == "curves":
-        curves(sizes)
-    elif given.table == "obstacle":
-        obstacle(sizes, read_obstacle(given.mesh) if given.mesh else sphere(given.latitudes, 0.1))
-    elif given.table == "repulsion":
-        repulsion(sizes, sphere(given.latitudes))
-    else:
-        motions(sizes[0])
+    tables = {
+        "curves": lambda: curves(sizes),
+        "obstacle": lambda: obstacle(sizes, read_obstacle(given.mesh) if given.mesh else sphere(given.latitudes, 0.1)),
+        "repulsion": lambda: repulsion(sizes, sphere(given.latitudes)),
+        "motions": lambda: motions(sizes[0]),
+    }
+    tables[given.table]()
 
 
 if __name__ == "__main__":

@@ -31,9 +31,8 @@ Curves = Mapping[str, Callable[[], Curve]]
 HARD: Curves = {
     **{f"unknot-{c}": partial(hard_unknot, c, seed=c) for c in (20, 60, 100, 141)},
     **{f"unknot-lattice-{c}": partial(lattice_unknot, c, seed=c) for c in (20, 40, 60, 80, 100, 120, 141)},
-    **{
-        f"unknot-{name}": partial(knot, name) for name in HARD_UNKNOTS if name != "haken"
-    },  # 141 crossings take more vertices to untangle
+    # haken's 141 crossings take more vertices to untangle
+    **{f"unknot-{name}": partial(knot, name) for name in HARD_UNKNOTS if name != "haken"},
     "unknot-scrambled": lambda: scramble(knot("0_1"), seed=11),
     "unknot-spiral": lambda: spiral(6.0),
     "unknot-rope": lambda: rope(6.0, 0.02),
@@ -59,8 +58,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = parser.parse_args(arguments)
     curves = SETS[given.set]
     names = [name.strip() for name in given.only.split(",")] if given.only else list(curves)
-    unknown = [name for name in names if name not in curves]
-    if unknown:
+    if unknown := [name for name in names if name not in curves]:
         parser.error(f"curve {unknown[0]!r} is unknown; choose from {', '.join(curves)}")
     try:
         wanted = relax_options.from_arguments(given)

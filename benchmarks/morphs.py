@@ -29,8 +29,6 @@ PERKO = (
     "Gauss: U1+O2+U3+U4+O5+O6+U7+U8+O9+O1+U2+O3+O10-U5+O8+U9+O4+U10-U6+O7+",
     "Gauss: O1+U8+O2+U1+O4+U7+U9+O6+U5+O3+O7+U10+O8+U2+U6+O9+O10+U4+U3+O5+",
 )
-
-
 KINDS: Mapping[str, Callable[[str], Curve]] = {
     "lattice": lattice_knot, "braid": knot, "smooth": smooth_knot, "unknot": knot, "code": coded_knot,
     "diagram": lambda name: drawn(knot_type(knot(name)).diagram),  # reduced, with straight lines, and lifted
@@ -98,10 +96,8 @@ def row(name: str) -> bool:
         verified = time.process_time()
         alone = check(Path(room, "t.npz"))
     checked = time.process_time()
-    exact = all(
-        sorted(given.vertices.tolist()) == sorted(shown.vertices.tolist())
-        for given, shown in ((a, way[0].curve), (b, way[-1].curve))
-    )
+    ends = ((a, way[0].curve), (b, way[-1].curve))
+    exact = all(sorted(x.vertices.tolist()) == sorted(y.vertices.tolist()) for x, y in ends)
     apart = re.search(r"met, (\S+)", result.message)
     print(
         f"{name:9} {words:42.42} {len(a):4} {len(b):4} {max(len(each.curve) for each in way):5} "

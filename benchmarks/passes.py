@@ -12,7 +12,7 @@ import time
 from pathlib import Path
 
 from hard_curves import hard_unknot
-from mobius_flow.core import Iterate, Trajectory, read_curve
+from mobius_flow.core import Iterate, Trajectory, WithOutcome, read_curve
 from mobius_flow.core.knots import HARD_UNKNOTS, knot, knot_type, scramble
 from mobius_flow.core.knots.diagrams import views
 from mobius_flow.core.proof import verify
@@ -27,19 +27,14 @@ def main() -> None:
     if not curves:
         curves = {name: knot(name) for name in HARD_UNKNOTS}
         curves |= {f"random {crossings}": hard_unknot(crossings, seed=1) for crossings in (100, 200, 300)}
-        curves |= {
-            f"scrambled {name}": scramble(knot(name, 100), 1, moves=6000) for name in ("5_2", "7_4", "8_19", "L6a4")
-        }
+        names = ("5_2", "7_4", "8_19", "L6a4")
+        curves |= {f"scrambled {name}": scramble(knot(name, 100), 1, moves=6000) for name in names}
     columns = ("curve", "vertices", "crossings", "left", "moves", "meshes", "legs", "s", "verified", "type")
     print("|", " | ".join(columns), "|\n" + "|---" * len(columns) + "|", flush=True)
     for name, curve in curves.items():
         seen = min((view.crossings for view in views(curve, 12)), default=0)
-        began, stages, work = time.process_time(), [], untangled(curve)
-        try:
-            while True:
-                stages.append(next(work))
-        except StopIteration as end:
-            found = end.value
+        began, work = time.process_time(), WithOutcome(untangled(curve))
+        stages, found = list(work), work.outcome
         seconds = time.process_time() - began
         trajectory = Trajectory()
         frames = [(curve, ()), *((each, path) for s in stages for each, path in ((s.start, ()), (s.end, s.path)))]

@@ -43,7 +43,7 @@ from mobius_flow.core.energies.barrier import near_pairs
 from mobius_flow.core.energies.hierarchy import HierarchicalMoebiusEnergy
 
 ASYMPTOTIC = 2000  # vertices from which times are expected to follow a power law
-Row = Mapping[str, Any]
+Row = dict[str, Any]
 
 
 def seconds_of(task: Callable[[], object]) -> float:
@@ -142,9 +142,8 @@ def tell(speed: Mapping[str, float], rows: Iterable[Row]) -> None:
     """Print the rows as they come, then the conclusions from all of them."""
 
     def line(row: Row, unit: float) -> str:
-        return f"{row['vertices']:8d} {row['solver']:12}" + "".join(
-            f" {x / unit:10.3f}" for x in row["seconds"].values()
-        )
+        times = "".join(f" {x / unit:10.3f}" for x in row["seconds"].values())
+        return f"{row['vertices']:8d} {row['solver']:12}{times}"
 
     done: list[Row] = []
     for row in rows:
@@ -201,9 +200,8 @@ def main() -> int:
     relax_options.add_to(parser)
     given = parser.parse_args()
     if given.draw:
-        draw(
-            given.draw, [row for path in given.figures for row in json.loads(path.read_text(encoding="utf-8"))["rows"]]
-        )
+        figures = (json.loads(path.read_text(encoding="utf-8")) for path in given.figures)
+        draw(given.draw, [row for each in figures for row in each["rows"]])
         return 0
     sizes = [int(word) for word in given.sizes.split(",")]
     if min(sizes) < 60:
@@ -216,11 +214,9 @@ def main() -> int:
             return 0
         done = list(rows)
         units = {"in_products": speed["product"], "in_copies": speed["copy"]}
-        plain = [
-            {**row, **{name: {k: x / unit for k, x in row["seconds"].items()} for name, unit in units.items()}}
-            for row in done
-        ]
-        report = {"machine": speed, "rows": plain, "exponents": exponents(done), "options": vars(wanted)}
+        for row in done:
+            row |= {name: {k: x / unit for k, x in row["seconds"].items()} for name, unit in units.items()}
+        report = {"machine": speed, "rows": done, "exponents": exponents(done), "options": vars(wanted)}
         print(json.dumps(report | relax_options.environment(), indent=1))
     except MobiusFlowError as error:
         parser.error(str(error))

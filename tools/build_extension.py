@@ -29,10 +29,8 @@ PLATFORMS = {
 DEBIAN = "-cp314-"  # the Python of Debian's Blender, which Blender's own builds do not have
 ANY = "-none-any"  # wheels without compiled code
 PINS = ROOT / "tools" / "wheels.sha256"
-WHEELS = {
-    name: digest
-    for digest, name in (line.split() for line in PINS.read_text(encoding="utf-8").splitlines() if line[0] != "#")
-}
+LINES = (line.split() for line in PINS.read_text(encoding="utf-8").splitlines() if line[0] != "#")
+WHEELS = {name: digest for digest, name in LINES}
 
 
 def main() -> int:

@@ -47,13 +47,9 @@ def methods() -> str:
     page, rows = (ROOT / "docs/methods.md").read_text(encoding="utf-8"), []
     headings = re.findall(r"^## (.+: `.+)$", page, re.MULTILINE)
     for name, each in METHODS.items():
-        link = f"`{name}`"
-        for heading in headings:  # anchors as GitHub and MyST make them
-            if any(fnmatchcase(name, pattern) for pattern in re.findall(r"`(\S+)`", heading)):
-                anchor = re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-")
-                link = f"[`{name}`](#{anchor})"
-                break
-        rows.append((link, typeset(each.description)))
+        own = (h for h in headings if any(fnmatchcase(name, pattern) for pattern in re.findall(r"`(\S+)`", h)))
+        anchor = re.sub(r"[^\w -]", "", next(own, "").lower()).replace(" ", "-")  # as GitHub and MyST make them
+        rows.append((f"[`{name}`](#{anchor})" if anchor else f"`{name}`", typeset(each.description)))
     return table(("name", "what it is"), rows)
 
 
@@ -62,9 +58,8 @@ def options() -> str:
     rows = []
     for each in declared(RelaxOptions):
         default = "" if each.kind is bool or each.repeated else f" (default: {each.automatic or each.default})"
-        rows.append(
-            (f"`{flag(each)} {'' if each.kind is bool else each.metavar}".rstrip() + "`", each.phrase + default)
-        )
+        option = f"{flag(each)} {'' if each.kind is bool else each.metavar}".rstrip()
+        rows.append((f"`{option}`", each.phrase + default))
     return definitions(rows)
 
 

@@ -23,9 +23,8 @@ def main() -> int:
         down, right = (SIDE * each for each in divmod(k, COLUMNS))
         sheet[down : down + SIDE, right : right + SIDE] = thumbnail(smooth_knot(name), SIDE)[::-1]
     opaque, colours = sheet[..., 3] > 0, np.round(255 * sheet[..., :3]).astype(np.uint8)
-    few = Image.fromarray(colours[opaque][None]).quantize(
-        47, Image.Quantize.MAXCOVERAGE, kmeans=2
-    )  # wrong by 2 % at most, in half the space
+    # wrong by 2 % at most, in half the space
+    few = Image.fromarray(colours[opaque][None]).quantize(47, Image.Quantize.MAXCOVERAGE, kmeans=2)
     numbers = np.zeros(opaque.shape, dtype=np.uint8)
     numbers[opaque] = np.asarray(few)[0] + 1
     picture = Image.fromarray(numbers, "P")

@@ -85,16 +85,9 @@ def soup(triangles: FloatArray, name: str) -> Obstacle:
     return Obstacle(points, faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)], name)
 
 
-def write(obstacle: Obstacle) -> None:
-    """Write a surface as Wavefront OBJ."""
-    vertices = ["v " + " ".join(f"{x:.{DIGITS}g}" for x in vertex) for vertex in obstacle.vertices.tolist()]
-    faces = ["f " + " ".join(str(k + 1) for k in face) for face in obstacle.faces.tolist()]
-    TARGET.mkdir(exist_ok=True)
-    (TARGET / f"{obstacle.name}.obj").write_text("\n".join([*vertices, *faces]) + "\n", encoding="utf-8")
-
-
-OBSTACLES = (box, torus, icosphere, cup, h_duct)
-
 if __name__ == "__main__":
-    for make in OBSTACLES:
-        write(make())
+    TARGET.mkdir(exist_ok=True)
+    for obstacle in (box(), torus(), icosphere(), cup(), h_duct()):
+        vertices = ["v " + " ".join(f"{x:.{DIGITS}g}" for x in vertex) for vertex in obstacle.vertices.tolist()]
+        faces = ["f " + " ".join(str(k + 1) for k in face) for face in obstacle.faces.tolist()]
+        (TARGET / f"{obstacle.name}.obj").write_text("\n".join([*vertices, *faces]) + "\n", encoding="utf-8")

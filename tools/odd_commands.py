@@ -35,6 +35,7 @@ ROOT = Path(__file__).resolve().parents[1]
 LIMITS = {resource.RLIMIT_AS: 6 << 30, resource.RLIMIT_FSIZE: 1 << 28, resource.RLIMIT_CORE: 0}
 TEXTS = (".txt", ".xyz", ".obj", ".vect", ".json")
 SHORT = "--max-iterations 1"
+Ended = subprocess.CompletedProcess[bytes]
 ENDLESS = "--tolerance 1e-30 --max-iterations 1000000"
 ALL = f"out.txt --report r.json --trajectory t.npz {SHORT}"
 VALUES = ["", "-1", "0", "nan", "inf", "-inf", "1e999", "1e-999", "-0", "9" * 5000, "0x10", "1_0", "x", "1.5", "--"]
@@ -307,11 +308,10 @@ def dependencies(rng: random.Random, room: Path) -> Case:
 
 
 FILES = (damaged, geometry, trajectories, streams, same_files, places, huge)
-OTHERS = (options, knots, scarcity, interrupted, dependencies)
-KINDS = {each.__name__: each for each in (*FILES, *OTHERS)}
+KINDS = {each.__name__: each for each in (*FILES, options, knots, scarcity, interrupted, dependencies)}
 
 
-def run(case: Case, room: Path, patience: float) -> "subprocess.CompletedProcess[bytes]":
+def run(case: Case, room: Path, patience: float) -> Ended:
     """Run a case in its directory, for so many seconds at most."""
 
     def prepare() -> None:  # in the new process: signals as in a terminal, limits, and closed streams
@@ -341,11 +341,8 @@ def run(case: Case, room: Path, patience: float) -> "subprocess.CompletedProcess
             process.send_signal(number)  # not to one that has ended
 
     source = os.devnull if case.given == "closed" else case.given
-    ends = [
-        subprocess.PIPE if isinstance(source, bytes) else os.open(source, os.O_RDONLY),
-        end(case.out),
-        end(case.err),
-    ]
+    given = subprocess.PIPE if isinstance(source, bytes) else os.open(source, os.O_RDONLY)
+    ends = [given, end(case.out), end(case.err)]
     process = subprocess.Popen(
         [os.fsencode(word.replace("\0", "")) for word in (sys.executable, "-P", "-m", "mobius_flow", *case.words)],
         cwd=room,
@@ -370,9 +367,7 @@ def run(case: Case, room: Path, patience: float) -> "subprocess.CompletedProcess
     return subprocess.CompletedProcess(case.words, process.returncode, out or b"", err or b"")
 
 
-def complaints(
-    case: Case, room: Path, before: dict[str, bytes], outcome: "subprocess.CompletedProcess[bytes]"
-) -> list[str]:
+def complaints(case: Case, room: Path, before: dict[str, bytes], outcome: Ended) -> list[str]:
     """Everything that is wrong with an outcome."""
     found, said = [], outcome.stderr
     if outcome.returncode == -signal.SIGKILL:
@@ -383,11 +378,7 @@ def complaints(
         found.append(f"exit status {outcome.returncode}, not one of {case.statuses}")
     bad = ("Traceback", "Exception ignored", "internal error", "Fatal Python error")
     found += [word for word in bad if word.encode() in said + outcome.stdout]
-    if (
-        (case.signals or case.limits)
-        and b"Traceback" in outcome.stderr
-        and os.fsencode(f"{ROOT}/") not in outcome.stderr
-    ):
+    if (case.signals or case.limits) and b"Traceback" in said and os.fsencode(f"{ROOT}/") not in said:
         return []  # Python itself did not start
     lines = said.replace(b"\0", b"").decode("utf-8", "replace").splitlines()  # it may be UTF-16
     several = "compare" in case.words and outcome.returncode == 130  # the methods that have finished
