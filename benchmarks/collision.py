@@ -26,8 +26,7 @@ from mobius_flow.core import Curve, Obstacle, read_obstacle
 from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.collision import check_clear, check_embedded, free_motion, is_free, minimal_gap
 from mobius_flow.core.energies.repulsion import Repulsion
-from mobius_flow.core.energies.repulsion.repulsion import KEPT
-from mobius_flow.core.energies.repulsion.schedule import Schedule
+from mobius_flow.core.energies.repulsion.repulsion import KEPT, Schedule
 from mobius_flow.core.proof.filter import doubtful_pairs
 
 

@@ -1,4 +1,4 @@
-"""Descent: what is minimised on which set (`problem`, `geometries`), in which directions, by which searches."""
+"""Descent: what is minimised on which set (`problem`, `methods`), in which directions, by which searches."""
 
 from .methods import METHODS, Method
 from .problem import Point, Problem

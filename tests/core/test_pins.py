@@ -10,8 +10,8 @@ from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.curve import Mesh, refine
 from mobius_flow.core.curve.pins import Pins, arcs, ends_of, spans
 from mobius_flow.core.curve.refine import MIN_VERTICES, smoothed, subdivide, superfluous
-from mobius_flow.core.descent.geometries import Constrained
 from mobius_flow.core.descent.hessian import lagrangian_hessian, lagrangian_matrix
+from mobius_flow.core.descent.methods import Constrained
 from mobius_flow.core.driver.moves.rest import stability
 from mobius_flow.core.knots import knot, torus_knot
 from shapes import regular_polygon, torus_trefoil

@@ -18,8 +18,8 @@ from mobius_flow.core import Curve
 from mobius_flow.core.collision import Contact
 from mobius_flow.core.descent import NoStep, Point, SearchState, Step
 from mobius_flow.core.descent.directions import SteepestDescent
-from mobius_flow.core.descent.geometries import Penalised
 from mobius_flow.core.descent.line_searches import Armijo, FirstTrial, LineSearch
+from mobius_flow.core.descent.methods import Penalised
 from mobius_flow.core.descent.step import Leg, Rejected, attempt
 from shapes import hopf_link
 

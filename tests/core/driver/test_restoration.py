@@ -8,7 +8,7 @@ from descent_contracts import point_on
 from hard_curves import uneven
 from mobius_flow.core import Curve, RelaxOptions, minimize
 from mobius_flow.core.base.types import FloatArray
-from mobius_flow.core.descent.geometries import Constrained
+from mobius_flow.core.descent.methods import Constrained
 from mobius_flow.core.solve.constraints import Barycenters, Constraints
 from mobius_flow.core.solve.saddle import TangentSpace
 from mobius_flow.core.solve.saddle.tangent_space import euclidean_correction

@@ -5,8 +5,7 @@ import pytest
 from mobius_flow.core import Curve
 from mobius_flow.core.curve.obstacle import Obstacle
 from mobius_flow.core.energies.edge_pairs import change, stepped
-from mobius_flow.core.energies.repulsion.repulsion import THETA
-from mobius_flow.core.energies.repulsion.schedule import Schedule
+from mobius_flow.core.energies.repulsion.repulsion import THETA, Schedule
 from mobius_flow.core.energies.repulsion.simplices import Clusters
 from repulsion_references import quartered, repulsion, soup, sphere, wavy
 from taylor import taylor_slope

@@ -6,7 +6,7 @@ from energy_references import inverse_square_integral
 from families import crossed
 from mobius_flow.core import Curve
 from mobius_flow.core.curve.obstacle import Obstacle
-from mobius_flow.core.energies.repulsion.schedule import Schedule
+from mobius_flow.core.energies.repulsion.repulsion import Schedule
 from repulsion_references import edge_integral, repulsion
 
 TRIANGLE = np.array([[0, 0, 0], [1, 0, 0], [0.2, 0.9, 0]])
