@@ -5,8 +5,7 @@
 
 from .base.errors import CurveError, CurveFileError, MobiusFlowError, OptionError
 from .curve import Curve, Mesh, Obstacle
-from .descent import METHODS
-from .descent.task import Task
+from .descent import METHODS, Task
 from .driver import Hand, Outcome, RelaxOptions, Result, Status, WithOutcome, minimize, relax
 from .energies import MoebiusEnergy, Objective
 from .io import knot_list, read_curve, write_curve

@@ -5,8 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..core.base.arguments import checked, checked_fields
-from ..core.curve import Curve
-from ..core.curve.refine import subdivide
+from ..core.curve import Curve, subdivide
 from ..core.descent.task import Task
 from ..core.driver import RelaxOptions, minimize
 

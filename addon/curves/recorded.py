@@ -11,8 +11,7 @@ from mathutils import Matrix
 from ...core import Curve, CurveError, MobiusFlowError
 from ...core.base import FloatArray, Message
 from ...core.collision import check_embedded, is_free
-from ...core.curve import Mesh
-from ...core.curve.refine import along, interpolated
+from ...core.curve import Mesh, along, interpolated
 from ...core.driver.words import in_blenders_words, named, spline_names
 from ...core.keys.placement import Frame, Link, Measure, Similarity, Turn, orthonormal
 from . import bake, pins

@@ -5,9 +5,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from ..base import MIN_GAP, BoolArray, CurveError, FloatArray, IntArray, Message, Place
-from ..curve import Curve, Mesh
-from ..curve.distances import arc_distance_of_points
-from ..curve.measures import bending_radii
+from ..curve import Curve, Mesh, arc_distance_of_points, bending_radii
 from .boxes import BoxTree, Level, corners
 from .planes import closest_chord, relative_motion
 

@@ -12,8 +12,7 @@ from operator import itemgetter
 import numpy as np
 
 from ..base import VERTEX, CurveError, CurveOptionError, FloatArray, Message, OptionError, checked_fields, frozen
-from ..collision import check_clear, check_embedded, check_gap, survives_rounding
-from ..collision.gap import written
+from ..collision import check_clear, check_embedded, check_gap, survives_rounding, written
 from ..curve import MAX_COORDINATE, NO_PINS, Curve, Obstacle, Pins, at_vertices, refine
 
 _log = logging.getLogger(__name__)

@@ -7,10 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..base import BLAS, CurveError, MobiusFlowError, Table, check_known, checked
-from ..collision import check_embedded, check_gap, minimal_gap
-from ..collision.gap import thickness
-from ..curve import Curve
-from ..curve.measures import writhe_and_crossings
+from ..collision import check_embedded, check_gap, minimal_gap, thickness
+from ..curve import Curve, writhe_and_crossings
 from ..curve.symmetry import SymmetryGroup, symmetries
 from ..descent.task import centred, check_units
 from ..energies import ENERGIES, MoebiusEnergy

@@ -7,8 +7,7 @@ from itertools import pairwise
 from typing import Any
 
 from ..base import Message, Place, checked_fields, counted, joined
-from ..curve import Curve
-from ..curve.refine import halved
+from ..curve import Curve, halved
 from ..descent.task import Task, centred
 from ..energies.components import energy_scale
 from ..energies.hierarchy import SampledErrors, moebius_energy

@@ -10,8 +10,7 @@ from ..collision import is_free, is_rope, minimal_gap, rope_motion, survives_rou
 from ..curve import TAUT, Curve, Mesh, Obstacle, arcs, at_edges, check_closed, free_edges, spans
 from ..curve.refine import Resolution, graded_spacing, normalised, refined_alike
 from ..curve.symmetry import TOLERANCE, Symmetry, SymmetryGroup, symmetries
-from ..descent import METHODS, Problem
-from ..descent.task import Task
+from ..descent import METHODS, Problem, Task
 from ..energies import Term, TwiceDifferentiable, is_moebius_invariant
 from ..energies.rope import Rope
 from ..solve.metrics import Metric

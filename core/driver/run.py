@@ -8,10 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base import FloatArray, Message
-from ..curve import Curve, Mesh, at_edges
-from ..curve.refine import Resolution
-from ..descent import METHODS, NoStep, Point, Problem, SearchState, Step
-from ..descent.line_searches import LineSearch
+from ..curve import Curve, Mesh, Resolution, at_edges
+from ..descent import METHODS, LineSearch, NoStep, Point, Problem, SearchState, Step
 from ..energies.components import energy_scale
 from ..energies.hierarchy import SampledErrors
 from ..io.trajectory import Iterate, StrandMoves

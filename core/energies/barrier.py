@@ -25,8 +25,7 @@ import scipy.sparse as sp
 from numpy.polynomial.polynomial import polyval
 
 from ..base import BoolArray, FloatArray, IntArray, checked_fields
-from ..curve import Curve
-from ..curve.distances import near_by_octave
+from ..curve import Curve, near_by_octave
 from .edge_pairs import (
     DELTA,
     E,

@@ -19,8 +19,7 @@ import numpy as np
 from scipy.spatial.distance import cdist
 
 from ..base import BoolArray, FloatArray, OptionError
-from ..curve import Curve
-from ..curve.distances import arc_positions, periods
+from ..curve import Curve, arc_positions, periods
 from .edge_pairs import Tile, half_changes
 
 

@@ -10,8 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base import FloatArray, checked, checked_fields
-from ..curve import Curve
-from ..curve.distances import points_at
+from ..curve import Curve, points_at
 from .components import ComponentShares
 from .density import ArcDensity, Arcs, Density, IshizekiNagasawaDensity, PointPairs, PointSet, TangentPointDensity
 from .edge_pairs import SteppedCurve, Tile, change, pair_tiles

@@ -7,9 +7,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from ..base.types import FloatArray
-from ..curve import Curve
-from ..curve.distances import periods, vertex_positions
-from ..curve.measures import bending, bending_and_derivative
+from ..curve import Curve, bending, bending_and_derivative, periods, vertex_positions
 
 REACH = 0.5  # r, in the program's units, in which a component is 4 to 8 long
 

@@ -12,8 +12,7 @@ from functools import partial
 import numpy as np
 
 from ..base import CurveError, FloatArray, IntArray, checked
-from ..curve import Curve
-from ..curve.refine import arc_lengths
+from ..curve import Curve, arc_lengths
 from .diagrams import Diagram, Pass, diagram_of
 from .inscribed import MAX_VERTICES, check_count, shares, too_few
 

@@ -13,9 +13,7 @@ from scipy.spatial import cKDTree
 
 from ..base import BoolArray, CurveError, FloatArray, Place, checked
 from ..collision import check_embedded
-from ..curve import Curve, check_closed
-from ..curve.distances import arc_distance_of_pairs
-from ..curve.refine import arc_lengths, subdivide
+from ..curve import Curve, arc_distance_of_pairs, arc_lengths, check_closed, subdivide
 from .diagrams.projection import plane_crossings
 
 

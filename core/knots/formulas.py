@@ -8,9 +8,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from ..base import CurveError, FloatArray, checked
-from ..curve import Curve, Mesh
-from ..curve.distances import nearest_strands
-from ..curve.refine import cubic_spline, evenly
+from ..curve import Curve, Mesh, cubic_spline, evenly, nearest_strands
 from ..curve.tube import normals, turned
 from .diagrams import linking_numbers
 from .inscribed import arc_steps, inscribed

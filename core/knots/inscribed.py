@@ -7,9 +7,7 @@ import numpy as np
 
 from ..base import CurveError, FloatArray, checked, counted
 from ..collision import is_free
-from ..curve import Curve, Mesh
-from ..curve.distances import nearest_strands
-from ..curve.refine import arc_lengths, subdivide
+from ..curve import Curve, Mesh, arc_lengths, nearest_strands, subdivide
 
 MAX_VERTICES = 400_000  # of any knot that is made: twice what any command takes
 

@@ -11,12 +11,8 @@ from itertools import pairwise, product
 import numpy as np
 
 from ..base.types import FloatArray
-from ..collision import is_free, survives_rounding
-from ..collision.motion import walk
-from ..curve import Curve, Mesh, Obstacle
-from ..curve.alignment import Alignment, Freedom, alignments
-from ..curve.measures import bending
-from ..curve.refine import refined_alike
+from ..collision import is_free, survives_rounding, walk
+from ..curve import Alignment, Curve, Freedom, Mesh, Obstacle, alignments, bending, refined_alike
 from ..driver.moves.balance import MoebiusImages, least_bending, turn
 from ..io.trajectory import Iterate
 

@@ -10,8 +10,7 @@ from dataclasses import replace
 from itertools import pairwise, product
 
 from ..base import BLAS, OF_GOAL, CurveError, Message, MobiusFlowError, OptionError, TimeLimit, checked, counted
-from ..curve import Curve
-from ..curve.alignment import Alignment
+from ..curve import Alignment, Curve
 from ..descent.task import Task
 from ..driver import Outcome, Relaxation, RelaxOptions, Result, Status, WithOutcome, finish, relax
 from ..driver.relax import within

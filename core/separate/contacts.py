@@ -15,12 +15,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from ..base.types import BoolArray, FloatArray, IntArray
-from ..collision.boxes import BoxTree, Level, still_triangles
-from ..collision.gap import near_edges, scaled_points, squared_gaps
-from ..curve import Curve
-from ..curve.distances import arc_distance_of_pairs
-from ..curve.measures import bending_radii
-from ..curve.obstacle import Obstacle
+from ..collision import BoxTree, Level, near_edges, scaled_points, squared_gaps, still_triangles
+from ..curve import Curve, Obstacle, arc_distance_of_pairs, bending_radii
 from ..energies.edge_pairs import CORNERS, EdgePairs
 from ..energies.rope import bends, closest, distance
 

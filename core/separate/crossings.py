@@ -9,13 +9,9 @@ from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import spsolve
 from scipy.spatial import cKDTree
 
-from ..base.errors import CurveError
-from ..base.messages import COMPONENT, Message
-from ..base.types import BoolArray, FloatArray
+from ..base import COMPONENT, BoolArray, CurveError, FloatArray, Message
 from ..collision.gap import near_edges, scaled_points, written
-from ..curve import Curve, at_vertices
-from ..curve.distances import arc_distance_of_pairs
-from ..curve.obstacle import Obstacle
+from ..curve import Curve, Obstacle, arc_distance_of_pairs, at_vertices
 from ..energies.edge_pairs import CORNERS, EdgePairs
 from ..energies.rope import closest
 from .contacts import contacts

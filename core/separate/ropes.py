@@ -14,11 +14,9 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
-from ..base.deadline import check_time
-from ..base.types import BoolArray, FloatArray
+from ..base import BoolArray, FloatArray, check_time
 from ..collision import is_rope, rope_motion
-from ..curve import Curve
-from ..curve.obstacle import Obstacle
+from ..curve import Curve, Obstacle
 from ..io.trajectory import Iterate
 from .contacts import Contacts, contacts
 

@@ -10,16 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from ..base.arguments import check_known, checked
-from ..base.deadline import TimeLimit
-from ..base.errors import CurveError, OptionError
-from ..base.messages import COMPONENT, Message
-from ..base.threads import BLAS
-from ..collision import check_clear, check_embedded, is_free
-from ..collision.gap import written
-from ..curve import Curve, at_edges
-from ..curve.measures import bending_radii
-from ..curve.pins import Pins, holds
+from ..base import BLAS, COMPONENT, CurveError, Message, OptionError, TimeLimit, check_known, checked
+from ..collision import check_clear, check_embedded, is_free, written
+from ..curve import Curve, Pins, at_edges, bending_radii, holds
 from ..descent.task import Task, check_units
 from ..driver import Outcome, Relaxation, Result, Status, finish
 from ..driver.outcome import stalled

@@ -19,8 +19,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from ..base import BoolArray, FloatArray, IntArray, OptionError
-from ..curve import Curve, Mesh
-from ..curve.distances import arc_distance_of_pairs
+from ..curve import Curve, Mesh, arc_distance_of_pairs
 from ..energies.hierarchy.blocks import BlockList
 from ..energies.quadrature import MIDPOINT, Rule
 from .constraints import ConstraintDerivative

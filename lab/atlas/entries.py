@@ -19,8 +19,7 @@ from ...cli.terminal import one_line
 from ...core import CurveError, MobiusFlowError, read_curve
 from ...core.base.errors import counted
 from ...core.collision.gap import thickness
-from ...core.curve.fourier import FourierCurve
-from ...core.curve.measures import writhe_and_crossings
+from ...core.curve import FourierCurve, writhe_and_crossings
 from ...core.curve.symmetry import standing, symmetries
 from ...core.knots import KNOTS, knot_type
 from ...core.knots.names import table_name

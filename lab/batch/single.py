@@ -13,8 +13,7 @@ from ...cli.options import provenance
 from ...cli.terminal import one_line
 from ...core import CurveError, MobiusFlowError, RelaxOptions, Result, Task, Trajectory, minimize, read_obstacle
 from ...core.base.errors import OutputError
-from ...core.collision import check_embedded
-from ...core.collision.gap import thickness
+from ...core.collision import check_embedded, thickness
 from ...core.curve.measures import writhe_and_crossings
 from ...core.descent.task import check_units
 from ...core.driver.info import PAIRS_UP_TO

@@ -9,8 +9,7 @@ from itertools import pairwise, product
 
 from ...core.base import BLAS, OptionError, TimeLimit, check_number, checked, choice
 from ...core.curve import Curve
-from ...core.descent import METHODS, Problem
-from ...core.descent.task import Task
+from ...core.descent import METHODS, Problem, Task
 from ...core.driver.moves import ON_A_FIXED_MESH
 from ...core.driver.options import RelaxOptions
 from ...core.driver.prepare import start_problem

@@ -18,8 +18,7 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from ...core.base.types import FloatArray, IntArray
-from ...core.curve import Curve
-from ...core.curve.fourier import FourierCurve
+from ...core.curve import Curve, FourierCurve
 from ...core.energies.moebius import moebius_by_length
 
 

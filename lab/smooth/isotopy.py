@@ -8,8 +8,7 @@ from itertools import combinations_with_replacement
 import numpy as np
 
 from ...core.base import ComplexArray, CurveError, FloatArray, checked
-from ...core.curve import Curve
-from ...core.curve.fourier import FourierCurve
+from ...core.curve import Curve, FourierCurve
 from .covering import CurveArcs, PolygonEdges, cover, points, scaled
 
 _REFUSAL = "the curve meets itself or has a cusp, or nearly so: its type cannot be proved"

@@ -8,8 +8,7 @@ import numpy as np
 from scipy.linalg import eigh
 
 from ...core.base import FloatArray, checked
-from ...core.curve.fourier import FourierCurve
-from ...core.curve.measures import bending
+from ...core.curve import FourierCurve, bending
 from ...core.driver.moves.balance import MoebiusImages, least_bending
 from .energy import Basis, SampledPairs
 from .rest import RestingCurve, energy_of

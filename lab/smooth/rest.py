@@ -10,8 +10,7 @@ import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve, eigh, orth
 
 from ...core.base import ENERGY_ROUNDING, CurveError, FloatArray, checked
-from ...core.curve import Curve, check_closed
-from ...core.curve.fourier import FourierCurve
+from ...core.curve import Curve, FourierCurve, check_closed
 from ...core.energies import MoebiusEnergy
 from ...core.knots.inscribed import equal_steps, is_isotopic
 from .energy import Basis, SampledPairs, parameters, sliding

@@ -19,11 +19,8 @@ from scipy.optimize import minimize
 
 from ...base.types import FloatArray
 from ...collision.motion import walk
-from ...curve import Curve
-from ...curve.measures import bending, bending_and_derivative
-from ...curve.refine import arc_lengths, cubic_spline, sample_parameters
-from ...descent import Leg, Point, Problem, Step
-from ...descent.step import leg
+from ...curve import Curve, arc_lengths, bending, bending_and_derivative, cubic_spline, sample_parameters
+from ...descent import Leg, Point, Problem, Step, leg
 from ...solve.constraints import weighted_barycenter
 from ..move import Change, Move
 from ..outcome import Outcome, Status

@@ -6,12 +6,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ...collision.motion import walk
-from ...curve.pins import spans
-from ...curve.refine import SPLIT, affordable_pieces, graded_spacing
-from ...descent import Leg, NoStep, Point, Step
-from ...descent.line_searches import on_target
-from ...descent.step import attempt, leg
-from ...descent.task import Units
+from ...curve import SPLIT, affordable_pieces, graded_spacing, spans
+from ...descent import Leg, NoStep, Point, Step, Units, attempt, leg, on_target
 from ...energies.components import energy_scale
 from ...solve.constraints import weighted_barycenter
 from ..move import Change, Event, Move

@@ -8,9 +8,7 @@ import numpy.typing as npt
 
 from ...base import FloatArray, MobiusFlowError, checked, shown
 from ...curve import MAX_COORDINATE, Pins
-from ...descent import NoStep, Point, SearchState, Step
-from ...descent.line_searches import on_target
-from ...descent.step import leg
+from ...descent import NoStep, Point, SearchState, Step, leg, on_target
 from ...energies.components import energy_scale
 from ...energies.pull import Pull
 from ...io.trajectory import Iterate

@@ -11,9 +11,7 @@ import numpy as np
 from ...base import CurveError, FloatArray, Message
 from ...collision.motion import walk
 from ...curve import Curve
-from ...descent import Leg, Point, Step
-from ...descent.hessian import soft_modes
-from ...descent.step import attempt
+from ...descent import Leg, Point, Step, attempt, soft_modes
 from ...energies.components import energy_scale
 from ...knots import knot_type
 from ...knots.diagrams import quick_invariants

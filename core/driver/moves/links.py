@@ -11,8 +11,7 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
 from ...base import COMPONENT, FloatArray, Message, MobiusFlowError
-from ...curve import Curve, Obstacle
-from ...curve.distances import STRAND_RATIO, arc_distance_of_pairs, near_by_octave
+from ...curve import STRAND_RATIO, Curve, Obstacle, arc_distance_of_pairs, near_by_octave
 from ...descent import Step
 from ...energies.barrier import near_pairs
 from ...energies.hierarchy import moebius_energy

@@ -24,9 +24,7 @@ from ...curve.refine import (
     subdivide,
     superfluous,
 )
-from ...descent import Leg, NoStep, Point, Problem, Step
-from ...descent.step import leg
-from ...descent.task import check_refined
+from ...descent import Leg, NoStep, Point, Problem, Step, check_refined, leg
 from ...energies import is_moebius_invariant
 from ...energies.components import energy_scale
 from ..move import Change, Move

@@ -22,8 +22,7 @@ from scipy.linalg import blas
 from scipy.spatial.distance import cdist
 
 from ...base import FloatArray, IntArray, checked_fields, number
-from ...curve import Curve, Mesh
-from ...curve.distances import arc_distance_of_pairs, arc_distances, points_at
+from ...curve import Curve, Mesh, arc_distance_of_pairs, arc_distances, points_at
 from ...energies.edge_pairs import ROWS_TIMES_COLUMNS
 from ...energies.quadrature import MIDPOINT, Rule
 from .inner_product import MAX_DENSE_ROWS, DenseInnerProduct, InnerProduct
