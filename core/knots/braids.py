@@ -130,6 +130,8 @@ def braid_closure(word: Sequence[int], vertices: int | None = None, *, strands: 
     """
     letters, count = checked_word(word, strands)
     places, width = columns(letters)
+    detail = max(60, 2 * count * width)
+    check_count(detail)  # before strands are followed through so many columns
     inner = max(2.2 * width / (2 * math.pi), 1.0)  # a crossing is 2.2 long there, in units of the strands' distance
     scale = 1.0 / (inner + (count - 1) / 2)
     moves: dict[tuple[int, int], tuple[int, int]] = {}  # by column and place before it: where to, and the sign
@@ -159,7 +161,7 @@ def braid_closure(word: Sequence[int], vertices: int | None = None, *, strands: 
                 rows.append((place, move, sign))
                 place += move
         rings.append(Ring(len(cycle), partial(profile, np.array(rows, dtype=np.intp).T)))
-    return _polygon(rings, scale, max(60, 2 * count * width), vertices)
+    return _polygon(rings, scale, detail, vertices)
 
 
 @checked

@@ -99,7 +99,6 @@ def test_no_motion_takes_no_length_but_the_rest_at_the_beginning_is_played(monke
 
 @pytest.mark.parametrize("keyframes", [*KEYED, "RESULT"])
 def test_a_fitted_tube_keeps_its_radius_when_it_goes_on(keyframes):
-    """Its keys go on as what they are, whatever is asked for."""
     obj = add_trefoil()
     relax(max_iterations=4, fit_bevel=True)
 
@@ -114,7 +113,6 @@ def test_a_fitted_tube_keeps_its_radius_when_it_goes_on(keyframes):
 
 
 def test_baked_apart_they_go_on_together():
-    """The one that rests earlier waits for the other."""
     pair = two_rings()
     for obj, count in zip(pair, (2, 5), strict=True):
         bpy.ops.object.select_all(action="DESELECT")

@@ -42,7 +42,6 @@ def test_the_result_is_the_librarys_and_a_spline_that_is_closed_later_is_another
 
 
 def test_a_segment_is_a_curve():
-    """It is straight, and stays where it is."""
     obj = add_curve([np.array([[0.0, 0.0, 0.0], [1.0, 2.0, 3.0]])], cyclic=False)
     relax(max_iterations=3, keyframes="RESULT")
     points = stored(obj.data).astype(np.float64)

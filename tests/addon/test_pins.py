@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 import pytest
-from baked_curves import KEYED, SHORT, again, clear, go_on, reopen
+from baked_curves import KEYED, SHORT, go_on, reopen
 from blender_scenes import add_curve, add_trefoil, contents, place, relax, stored
 from mobius_flow import Relaxation
 from mobius_flow.addon.curves import pins
@@ -88,23 +88,6 @@ def test_tangents():
     assert bpy.context.scene.mobius_flow.pin_tangents is False
 
 
-def test_between_neighbours_nothing_moves():
-    """What is refined there lies on a straight edge."""
-    obj, more = add_arc(), {"vertices": 250}
-    indices = [0, 20, 21]
-    pin(obj, *indices)
-    relax(**SHORT, **more)
-    inside = np.array(held(obj))[1:]
-    assert len(inside) > 2
-    assert (np.diff(inside) == 1).all()
-    again(**more)
-    still(obj, ARC[indices])
-    go_on(max_iterations=3)
-    still(obj, ARC[indices])
-    clear()
-    assert held(obj) == indices
-
-
 def test_they_are_the_points_own_in_copies_files_and_edit_mode(tmp_path):
     obj = add_arc()
     pin(obj, 10, 59)
@@ -125,7 +108,6 @@ def test_they_are_the_points_own_in_copies_files_and_edit_mode(tmp_path):
 
 
 def test_a_link_counts_on(capfd):
-    """The closed spline of another object comes first."""
     ring = add_trefoil()
     ring.location.z = 20
     arc = add_arc(name="Arc")

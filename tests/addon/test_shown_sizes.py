@@ -12,7 +12,7 @@ from mobius_flow.addon.curves.recorded import BakedKeys
 from mobius_flow.core import Curve, RelaxOptions
 from mobius_flow.core import relax as iterates_of
 from mobius_flow.core.keys.placement import Measure
-from mobius_flow.core.knots import braid_closure
+from mobius_flow.core.knots import smooth_knot
 from modal_operator import rings
 from shapes import hopf_link, lattice_knot
 
@@ -232,9 +232,7 @@ def test_copies_and_tubes_are_as_large_as_what_they_show(lattice):
 
 
 def test_a_morph_is_not_larger_on_its_way_and_ends_as_its_goal():
-    goal = add_trefoil(40)
-    goal.name = "Goal"
-    moving = add_curve([0.5 * braid_closure([-1, -1, -1, -2, 2], 60).vertices])
+    goal, moving = add_trefoil(40), add_curve([0.5 * smooth_knot("m3_1", 50).vertices])
     moving.select_set(True)
     goal.select_set(True)
     bpy.context.view_layer.objects.active = goal

@@ -52,7 +52,6 @@ def test_results_tell_where_they_come_from(run):
 
 
 def test_energies_have_the_digits_that_the_mesh_leaves_them(run):
-    """The objective is told where strands are so near that the barrier acts."""
     write_curve("in.txt", knot("8_19", vertices=60))
     words = "relax in.txt out.txt --report r.json --vertices 60 --max-iterations 5"
     said, values = run(*words.split())[2], json.loads(Path("r.json").read_text())

@@ -112,7 +112,6 @@ def test_a_signal_keeps_curve_report_and_trajectory(number):
 
 @BOTH
 def test_signals_while_results_are_written_cost_nothing(number, terminated, on_iterate, monkeypatch, run):
-    """Two at once in the run, and more while the trajectory is written."""
     save = Trajectory.save
 
     def interrupted(iterate):

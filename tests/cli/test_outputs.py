@@ -246,7 +246,6 @@ def test_copying_that_fails_brings_the_old_contents_back(tmp_path, monkeypatch):
 
 
 def test_results_without_room_are_kept_elsewhere(refused, monkeypatch):
-    """The directory disappears during the run."""
     os.mkdir("place")
     finish = relax_command.finish
 

@@ -97,7 +97,6 @@ def colours(mesh):
 
 
 def test_fbx_as_it_is_set_by_default_has_no_motion(moving, tmp_path):
-    """The tooltip says what to turn off."""
     (tube,) = through("fbx", tmp_path, dict.fromkeys(MOTION_SETTINGS, True))
     np.testing.assert_allclose(evaluated(tube, 1), evaluated(tube, 20), atol=1e-6)
 

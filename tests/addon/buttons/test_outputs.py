@@ -70,7 +70,6 @@ def colours(mesh):
 @pytest.mark.parametrize("keyframes", KEYED)
 @pytest.mark.parametrize("place", [unplaced, placed])
 def test_it_moves_with_the_curve(place, keyframes):
-    """Rings stay round the curve's points, at keys and between them."""
     curve = place(add_trefoil())
     relax(max_iterations=12, keyframes=keyframes)
     made = tube(radius=0.25, sides=8)

@@ -10,7 +10,7 @@ from mobius_flow.addon.curves.keyframes import fcurves_of
 from mobius_flow.core.keys.key_options import Timing
 
 SHORT = {"vertices": 12, "length": 31, "untangle": "never"}
-RECTANGLE = np.array([(0.0, 0, 0), (3, 0, 0), (3, 1, 0), (0, 1, 0)])
+RECTANGLE = np.array([(0.0, 0, 0), (3, 0, 0.3), (3, 1, 0), (0, 1, 0.3)])  # not flat, which takes exact decisions
 ZIGZAG = np.array([(0.0, 0, 0), (1, 0, 0.5), (2, 0, 0), (2, 2, -0.5), (1, 1, -1), (0, 2, 0)])
 FAR = np.array([9.0, 0, 0])
 

@@ -153,7 +153,6 @@ def at_rest(operator):
 
 @pytest.mark.parametrize(("size", "early"), [("LENGTH", False), ("RADIUS", True)])
 def test_ctrl_leaves_a_pin_that_is_kept(operator, size, early):
-    """Whether it is held when a strand is taken, or when it is let go."""
     obj = add_curve([torus_trefoil(40).vertices])
     begin(operator, keep_size=size)
     place = on_curve(operator, 7)
@@ -234,7 +233,6 @@ def test_the_strand_in_front_is_held_where_two_cross(operator):
 
 @pytest.mark.parametrize("size", ["LENGTH", "BOX", "RADIUS"])
 def test_curves_are_dragged_where_they_are_seen(operator, size):
-    """Wherever their object was moved, in whatever size they are shown."""
     obj = add_curve([torus_trefoil(40).vertices])
     begin(operator, keep_size=size)
     if size == "LENGTH":

@@ -10,16 +10,14 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_curve, add_hopf_link, add_trefoil, stored
+from blender_scenes import add_hopf_link, add_trefoil, stored
 from mobius_flow.addon.engine import worker
 from mobius_flow.addon.live import handlers, run
 from mobius_flow.addon.live.modal import Listening
 from mobius_flow.addon.live.run import RunState
 from mobius_flow.addon.properties import SETTINGS
-from mobius_flow.core import Curve, minimize
 from mobius_flow.core.keys.motion import Kind
 from modal_operator import Operator, keys, restored, ring_and_torus, rings, splines_of
-from shapes import lattice_knot
 
 
 def one():
@@ -94,22 +92,6 @@ def test_a_start_in_contact_is_said_and_shown(operator):
     assert kind == {"ERROR"}
     assert re.match(r"Segment \d+ of spline 1 of 'Ring' .*'Torus' at \(", said)
     assert [spot.member for spot in operator.run.trouble] == [0]
-
-
-@pytest.mark.slow
-def test_points_that_are_added_in_the_end_are_in_every_key(operator):
-    obj = add_curve([lattice_knot("5_1").vertices])
-    start = stored(obj.data).astype(np.float64)
-    operator.given["vertices"] = 0
-    operator.start()
-    operator.reach(1)
-    given = len(obj.data.splines[0].points)
-    assert operator.until(lambda: False) == {"FINISHED"}
-    result = minimize(Curve(start))
-    assert given < len(result.curve)
-    assert keys(obj).shape[1] == len(result.curve)
-    np.testing.assert_array_equal(stored(obj.data), result.curve.vertices.astype(np.float32))
-    assert operator.run.report.certified
 
 
 def test_every_iterate_is_shown(operator):

@@ -134,7 +134,6 @@ def test_absurd_sizes_are_relaxed_or_refused(scale):
 @pytest.mark.parametrize("kind", ["BEZIER", "NURBS"])
 @pytest.mark.parametrize("count", [1, 2])
 def test_a_stray_smooth_spline_changes_nothing(kind, count):
-    """Refused before anything is touched, whether or not one has agreed to polygons."""
     stray = torus_trefoil(9).vertices[:count] + 9
     obj = add_curve([torus_trefoil(9).vertices, stray, torus_trefoil(9).vertices + 20], kind=kind)
     obj.data.resolution_u = 1  # two Bézier points are drawn as a segment then

@@ -50,7 +50,6 @@ def test_of_two_limits_each_is_kept_by_its_own():
 
 @pytest.mark.parametrize("method", ["implicit-l2", "trust-region", "lbfgs", "flow-l2", "penalty-nesterov"])
 def test_a_step_is_left_in_its_middle(method):
-    """The first look is one too many: no energy is computed any more."""
     clock = Clock()
     run = WithOutcome(within(TimeLimit(2.5, clock), relax(TREFOIL, RelaxOptions(method=method, vertices=40))))
     assert [iterate.index for iterate in run] == [0]

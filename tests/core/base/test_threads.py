@@ -17,7 +17,6 @@ from mobius_flow.core.energies.density import Partials, PointPairs
 from mobius_flow.core.energies.kpoint import KPointEnergy
 from mobius_flow.core.energies.quadrature import MIDPOINT
 from mobius_flow.lab.compare.comparison import compare
-from processes import finished
 from shapes import torus_trefoil
 
 TREFOIL = torus_trefoil(40)
@@ -102,7 +101,6 @@ def test_a_relaxation_that_is_left_leaves_nothing_behind() -> None:
 
 @pytest.mark.parametrize("faulty", [True, False])
 def test_errors_leave_nothing_behind(faulty: bool) -> None:
-    """Raised inside, by an energy, or outside, by a callback."""
 
     def callback(_: Iterate) -> None:
         raise FaultError
@@ -184,19 +182,3 @@ def test_other_threads_can_set_their_numbers_afterwards() -> None:
         leave.set()
         asleep.result()
     assert seen == {OWN + 1}
-
-
-FRESH = """
-import threadpoolctl
-from mobius_flow.core import RelaxOptions, minimize
-from mobius_flow.core.knots import knot
-count = lambda: [each["num_threads"] for each in threadpoolctl.threadpool_info() if each["user_api"] == "blas"]
-before = count()
-minimize(knot("3_1", 40), RelaxOptions(max_iterations=1))
-assert count() == before, (before, count())
-"""
-
-
-def test_a_script_finds_its_pools_as_they_were() -> None:
-    done = finished([sys.executable, "-c", FRESH])
-    assert done.returncode == 0, done.stderr

@@ -31,7 +31,6 @@ def strangers(mesh: Mesh) -> set[tuple[int, int]]:
 @pytest.mark.parametrize("chunk", [5, 1 << 14])
 @pytest.mark.parametrize("mesh", MESHES, ids=str)
 def test_every_pair_exactly_once(mesh: Mesh, chunk: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """As with the kernel 1: each pair of non-neighbour edges counts once."""
     monkeypatch.setattr(boxes, "CHUNK", chunk)
     tree = BoxTree.build(mesh, *random_leg(mesh, 3))
     pairs = found(tree, lambda level, a, other, b: np.ones(len(a), dtype=bool))
@@ -41,7 +40,6 @@ def test_every_pair_exactly_once(mesh: Mesh, chunk: int, monkeypatch: pytest.Mon
 
 @pytest.mark.parametrize("n", [3, 40, 200])
 def test_every_pair_of_edge_and_triangle_exactly_once(n: int) -> None:
-    """For trees of very different depth."""
     still, mesh = still_triangles((sphere(1.0),), 1), Mesh((n,))
     tree = BoxTree.build(mesh, *random_leg(mesh, 3))
     pairs = [

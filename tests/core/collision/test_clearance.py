@@ -70,7 +70,6 @@ def test_obstacles_are_for_curves_in_space(dimension: int) -> None:
 
 @pytest.mark.parametrize("seed", range(30))
 def test_every_piercing_edge_is_found(seed: int) -> None:
-    """A random polygon against random triangles: refused if and only if a determinant says so."""
     rng = np.random.default_rng(seed)
     curve = Curve(rng.normal(size=(6, 3)))
     obstacle = Obstacle(rng.normal(size=(6, 3)) + rng.choice([0.0, 1.5]), [[0, 1, 2], [3, 4, 5]])

@@ -62,7 +62,6 @@ def test_a_point_a_segment_and_a_triangle_without_area_are_the_same_in_the_way()
 
 @pytest.mark.parametrize("seed", range(25))
 def test_the_earliest_of_all_contacts(seed: int) -> None:
-    """Every edge against every triangle in rational arithmetic."""
     rng = np.random.default_rng(seed)
     n, mesh = 7, Mesh((7,))
     start = rng.normal(size=(n, 3))

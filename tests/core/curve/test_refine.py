@@ -45,7 +45,6 @@ def test_default_count_and_evenness():
 
 
 def test_neighbours_become_nearer_than_strands():
-    """Two long parallel strands 1/50 of their length apart."""
     curve = Curve([[0, 0, 0], [10, 0, 0], [10, 0.2, 0], [0, 0.2, 0.0]])
     refined = refine(curve)
     along = refined.vertices[

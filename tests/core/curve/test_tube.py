@@ -118,7 +118,6 @@ def closing_twist(points, normal):
 
 @pytest.mark.parametrize("points", [torus_trefoil(200).vertices, writhing()[0], regular_polygon(50).vertices], ids=len)
 def test_one_curve_twists_evenly_and_at_most_half_a_turn(points):
-    """One in a plane not at all."""
     twist = closing_twist(points, normals(points[None])[0])
     lengths = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
     np.testing.assert_allclose(twist, twist.sum() * lengths / lengths.sum(), atol=1e-9)
@@ -143,13 +142,10 @@ def test_normals_turn_no_more_from_key_to_key_than_the_curve():
     assert (np.linalg.norm(np.diff(u, axis=0), axis=-1).max(axis=1) < 4 * turns + 1e-9).all()
 
 
-def test_a_curve_at_rest_keeps_its_normals():
+def test_at_rest_normals_stay_and_a_rigid_motion_turns_them():
     points = np.repeat(torus_trefoil(60).vertices[None], 3, axis=0)
     u = normals(points)
     np.testing.assert_allclose(u[0], u[2], atol=1e-12)
-
-
-def test_turning_about_a_rigid_axis_turns_the_normals_with_it():
     points = torus_trefoil(60).vertices
     angle = 0.3
     rotation = np.array([[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]])

@@ -12,10 +12,9 @@ from mobius_flow.core.descent.methods import Constrained
 from mobius_flow.core.driver.moves.rest import stability
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.energies import ENERGIES, MoebiusEnergy
-from mobius_flow.core.knots import knot, torus_knot
-from shapes import lattice_knot, torus_trefoil
+from mobius_flow.core.knots import knot
+from shapes import torus_trefoil
 from taylor import taylor_slope
-from torus_energies import torus_knot_minimum
 
 
 def point_at(curve: Curve, **options):
@@ -116,17 +115,6 @@ def test_methods_agree_on_the_minimum(minimum, method, tolerance, relative):
     assert result.energies[-1] == pytest.approx(minimum.energies[-1], rel=relative)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("q", [3, 5])
-def test_torus_knots_by_extrapolation(q):
-    """Energies of 3_1 and 5_1 at three N, extrapolated in N⁻²."""
-    counts = np.array([170, 220, 280])  # with 120 the strands of 5_1 are nearer than edges
-    options = [RelaxOptions(method="trust-region", vertices=int(n), tolerance=1e-6) for n in counts]
-    energies = [minimize(lattice_knot(f"{q}_1"), option).energies[-1] for option in options]
-    limit = np.polyfit(1.0 / counts**2, energies, 1)[1]
-    assert limit == pytest.approx(torus_knot_minimum(2, q), rel=1e-4)
-
-
 def test_lagrangian_hessian_has_slope_three_on_the_constraint_set():
     """E along the feasible curve Q(t) = restore(P + t v), v tangent: E' = DE·v and E'' = ⟨v, D²L v⟩ at t = 0.
 
@@ -157,19 +145,6 @@ def test_trefoil_is_a_minimum_with_four_flat_and_two_soft_modes(minimum):
     np.testing.assert_allclose(values[:4], 0, atol=1e-9)
     np.testing.assert_allclose(values[4:6], 11 / 120**2, rtol=0.1)
     assert values[6] == pytest.approx(0.28, rel=0.05)
-
-
-@pytest.mark.parametrize(("p", "q", "index"), [(3, 4, 2), pytest.param(3, 5, 4, marks=pytest.mark.slow)])
-def test_torus_knots_that_are_saddles_can_be_left(p, q, index):
-    options = {"method": "trust-region", "tolerance": 1e-6, "vertices": 160, "max_iterations": 150}
-    stuck = minimize(torus_knot(p, q, 160), RelaxOptions(stability=True, **options))
-    assert stuck.status is Status.CONVERGED
-    assert stuck.outcome.negative_eigenvalues == index
-    assert "saddle" in stuck.message
-    free = minimize(torus_knot(p, q, 160), RelaxOptions(escape_saddles=True, **options))
-    assert free.outcome.negative_eigenvalues == 0
-    assert free.energies[-1] < stuck.energies[-1] - 1
-    assert free.certified
 
 
 def test_edge_length_distribution_hardly_matters():

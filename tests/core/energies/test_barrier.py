@@ -51,7 +51,6 @@ def brute_force_pairs(curve: Curve) -> set[tuple[int, int]]:
 @given(seed=st.integers(0, 999), spread=st.floats(0, 3))
 @settings(max_examples=25, deadline=None)
 def test_near_pairs_are_complete(seed: int, spread: float) -> None:
-    """Edge lengths over up to three decades and more."""
     rng = np.random.default_rng(seed)
     steps = rng.normal(size=(40, 3)) * 10.0 ** rng.uniform(-spread, 0, size=(40, 1))
     curve = Curve.from_components([np.cumsum(steps[:25], axis=0), np.cumsum(steps[25:], axis=0)])
@@ -64,7 +63,6 @@ def test_near_pairs_are_complete(seed: int, spread: float) -> None:
 
 @pytest.mark.parametrize("curve", [lattice_knot("4_1"), knot("thistlethwaite")], ids=["lattice", "diagram"])
 def test_coarse_knots(curve: Curve) -> None:
-    """Pair by pair; and leaving pairs out of the energy changes nothing, nor do the derivatives."""
     found = brute_force_pairs(curve)
     assert len(found) > 100
     total, ends = 0.0, curve.vertices[np.stack([curve.mesh.tails, curve.mesh.heads], axis=1)]

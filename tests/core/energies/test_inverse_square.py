@@ -60,10 +60,9 @@ def test_random_pairs(seed: int, dimension: int) -> None:
 
 @pytest.mark.parametrize(
     ("shape", "gap"),
-    crossed(["crossing", "parallel", "T leaning", "tip at tip", "collinear", "short and long", "apart"], [0.1, 1e-4]),
+    crossed(["crossing", "parallel", "tip at tip", "collinear", "short and long"], [0.1, 1e-4]),
 )
 def test_derivatives(shape: str, gap: float) -> None:
-    """First and second derivative along one direction against differences in 30 digits."""
     points = points_of(shape, gap)
     velocity = np.random.default_rng(7).normal(size=(4, 3))
     dx0, dx1, dy0, dy1 = velocity

@@ -48,7 +48,6 @@ def test_triangles_have_no_disjoint_edges() -> None:
 
 @pytest.mark.parametrize("n", [60, 400])
 def test_energy_per_length(n: int) -> None:
-    """Its integral is the energy, and in other units it is another."""
     curve = torus_trefoil(n)
     by_length = moebius_by_length(curve)
     assert by_length @ curve.edge_lengths + 4 == pytest.approx(ENERGY.value(curve), rel=1e-12)

@@ -77,7 +77,6 @@ def test_blocks_do_not_matter(pairs):
 
 
 def test_ends_that_nearly_meet_are_near():
-    """A ring with a gap: its ends are on different strands."""
     angles = np.linspace(0.02, 2 * np.pi - 0.02, 300)
     ring = np.column_stack([np.cos(angles), np.sin(angles), 0 * angles])
     distances = strand_distances(Curve.from_components([ring], (False,)))

@@ -27,7 +27,6 @@ def test_a_chord_that_collides_gets_keys_at_the_legs(angle, most):
 
 
 def test_what_cannot_be_proved_is_counted_not_hidden():
-    """Through another curve, nearer to one than 32 bits tell, or since the run itself was not certified."""
     keys = collected([around(0.0), around(np.pi)]).keys(is_free)
     assert (keys.certified, keys.unproved, len(keys.keys)) == (False, 1, 2)
     square = regular_polygon(4).vertices + 1000.0
@@ -94,7 +93,6 @@ def test_legs_too_short_for_32_bits_have_times_of_their_own(still):
 
 
 def test_rounding_of_the_start_is_a_gap_of_its_own():
-    """Also where all that follows is proved, in the numbers that Blender stores."""
     curve = regular_polygon(4).with_vertices(0.1 * regular_polygon(4).vertices)
     motion = collected([curve, curve.with_vertices(2.0 * curve.vertices)])
     keys = motion.keys(lambda _mesh, a, _b: np.array_equal(a, a.astype(np.float32)))
@@ -112,7 +110,6 @@ def test_thinning_keys_iterates_rather_than_the_ends_of_legs():
 
 @pytest.mark.parametrize("limit", [1, 2, 3])
 def test_thinned_keys_begin_at_the_start_and_end_at_the_end(limit):
-    """However long the curve rests there."""
     start = regular_polygon(4)
     curves = [start.with_vertices(start.vertices + np.array([0, 0, z])) for z in (0.0, 0.0, 0.0, 1.0, 2.0, 2.0, 2.0)]
     times = [key.time for key in collected(curves).keys(lambda *_: True, limit).keys]
@@ -147,7 +144,6 @@ def test_chords_of_different_objects_are_proved_against_each_other(placements):
 
 
 def test_a_hop_is_keyed_like_a_step():
-    """It is one iterate of many legs; only those are keyed that its chord needs."""
     iterates = list(relax(torus_knot(3, 4, 90), RelaxOptions(vertices=90, hops=1, seed=1)))
     motion = followed(iterates)
     assert max(len(each.path) for each in iterates) > 20

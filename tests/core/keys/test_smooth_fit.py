@@ -42,7 +42,6 @@ def test_errors_fall_with_the_fourth_power(curve, extra):
 @pytest.mark.parametrize("points", [8, 16, 40])
 @pytest.mark.parametrize("curve", [torus_trefoil(120), hopf_link(60)], ids=["trefoil", "link"])
 def test_the_error_is_no_less_than_the_distance(curve, points):
-    """Between splines and polygon, each seen from the other, by many points."""
     fit, distance = fitted(curve, points), 0.0
     for control, polygon in zip(fit.points, curve.components, strict=True):
         spline = _basis(np.arange(4000) / 4000, points, True) @ control

@@ -37,7 +37,6 @@ def test_where_there_is_room_the_tube_is_as_thick_as_looks_right_and_corners_mak
     + [(depth, 0.97 * 0.94 * depth, 0.94 * depth) for depth in (0.09, 0.03, 0.004)],
 )
 def test_obstacles_leave_as_much_room_as_there_is_and_a_tube_can_always_be_drawn(depth, least, most):
-    """A square below a circle."""
     corners = [(-9, -9), (9, -9), (9, 9), (-9, 9)]
     floor = [Obstacle([(*each, -depth) for each in corners], [(0, 1, 2), (0, 2, 3)])] if depth else []
     assert least <= radius_beside(regular_polygon(100), 0.1, floor) <= most
@@ -85,7 +84,6 @@ def moving(vertices, keys, unproved=0):
 
 @pytest.mark.parametrize("unproved", [0, 1])
 def test_corners_are_rounded_and_the_motion_is_proved_anew(unproved):
-    """What was not proved stays so."""
     knot = lattice_knot("4_1")
     _, keys = rounded(knot.mesh, moving(knot.vertices, 3, unproved), is_free)
     assert keys.unproved == unproved
@@ -123,7 +121,6 @@ def radii_of(curves, frames):
 
 
 def test_tubes_are_thin_only_where_others_are_near():
-    """Two rings one above the other, one of them bent down to the other at one place."""
     ring = regular_polygon(400).vertices
     bent = ring + np.array([0.0, 0.0, 1.0])
     bent[:, 2] -= 0.96 * np.exp(-((ring[:, 0] - ring[:, 0].max()) ** 2) / 0.02)

@@ -74,7 +74,6 @@ def test_most_scribbles_are_clear() -> None:
 
 @pytest.mark.parametrize("drawing", SCRIBBLES[:16])
 def test_scribbles_have_the_drawn_crossings_and_no_others(drawing: Drawing) -> None:
-    """Along the curve over and under take turns; the lifted curve is embedded, with the upper strands told."""
     order = np.argsort(drawing.passes.ravel())
     over = np.stack([drawing.first_over, ~drawing.first_over], axis=1).ravel()[order]
     assert (over[1:] != over[:-1]).all()

@@ -16,7 +16,6 @@ CIRCLE = regular_polygon(100)
 
 @pytest.mark.parametrize(("p", "q"), [(2, 3), (2, -3), (2, 1), (2, -1), (3, 2), (3, -4), (2, 5)])
 def test_cables_of_the_circle_are_torus_knots_and_of_a_trefoil_have_its_polynomial(p: int, q: int) -> None:
-    """Δ of C(p, q) is Δ(tᵖ) of the companion times that of T(p, q)."""
     torus = knot_invariants(torus_knot(p, q).vertices)
     assert knot_invariants(cable(CIRCLE, p, q).vertices) == torus
     if p == 2:
@@ -38,7 +37,6 @@ def test_links_of_parallel_strands(name: str, turns: tuple[int, int]) -> None:
 @pytest.mark.parametrize("name", ["0_1", *(pytest.param(name, marks=pytest.mark.slow) for name in ("3_1", "m5_2"))])
 @pytest.mark.parametrize(("twists", "clasp"), [(-2, 1), (-1, -1), (0, 1), (0, -1), (1, 1), (3, -1)])
 def test_doubles_have_the_polynomial_of_their_twists(name: str, twists: int, clasp: int) -> None:
-    """Around the circle they are twist knots."""
     curve = double(smooth_knot(name), twists, clasp=clasp)
     found, w = knot_invariants(curve.vertices), twists * clasp
     assert found.alexander == ((-w, 2 * w + 1, -w) if w else (1,))

@@ -38,7 +38,6 @@ def test_the_table_has_all_prime_knots_to_ten_crossings() -> None:
 
 @pytest.mark.parametrize("name", family(KNOWN))
 def test_knot_type_of_the_polygon(name: str) -> None:
-    """Of the smooth shape, too; knot Floer homology and the Jones polynomial tell all apart, but for four pairs."""
     for curve in (knot(name), smooth_knot(name)):
         found = knot_invariants(curve.vertices)
         assert (found.genus, found.fibered, found.tau, found.alexander) == KNOWN[name][:4]
@@ -58,7 +57,6 @@ def test_polynomials_of_words_and_polygons_tell_all_but_four_pairs_apart() -> No
 
 @pytest.mark.parametrize("name", LINKS)
 def test_links(name: str) -> None:
-    """Of the polygon, the smooth shape, and spherogram."""
     ours, theirs = braid_diagram(KNOTS[name]), diagram_of(Link(name).PD_code())
     for link in (knot(name), smooth_knot(name)):
         assert tuple(pairwise_linking(link.components).values()) == ours.linking_numbers

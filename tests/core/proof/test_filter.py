@@ -47,7 +47,6 @@ def test_a_step_of_a_knot_needs_no_exact_decision() -> None:
 
 
 def test_all_pairs_are_looked_at() -> None:
-    """With everything at one place nothing can be dropped."""
     points = np.zeros((30, 3))
     pairs = doubtful_pairs(points, points, Mesh((30,)).heads)
     assert pairs.shape == (4, 30 * 27 // 2)

@@ -54,7 +54,6 @@ def test_links_and_plane_curves(tmp_path: Path) -> None:
 
 
 def test_a_strand_moved_through_another(tmp_path: Path) -> None:
-    """Every frame is an embedded curve; only the leg into it is wrong."""
     frames = np.stack(walk(hopf_link(40), 10))
     frames[8:, 40:] += [5.0, 0.0, 0.0]
     verdict = checked(tmp_path, trajectory(([40, 40], frames)))
@@ -97,7 +96,6 @@ def test_refinement_of_one_component(tmp_path: Path) -> None:
 
 
 def test_stages_may_end_anywhere(tmp_path: Path) -> None:
-    """The same frames in one stage or in several are the same trajectory."""
     frames = walk(torus_trefoil(30), 4)
     told: list[tuple[int, int]] = []
     verdict = checked(tmp_path, trajectory(frames[:3], frames[2:]))
@@ -158,7 +156,6 @@ def test_what_stays_clear_of_obstacles(tmp_path: Path, offset: float) -> None:
 
 @pytest.mark.parametrize("obstacle", [plate(2.0), Obstacle([[-9, 1.0, 2.0], [9, 1.0, 2.0]], [[0, 1]])])
 def test_a_leg_through_an_obstacle(tmp_path: Path, obstacle: Obstacle) -> None:
-    """Every frame is clear of it."""
     first, last = rising(1, 4.0)
     assert all(checked(tmp_path, trajectory([frame], obstacles=[obstacle])).accepted for frame in (first, last))
     verdict = checked(tmp_path, trajectory([first, first, last], obstacles=[box(7, 8), obstacle]))

@@ -178,7 +178,6 @@ def test_no_gradient_where_the_derivative_is_normal() -> None:
 
 
 def test_several_barycenters() -> None:
-    """Parts of a link that are each held in place."""
     curve = centred(CURVES["hopf"])
     apart = curve.with_vertices(curve.vertices + 5.0 * curve.mesh.component[:, None])
     inner, constraints = (
@@ -196,7 +195,6 @@ def test_several_barycenters() -> None:
 
 @pytest.mark.parametrize("method", ["lbfgs", "cg", "trust-region", "penalty-lbfgs"])
 def test_methods_descend_as_with_the_exact_metric(method: str) -> None:
-    """Six steps get about as far, and stay on the constraints."""
     ends = []
     for start in (point_on(CURVES["knot"]), with_compressed_metric(CURVES["knot"])):
         rule = METHODS[method]

@@ -56,21 +56,6 @@ def test_circle(name, k):
     assert errors[-1] < (0.045 if name in ("h3-2", "moebius") else 0.002) * closed_form(name, k)
 
 
-@pytest.mark.parametrize("points", [1, 2, 3])
-def test_quadrature_rules_agree_in_the_limit(points):
-    counts = np.array([50, 100, 200])
-    errors = []
-    for n in counts:
-        u = np.cos(2 * np.pi * np.arange(n) / n)
-        errors.append(
-            abs(
-                u @ MoebiusMetric(Rule.gauss(points)).at(regular_polygon(int(n))).apply(u[:, None])[:, 0]
-                - closed_form("moebius", 1)
-            )
-        )
-    assert -np.polyfit(np.log(counts), np.log(errors), 1)[0] > 0.9
-
-
 @pytest.mark.parametrize("metric", METRICS.values(), ids=list(METRICS))
 @pytest.mark.parametrize(
     "curve",

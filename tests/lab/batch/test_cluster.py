@@ -131,24 +131,6 @@ def test_a_scheduler_that_is_killed_costs_no_result(port, rings, tmp_path, rows_
 
 
 @pytest.mark.slow
-def test_a_command_that_is_killed_costs_nothing(port, rings, tmp_path, rows_of):
-    """What its runs under way come to on the cluster is found by the same command, and not done again."""
-    out = tmp_path / "out"
-    words = ["batch", str(rings), "-o", str(out), "--scheduler", f"tcp://127.0.0.1:{port}"]
-    program = [sys.executable, "-m", "mobius_flow", *words, "--vertices", "60", "--tolerance", "1e-9"]
-    with cluster(port, 1, tmp_path):
-        with running(program) as process:
-            wait_for_one(out)
-            process.kill()
-        done = {path: path.stat().st_mtime_ns for path in out.glob("ring*/report.json")}
-        again = finished(program)
-    assert again.returncode == 0
-    assert "\n✓ 8 runs " in again.stdout
-    assert {path: path.stat().st_mtime_ns for path in done} == done
-    assert len(rows_of(out)) == 8
-
-
-@pytest.mark.slow
 def test_it_works_beside_snappy_and_listens_on_loopback_alone(port, rings, tmp_path):
     """The commands of the documents, with nannies, where SnapPy is installed in place of python-snappy."""
     manual = (Path(__file__).parents[3] / "docs/batch.md").read_text(encoding="utf-8")

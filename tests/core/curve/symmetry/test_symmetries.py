@@ -93,7 +93,6 @@ CURVES = {
 
 @pytest.mark.parametrize("name", CURVES)
 def test_curves_have_their_groups_wherever_they_lie(name: str) -> None:
-    """And so have their mirror images."""
     curve = CURVES[name]()
     group, other = symmetries(curve), symmetries(hidden(curve))
     assert group.name == other.name == symmetries(curve.with_vertices(-curve.vertices)).name == name

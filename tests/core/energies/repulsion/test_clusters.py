@@ -53,7 +53,6 @@ def test_clusters_are_ranges_within_balls_with_moments(obstacle: Obstacle) -> No
 @OBSTACLE
 @pytest.mark.parametrize("curve", [wavy(50), wavy(50, 0.98), wavy(7, 1.3)], ids=["inside", "near", "long edges"])
 def test_every_simplex_is_seen_once(obstacle: Obstacle, curve: Curve) -> None:
-    """With the kernel 1 the sum over an edge's panels is the size of the whole obstacle."""
     clusters = repulsion(obstacle).clusters
     schedule = Schedule.of(curve, clusters, THETA)
     total = np.zeros(len(curve))

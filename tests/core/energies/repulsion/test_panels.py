@@ -79,7 +79,6 @@ def test_contact_ends_the_halving() -> None:
 
 
 def test_an_edge_may_be_in_the_middle_of_an_obstacle() -> None:
-    """Where its midpoint is the centre of a cluster."""
     box = np.array([[2.0, 2, 2], [2, -2, -2], [-2, 2, -2], [-2, -2, 2]])
     obstacle = Obstacle(box, [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]])
     curve = Curve([[-0.1, 0, 0], [0.1, 0, 0], [0, 0.3, 0.1]])

@@ -59,7 +59,6 @@ CASE = pytest.mark.parametrize(("obstacle", "curve"), CASES.values(), ids=CASES)
 
 
 def test_a_sum_over_edges_and_simplices() -> None:
-    """By Gauss points on each edge and adaptive quadrature over each simplex."""
     curve = Curve([[0.0, 0, 0], [0.5, 0.1, 0], [0.3, 0.6, 0.2]])
     triangles = Obstacle([[1, 0, 1], [2, 0, 1], [1, 1, 1.5], [-1, 0, 1]], [[0, 1, 2], [0, 2, 3]])
     points, weights = np.polynomial.legendre.leggauss(6)

@@ -102,7 +102,7 @@ def test_circles() -> None:
 
 def test_what_is_too_large_is_not_computed() -> None:
     assert alexander(braid_diagram((1,) * (MAX_CROSSINGS + 1))) is None
-    assert jones(braid_diagram(tuple(range(1, 24)) * 24)) is None
+    assert jones(braid_diagram(tuple(range(1, 14)) * 14)) is None
 
 
 def test_quick_invariants_tell_knots_apart_and_are_kept_by_scrambles_and_turns():
@@ -115,7 +115,7 @@ def test_quick_invariants_tell_knots_apart_and_are_kept_by_scrambles_and_turns()
     assert quick_invariants(knot("L6a4")).linking == (0, 0, 0)
     curve = knot("6_2")
     expected = quick_invariants(curve)
-    assert quick_invariants(scramble(curve, seed=5)) == expected
+    assert quick_invariants(scramble(curve, seed=5, moves=300)) == expected
     q, _ = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))
     q[:, 0] *= np.sign(np.linalg.det(q))
     assert quick_invariants(curve.with_vertices(curve.vertices @ q)) == expected
