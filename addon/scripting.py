@@ -19,11 +19,14 @@ import bpy
 
 from ..core import Curve, Hand, Iterate, MobiusFlowError
 from ..core.keys.key_options import Pace
+from ..core.keys.placement import Measure
+from ..core.separate import SeparateOptions
 from .curves import bake, bevel, sizes
 from .curves.recorded import BakedKeys
 from .curves.session import Report, Session
+from .curves.splines import radii, stretch
 from .curves.surroundings import Surroundings
-from .live.requirements import BAKED, CLEARABLE, POLYGONS, READABLE, RELAXABLE, UNEDITED, idle, require
+from .live.requirements import BAKED, CLEARABLE, POLYGONS, READABLE, RELAXABLE, TUBED, UNEDITED, idle, require
 from .pictures import staging
 from .pictures.movie import Filming
 from .properties import DEFAULTS, check, key_options, relax_options
@@ -101,6 +104,24 @@ class Relaxation:
         values = complete(settings) | {"avoid": avoid}
         return begin(self.objects, values, False, self.sample_splines, Relaxation(*goals).objects).run()
 
+    def separate(
+        self,
+        avoid: Iterable[bpy.types.Object] = (),
+        over: str | None = None,
+        lengths: str = "free",
+        free_ends: bool = False,
+        **settings: Any,
+    ) -> Report:
+        """Become ropes that keep clear, as thick as their bevels, and keep the motion as keys; otherwise as `relax`.
+
+        ``over``, ``lengths`` and ``free_ends`` are those of `mobius_flow.core.separate`.
+        """
+        values, ropes = (
+            complete(settings) | {"avoid": avoid},
+            {"over": over, "lengths": lengths, "free_ends": free_ends},
+        )
+        return begin(self.objects, values, False, self.sample_splines, ropes=ropes).run()
+
     def relax_further(self, avoid: Iterable[bpy.types.Object] = (), **settings: Any) -> Report:
         """Go on from the end of the animation, with new keys after the old ones; otherwise as `relax`.
 
@@ -152,8 +173,12 @@ def begin(
     continues: bool,
     sample_splines: bool,
     goals: Sequence[bpy.types.Object] = (),
+    ropes: Mapping[str, Any] | None = None,
 ) -> Session:
-    """A session with the values of all settings, which becomes the goals if there are any; raises MobiusFlowError."""
+    """A session with the values of all settings, which becomes the goals if there are any; raises MobiusFlowError.
+
+    ``ropes``: the options of `separate` but for the radii, which are the tubes', if curves are to be separated.
+    """
     bpy.context.view_layer.update()  # of where objects are that a script has just moved
     require(
         idle() or RELAXABLE.of(objects) or READABLE.of(goals),
@@ -172,7 +197,17 @@ def begin(
         raise MobiusFlowError(f"avoid has {wrong[0]!r:.40}, which is not an object")
     surroundings = Surroundings.of(avoid, [*objects, *goals])
     pins, tangents = values.get("pins", ()), values["pin_tangents"]
-    return Session(objects, relax_options(values), options, continues, surroundings, pins, tangents, goals)
+    job = None
+    if ropes is not None:  # sizes are what is asked for: nothing is scaled, and no tube fitted
+        require(TUBED.of(objects))
+        options = replace(options, keep_size=Measure.LENGTH, fit_bevel=False)
+        widths = [
+            stretch(obj) * obj.data.bevel_depth * float(radii(each).max())
+            for obj in objects
+            for each in obj.data.splines
+        ]
+        job = SeparateOptions(radius=widths, **ropes)
+    return Session(objects, relax_options(values), options, continues, surroundings, pins, tangents, goals, job)
 
 
 def implied(given: Collection[str]) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from typing import Any
 
 import bpy
 import numpy as np
-from bpy.props import BoolProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, StringProperty
 
 from ...core import MobiusFlowError
 from ...core.base.messages import Message
@@ -21,6 +21,7 @@ from ..live.requirements import (
     CLEARABLE,
     POLYGONS,
     RELAXABLE,
+    TUBED,
     Condition,
     avoided,
     container,
@@ -180,6 +181,33 @@ keys go on from the end of their animation. Of all shapes of one energy they com
             "keep_size": "LENGTH" if values["keep_size"] == "AUTO" else values["keep_size"],
             "balance": values["balance"] or (free and closed),
         }
+
+
+class CURVE_OT_mobius_flow_separate(Relaxing, bpy.types.Operator):
+    """Make ropes of the selected curves, as thick as their bevels, that keep clear of themselves and each other, \
+moved as little as that allows; ends and pins stay in place. Where two curves meet, the later one goes over"""
+
+    bl_label = "Separate"
+    needs = (RELAXABLE, POLYGONS, TUBED)
+
+    over: EnumProperty(
+        name="Over",
+        description="Axis on whose side the later of two curves that meet goes over",
+        items=[
+            ("AUTO", "Automatic", "The direction in which curves extend least where they meet"),
+            *((axis, axis, "") for axis in ("X", "Y", "Z", "-X", "-Y", "-Z")),
+        ],
+        options={"SKIP_SAVE"},
+    )
+    keep_lengths: BoolProperty(
+        name="Keep Lengths", description="Let no segment change its length", options={"SKIP_SAVE"}
+    )
+    free_ends: BoolProperty(name="Free Ends", description="Hold ends only if they are pinned", options={"SKIP_SAVE"})
+
+    def session(self, context: bpy.types.Context, values: dict[str, Any]) -> Session:
+        over, lengths = None if self.over == "AUTO" else self.over.lower(), "keep" if self.keep_lengths else "free"
+        ropes = {"over": over, "lengths": lengths, "free_ends": self.free_ends}
+        return begin(selected_curves(context), values, False, self.sample_splines, ropes=ropes)
 
 
 class CURVE_OT_mobius_flow_pack(Relaxing, bpy.types.Operator):

@@ -22,6 +22,7 @@ from ...core.keys.key_options import Course, KeyOptions, Output
 from ...core.keys.motion import Key, Keys, Kind, Proof, Recording
 from ...core.keys.placement import Frame, Measure, Placement, Spot, spots
 from ...core.keys.tube import eased
+from ...core.separate import SeparateOptions
 from ..engine.worker import begun, in_common_space
 from . import bake, bevel
 from .goals import Goals
@@ -98,6 +99,7 @@ class Session:
     keys are added to theirs. ``pins``: points that are pinned besides the marked ones, counted from 0 through all
     splines of all objects; ``pin_tangents``: whether the neighbours of pinned points in the refined curve are, too.
     ``goals``: curve objects that the link is to become, one after the other; by default it is relaxed alone.
+    ``ropes``: how it is separated instead.
 
     ``curve``: all splines as polygons in world space; ``link``: where their vertices are stored; ``outcome``: how the
     relaxation ended, once it has.  Raises MobiusFlowError if the curves cannot be relaxed, or there is no room for
@@ -114,6 +116,7 @@ class Session:
         pins: Sequence[int] = (),
         pin_tangents: bool = False,
         goals: Sequence["bpy.types.Object"] = (),
+        ropes: SeparateOptions | None = None,
     ) -> None:
         key_options.check_room(options.max_iterations)
         self.surroundings, self._key_options, self._continues = surroundings, key_options, continues
@@ -130,9 +133,9 @@ class Session:
                 key_options.check_place()
             if obstacles and options.balance:
                 raise OptionError(Message("Balance does not go with what is avoided; leave it out, or avoid nothing"))
-            self.options, first, size = options, None, None
+            self.options, self.job, first, size = options, ropes or options, None, None
             if continues:  # the keys that are there have as many points as the curves have now
-                self.options = replace(options, vertices=len(self.curve), mesh="fixed", untangle="never")
+                self.options = self.job = replace(options, vertices=len(self.curve), mesh="fixed", untangle="never")
                 first = np.concatenate([coordinates(spline) for spline in self._splines])
                 size = self.members[0].size
         except BaseException:
@@ -180,7 +183,7 @@ class Session:
         try:
             hand = Hand()
             try:
-                relaxation = WithOutcome(begun(self.task, self.options, self.goals.curves, hand))
+                relaxation = WithOutcome(begun(self.task, self.job, self.goals.curves, hand))
                 for iterate in relaxation:
                     self.take(iterate)
                     if drag is not None:

@@ -33,6 +33,7 @@ from ...core.driver import Relaxation
 from ...core.keys.motion import frames_of
 from ...core.keys.placement import Frame, Link, Placement
 from ...core.morph import morphing
+from ...core.separate import SeparateOptions, separating
 
 Inbox = queue.SimpleQueue[Any]
 
@@ -74,8 +75,10 @@ def messages(inbox: Inbox) -> Iterator[Any]:
         yield error
 
 
-def begun(task: Task, options: RelaxOptions, goals: Mapping[str, Curve], hand: Hand) -> Relaxation:
-    """The relaxation of a task, which a hand may drag, or, if there are goals, its motion to one after the other."""
+def begun(task: Task, options: RelaxOptions | SeparateOptions, goals: Mapping[str, Curve], hand: Hand) -> Relaxation:
+    """The relaxation of a task, which a hand may drag, its motion to goals, one after the other, or its separation."""
+    if isinstance(options, SeparateOptions):
+        return separating(task, options)
     if not goals:
         return relax(task, options, hand)
     return morphing(
@@ -108,7 +111,7 @@ class Worker:
     def __init__(
         self,
         task: Task,
-        options: RelaxOptions,
+        options: RelaxOptions | SeparateOptions,
         link: Link,
         stays: bool = False,
         goals: Mapping[str, Curve] = MappingProxyType({}),

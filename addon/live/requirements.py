@@ -287,6 +287,12 @@ FITTABLE = Curves(
         lambda obj: not bevel.can_fit(obj.data),
     ),
 )
+TUBED = Curves(
+    Check(
+        "'{name}' has no bevel depth; set it to the rope's radius first (Object Data properties, Geometry > Bevel)",
+        lambda obj: not obj.data.bevel_depth,
+    )
+)
 PINNABLE = Curves(*_OWN, among=curves_at_hand)
 BAKED = Curves(*_BAKED)
 CLEARABLE = Curves(*_BAKED, _OBJECT_MODE, *_OWN)

@@ -154,7 +154,7 @@ class LiveRun:
         self.avoided = session.surroundings.names
         self.time_left = TimeLeft(session.options)
         try:
-            self._worker = Worker(session.task, session.options, self.session.link, stays, session.goals.curves)
+            self._worker = Worker(session.task, session.job, self.session.link, stays, session.goals.curves)
         except BaseException:
             self.session.discard()
             raise
@@ -171,7 +171,7 @@ class LiveRun:
 
     @cached_property
     def target(self) -> Target | None:
-        return target_of(self.session.task, self.session.options)
+        return target_of(self.session.task, self.session.options) if self.session.job is self.session.options else None
 
     def concerns(self, obj: bpy.types.Object | None) -> bool:
         """Whether it concerns an object: always while in progress, afterwards if the object is as the run left it."""

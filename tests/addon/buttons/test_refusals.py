@@ -119,7 +119,7 @@ def hidden_container():
 
 SELECT = "Select a curve object first"
 SMOOTH, BAKES = ("fit_tube", "tube_mesh", "smooth_curve"), ("continue", "bake_again", "clear", "keep_size")
-RELAXING = ("relax", "grab", "pack", "morph")
+RELAXING = ("relax", "grab", "pack", "morph", "separate")
 SHAPES = ("lay_flat", "face_camera", "color_components", *SMOOTH)
 CASES = {
     nothing: {
@@ -154,6 +154,7 @@ CASES = {
         "unpin": "No points of the selected curves are pinned",
         "morph": "Select a curve, and then the one that it is to become",
         "pack": "Pick a mesh as the container first",
+        "separate": "'Knot' has no bevel depth; set it to the rope's radius first",
         "stroke": "Draw in a 3D view",
         "show": "This curve has no problem to show",
         "recover": "No relaxation was cancelled",
