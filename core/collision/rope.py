@@ -26,7 +26,9 @@ from .boxes import BoxTree, Level, Test, contact_window, corners, still_triangle
 from .motion import Contact, FreeMotion, Limit
 from .planes import cross, march
 
-_STEPS = 16  # in which the border of points half a circle apart is followed: those up to π r/16 nearer are tested, too
+# in which the border of points half a circle apart is followed, more where they do not suffice: those up to the part
+# of π r nearer are tested, too
+_STEPS = (4, 16)
 _HALVINGS = 14  # of the time, until a corner is given up
 _BATCH = 1 << 13
 _TINY = np.finfo(np.float64).tiny
@@ -126,30 +128,30 @@ def _near(
         for k in range(0, int(whole.sum()), _BATCH):
             a, b = i[whole][k : k + _BATCH], j[whole][k : k + _BATCH]
             yield points, corners(mesh, a, b), np.stack([a, b]), radius[component[a]] + radius[component[b]]
-        # of others only a part counts; most are apart all the same
+        # of others only the parts that are half a circle apart or more count, but for a step: from the distance u on of
+        # i, and from v to w of j, counted as shares of the edges from the ends that are nearer along the curve
         i, j, ways, half = i[~whole], j[~whole], ways[:, ~whole], half[~whole]
-        width = 2.0 * radius[component[i]]
-        near = march(*points, corners(mesh, i, j), np.zeros(len(i)), 1.0, width) < 1.0
-        i, j, ways, half = i[near], j[near], ways[:, near], half[near]
-        if not len(i):
-            continue
-        # parts of i from distance u on, and of j from v to w, that are half a circle apart or more, but for a step
-        back = ways[1] < ways[0]
-        rest, step = half - ways.min(axis=0), np.arange(_STEPS)[:, None] / _STEPS
-        u = np.maximum(rest * (1.0 - step - 1.0 / _STEPS), 0.0) / longest[i]
-        v = rest * step / longest[j]
-        w = np.where(step + 1.0 / _STEPS == 1.0, 1.0, rest * (step + 1.0 / _STEPS) / longest[j])
-        there = (u <= 1.0) & (v <= 1.0)
-        i, j, back = (np.broadcast_to(each, there.shape)[there] for each in (i, j, back))
-        u, v, w = u[there], v[there], np.minimum(w[there], 1.0)
-        # u, v, w count from the ends that are nearer along the curve, as shares of the edges
-        ends = [(i, np.where(back, u, 1.0 - u)), (i, np.where(back, 1.0, 0.0))]
-        ends += [(j, np.where(back, 1.0 - s, s)) for s in (v, w)]
-        first, last = (
-            np.concatenate([p[:, mesh.tails[edge]] + share * e[:, edge] for edge, share in ends], axis=1)
-            for p, e in zip(points, spans, strict=True)
-        )
-        yield (first, last), np.arange(4 * len(i)).reshape(4, -1), np.stack([i, j]), 2.0 * radius[component[i]]
+        for steps in _STEPS:
+            back, rest, step = ways[1] < ways[0], half - ways.min(axis=0), np.arange(steps)[:, None] / steps
+            u = np.maximum(rest * (1.0 - step - 1.0 / steps), 0.0) / longest[i]
+            v = rest * step / longest[j]
+            w = np.where(step + 1.0 / steps == 1.0, 1.0, np.minimum(rest * (step + 1.0 / steps) / longest[j], 1.0))
+            pair = np.broadcast_to(np.arange(len(i)), u.shape)[there := (u <= 1.0) & (v <= 1.0)]
+            u, v, w, back = u[there], v[there], w[there], back[pair]
+            ends = [(i[pair], np.where(back, u, 1.0 - u)), (i[pair], np.where(back, 1.0, 0.0))]
+            ends += [(j[pair], np.where(back, 1.0 - s, s)) for s in (v, w)]
+            parts = tuple(
+                np.concatenate([p[:, mesh.tails[edge]] + share * e[:, edge] for edge, share in ends], axis=1)
+                for p, e in zip(points, spans, strict=True)
+            )
+            vertices, width = np.arange(4 * len(pair)).reshape(4, -1), 2.0 * radius[component[i[pair]]]
+            if steps == _STEPS[-1]:
+                yield parts, vertices, np.stack([i[pair], j[pair]]), width
+                continue
+            near = np.unique(pair[march(*parts, vertices, np.zeros(len(pair)), 1.0, width) < 1.0])
+            if not len(near):
+                break
+            i, j, ways, half = i[near], j[near], ways[:, near], half[near]
     if obstacles:
         still = still_triangles(tuple(obstacles), exponent)
         corners_of = np.ldexp(still.vertices.T, -exponent)

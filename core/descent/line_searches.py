@@ -36,9 +36,10 @@ class FirstTrial:
         if speed == 0.0:
             return 0.0, None
         tau = min(longest, self.max_displacement / speed)
+        if point.problem.radius is not None:  # a rope's barrier shortens steps
+            return tau, None
         end = point.problem.at(point.vertices + tau * direction)
-        # a rope has a barrier that shortens steps; only what is in the way of its centre line matters so far
-        free = point.problem.free_motion(point.placed, end.placed, as_rope=False)
+        free = point.problem.free_motion(point.placed, end.placed)
         if free.time < 1.0:
             tau *= self.collision_fraction * free.time
         return tau, free.contact

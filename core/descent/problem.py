@@ -161,12 +161,12 @@ class Problem:
         """Whether contact is tested: in R² and R³; in more dimensions nothing is knotted."""
         return len(self.units.offset) <= 3
 
-    def free_motion(self, start: FloatArray, end: FloatArray, *, as_rope: bool = True) -> FreeMotion:
+    def free_motion(self, start: FloatArray, end: FloatArray) -> FreeMotion:
         """How far a straight motion in the user's units, both (n, m), is proved free of contact, and that of a rope."""
         check_time()
         if not self.certifiable:
             return FreeMotion(1.0, None, Limit.UNTESTED)
-        if self.radius is None or not as_rope:
+        if self.radius is None:
             return free_motion(self.mesh, start, end, self.obstacles)
         return rope_motion(self.mesh, start, end, self.radius, self.obstacles)
 

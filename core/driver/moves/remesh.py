@@ -11,6 +11,7 @@ import numpy as np
 from ...base import BULK, FloatArray, IntArray, Message, MobiusFlowError, joined
 from ...collision import Contact, survives_rounding
 from ...curve import Curve, arcs
+from ...curve.measures import bending_radii
 from ...curve.refine import (
     Remeshed,
     Resolution,
@@ -189,8 +190,18 @@ class FinerMesh(Move):
 
 
 def split_edges(problem: Problem, curve: Curve, pieces: IntArray) -> Point | None:
-    """The same curve and problem with edges split into pieces; None if doubles are too coarse or vertices too many."""
-    pieces = problem.constraints.symmetry.most(pieces, curve.mesh)
+    """The same curve and problem with edges split into pieces; None if doubles are too coarse or vertices too many.
+
+    Pieces next to the corners of a rope stay so long that its bending radii do.
+    """
+    mesh, ell = curve.mesh, curve.edge_lengths
+    if problem.radius is not None and pieces.max() > 1:
+        tangents = np.minimum(ell[mesh.incoming], ell[mesh.outgoing]) / bending_radii(curve)  # 2 tan(θ/2)
+        shortest = problem.radius[mesh.edge_component] * np.maximum(tangents[mesh.tails], tangents[mesh.heads])
+        allowed = (ell / np.maximum(shortest, 1e-9 * ell)).astype(np.intp)
+        if (pieces := np.clip(pieces, 1, np.maximum(allowed, 1))).max() == 1:
+            return None
+    pieces = problem.constraints.symmetry.most(pieces, mesh)
     finer = subdivide(curve, pieces) if pieces.max() > 1 else curve
     try:
         check_refined(curve, finer, problem.obstacles)

@@ -1,48 +1,55 @@
 """A rope that is in the way of its own curve gives way, as far as that leads on."""
 
-import math
 from dataclasses import dataclass, field
+
+import numpy as np
 
 from ...base.arguments import number
 from ...descent import NoStep, Step
 from ...energies.components import energy_scale
 from ...energies.rope import Rope
 from ..outcome import Outcome
-from ..run import Change, Move, gradient_bound
+from ..run import Change, Move
 
 
 @dataclass(eq=False)
 class GiveWay(Move):
-    """Make a rope that keeps its thickness thinner where the curve rests against it, or finds no step for it."""
+    """Make a rope that keeps its thickness thinner where it holds the curve up, or leaves it no step.
 
-    share: float = number(0.7, most=1)  # that is left of the radius each time
-    pressing: float = number(1e-4)  # part of the energy that the rope's barrier has where the curve rests against it
-    gain: float = number(3e-4)  # part of the energy without which the next time is pointless
-    most: int = number(12)  # times
-    nearly: float = number(10.0)  # times the gradient of curves at rest, at which the rope's part of the energy shows
-    _start: float = field(default=0.0, init=False)
-    _times: int = field(default=0, init=False)
-    _energy: float = field(default=math.inf, init=False)  # without the rope's, when it last gave way
+    It holds it up where the last steps have gained little of what a thinner rope promises.  The first time there is
+    more patience: that is so at saddles of flow and rope, too, which are left within a dozen steps.
+    """
+
+    share: float = number(0.85, most=1)  # that is left of the radius each time
+    first: tuple[int, float] = (15, 0.08)  # steps, and the part of what is promised that they must gain, the first time
+    later: tuple[int, float] = (5, 0.5)
+    promise: float = number(1e-3)  # part of the energy, for a radius e times as small, below which it is not worth it
+    _start: float = field(default=0.0, init=False)  # radius before it gave way, if it did
+    _energies: list[float] = field(default_factory=list, init=False)  # on this mesh
+
+    def started(self) -> None:
+        self._energies.clear()
 
     def stepped(self, step: Step) -> Change | None:
-        point = self.run.point
-        bound = gradient_bound(self.run.options, point.problem.mesh, point.energy)
-        return self._where_pressed() if point.gradient_norm <= self.nearly * bound else None
+        self._energies.append(self.run.point.energy)
+        steps, part = self.later if self._start else self.first
+        if len(self._energies) <= steps:
+            return None
+        return self._where_in_the_way((self._energies[-1 - steps] - self._energies[-1]) / part)
 
     def converged(self, outcome: Outcome) -> Change | None:
-        return self._where_pressed()
+        return self._where_in_the_way(0.0)
 
-    def _where_pressed(self) -> Change | None:
-        rope = self._rope
+    def _where_in_the_way(self, least: float) -> Change | None:
+        """A thinner rope, if it promises so much and is worth it."""
+        point, rope = self.run.point, self._rope
         if rope is None:
             return None
-        point = self.run.point
-        pressure = rope.value(point.curve)
-        energy = energy_scale(point.problem.mesh, point.energy - pressure)
-        if pressure <= self.pressing * energy or energy > (1.0 - self.gain) * self._energy:
-            return None
-        self._energy = energy
-        return self._thinner()
+        pressure, derivative = rope.value_and_derivative(point.curve)
+        # r ∂E/∂r = −⟨P, ∂E/∂P⟩, by Euler's theorem: E stays the same if rope and curve are scaled
+        promised = -float(np.sum(derivative * point.vertices))
+        worth = promised > self.promise * energy_scale(point.problem.mesh, point.energy - pressure)
+        return self._thinner() if worth and promised > least else None
 
     def stuck(self, found: NoStep) -> Change | None:
         rope = self._rope  # which may have nothing to do with it
@@ -54,7 +61,7 @@ class GiveWay(Move):
             return outcome.adding(
                 "the curve is no rope at the start: a corner is too sharp, or it has too many dimensions"
             )
-        if not self._times or now is None:
+        if not self._start or now is None:
             return outcome
         told = "the rope gave way from radius {start:.3g} to {end:.3g}, as it was in its own way"
         return outcome.adding(told, start=self._start, end=float(now.max()))
@@ -62,14 +69,13 @@ class GiveWay(Move):
     @property
     def _rope(self) -> Rope | None:
         """The barrier of a rope that may give way."""
-        keeps = self.run.options.radius == "keep" and self._times < self.most
-        terms = self.run.problem.objective.terms if keeps else ()
+        terms = self.run.problem.objective.terms if self.run.options.radius == "keep" else ()
         return next((term for term in terms if isinstance(term, Rope)), None)
 
     def _thinner(self) -> Change:
         point = self.run.point
         radius = point.problem.radius
         assert radius is not None
-        self._start, self._times = self._start or float(radius.max()), self._times + 1
+        self._start = self._start or float(radius.max())
         thinner = point.problem.as_rope(self.share * radius)
         return Change(point=point.changing(objective=thinner.objective, radius=thinner.radius))
