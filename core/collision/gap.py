@@ -54,8 +54,8 @@ def check_gap(curve: Curve) -> None:
             raise CurveError(message, Place((), tuple(point.tolist())))
 
 
-def thickness(curve: Curve) -> float:
-    """Thickness: the radius of the thickest tube around a polygon that neither kinks nor touches itself.
+def thickness(curve: Curve, most: float = np.inf) -> float:
+    """Thickness: the radius of the thickest tube around a polygon that neither kinks nor touches itself, or ``most``.
 
     The smaller of two numbers (Rawdon, *Experimental Mathematics* 12, 2003): the least bending radius, and half the
     least distance of points that are further apart along the curve than half a circle of that radius is long.
@@ -63,8 +63,7 @@ def thickness(curve: Curve) -> float:
     """
     bend = float(bending_radii(curve).min())
     points, unit = scaled_points(curve)
-    best = float(np.ldexp(2.0 * bend, -unit)) ** 2 if np.isfinite(bend) else np.inf
-    best = min(best, 4.0 * len(points))  # for coordinates within ±1
+    best = min(float(np.ldexp(2.0 * min(bend, most), -unit)) ** 2, 4.0 * len(points))  # for coordinates within ±1
 
     def bound() -> float:
         return best
@@ -82,7 +81,7 @@ def thickness(curve: Curve) -> float:
         s = (ef * t - De).clip(0.0, ell[i])
         squares = squares[arc_distance_of_points(curve, i, s, j, t) >= np.pi * bend]
         best = min(best, float(squares.min(initial=np.inf)))
-    return min(bend, 0.5 * float(np.ldexp(np.sqrt(best), unit)))
+    return min(bend, most, 0.5 * float(np.ldexp(np.sqrt(best), unit)))
 
 
 def scaled_points(curve: Curve) -> tuple[FloatArray, int]:

@@ -137,7 +137,7 @@ def finish(relaxation: Relaxation, task: Task, callback: Callable[[Iterate], Non
             if last.method != method:
                 fallback.append(last.index)
             if last.radius is not None:
-                thinnest = min(thinnest, thickness(last.curve))
+                thinnest = thickness(last.curve, thinnest)
             if callback is not None:
                 callback(last)
     except (KeyboardInterrupt, MemoryError) as error:

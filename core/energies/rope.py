@@ -81,15 +81,15 @@ class Rope:
 
     def _sum(self, curve: Curve, vertices: FloatArray) -> tuple[FloatArray, FloatArray]:
         """E and its derivative at a curve's vertices, or after a complex step from them."""
-        strands, corners = self._strands(curve), self._corners(curve)
-        apart = self._apart(curve, *strands, EdgePairs.of(curve.mesh, vertices, *strands))
-        bent = self._bent(curve, *corners, EdgePairs.of(curve.mesh, vertices, *corners))
-        total = apart.value.sum() + bent.value.sum()
-        if not np.isfinite(total):
-            return total, np.zeros_like(vertices)
-        first = np.concatenate([apart.first, bent.first])
-        i, j = np.concatenate([strands, corners], axis=1)
-        return total, scatter_first(curve.mesh, i, j, first)
+        mesh, total, first = curve.mesh, np.zeros((), vertices.dtype), np.zeros_like(vertices)
+        for (i, j), barrier in ((self._strands(curve), self._apart), (self._corners(curve), self._bent)):
+            if len(i):
+                part = barrier(curve, i, j, EdgePairs.of(mesh, vertices, i, j))
+                total = total + part.value.sum()
+                if not np.isfinite(total):
+                    return total, np.zeros_like(vertices)
+                first = first + scatter_first(mesh, i, j, part.first)
+        return total, first
 
     def _strands(self, curve: Curve) -> tuple[IntArray, IntArray]:
         """Unordered pairs of edges within the barrier's reach that are far enough along the curve."""

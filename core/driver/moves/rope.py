@@ -20,9 +20,10 @@ class GiveWay(Move):
     more patience: that is so at saddles of flow and rope, too, which are left within a dozen steps.
     """
 
-    share: float = number(0.85, most=1)  # that is left of the radius each time
+    share: float = number(0.8, most=1)  # that is left of the radius each time
     first: tuple[int, float] = (15, 0.08)  # steps, and the part of what is promised that they must gain, the first time
     later: tuple[int, float] = (5, 0.5)
+    every: int = number(3)  # steps between two looks
     promise: float = number(1e-3)  # part of the energy, for a radius e times as small, below which it is not worth it
     _start: float = field(default=0.0, init=False)  # radius before it gave way, if it did
     _energies: list[float] = field(default_factory=list, init=False)  # on this mesh
@@ -33,7 +34,7 @@ class GiveWay(Move):
     def stepped(self, step: Step) -> Change | None:
         self._energies.append(self.run.point.energy)
         steps, part = self.later if self._start else self.first
-        if len(self._energies) <= steps:
+        if len(self._energies) <= steps or len(self._energies) % self.every:
             return None
         return self._where_in_the_way((self._energies[-1 - steps] - self._energies[-1]) / part)
 
