@@ -16,15 +16,15 @@ from ..run import Change, Move
 class GiveWay(Move):
     """Make a rope that keeps its thickness thinner where it holds the curve up, or leaves it no step.
 
-    It holds it up where the last steps have gained little of what a thinner rope promises.  The first time there is
-    more patience: that is so at saddles of flow and rope, too, which are left within a dozen steps.
+    It holds it up where the last steps have gained little of what a thinner rope promises, r ∂E/∂r.  The first time
+    there is more patience, as saddles of flow and rope are left in a dozen steps.
     """
 
     share: float = number(0.8, most=1)  # that is left of the radius each time
-    first: tuple[int, float] = (15, 0.08)  # steps, and the part of what is promised that they must gain, the first time
+    first: tuple[int, float] = (15, 0.08)  # steps that must gain this part of the promise, the first time
     later: tuple[int, float] = (5, 0.5)
-    every: int = number(3)  # steps between two looks
-    promise: float = number(1e-3)  # part of the energy, for a radius e times as small, below which it is not worth it
+    every: int = number(3)  # steps, to save time
+    worth: float = number(1e-3)  # part of the energy that the promise must be
     _start: float = field(default=0.0, init=False)  # radius before it gave way, if it did
     _energies: list[float] = field(default_factory=list, init=False)  # on this mesh
 
@@ -42,15 +42,15 @@ class GiveWay(Move):
         return self._where_in_the_way(0.0)
 
     def _where_in_the_way(self, least: float) -> Change | None:
-        """A thinner rope, if it promises so much and is worth it."""
+        """A thinner rope, if it promises more than that, and enough."""
         point, rope = self.run.point, self._rope
         if rope is None:
             return None
         pressure, derivative = rope.value_and_derivative(point.curve)
-        # r ∂E/∂r = −⟨P, ∂E/∂P⟩, by Euler's theorem: E stays the same if rope and curve are scaled
-        promised = -float(np.sum(derivative * point.vertices))
-        worth = promised > self.promise * energy_scale(point.problem.mesh, point.energy - pressure)
-        return self._thinner() if worth and promised > least else None
+        # Euler's theorem, as E stays the same if rope and curve are scaled; lengths that weigh its terms count little
+        promise = -float(np.sum(derivative * point.vertices))
+        worth = promise > self.worth * energy_scale(point.problem.mesh, point.energy - pressure)
+        return self._thinner() if worth and promise > least else None
 
     def stuck(self, found: NoStep) -> Change | None:
         rope = self._rope  # which may have nothing to do with it

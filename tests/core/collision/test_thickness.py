@@ -62,3 +62,10 @@ def test_brute_force_and_scale(name: str) -> None:
     curve = smooth_knot(name, 150)
     assert thickness(curve) == pytest.approx(slow_thickness(curve), rel=1e-3)
     assert thickness(curve.with_vertices(1e6 * curve.vertices)) == pytest.approx(1e6 * thickness(curve), rel=1e-9)
+
+
+@pytest.mark.parametrize("share", [0.5, 0.999, 1.001, 2.0])
+def test_only_what_is_less_is_looked_for(share: float) -> None:
+    curve = knot("5_2", 120)
+    whole = thickness(curve)
+    assert thickness(curve, share * whole) == pytest.approx(min(share, 1.0) * whole, rel=1e-12)

@@ -1,14 +1,18 @@
 """Runs that keep a rope: its radius is kept, gives way where that leads on, and is refused where it cannot be."""
 
+from copy import copy
 from itertools import pairwise
 
 import numpy as np
 import pytest
-from mobius_flow.core import CurveError, Obstacle, OptionError, RelaxOptions, Task, minimize, morph
+from mobius_flow.core import Curve, CurveError, Obstacle, OptionError, RelaxOptions, Task, minimize, morph
 from mobius_flow.core.collision import is_rope, thickness
-from mobius_flow.core.descent import NoStep
+from mobius_flow.core.curve.measures import bending_radii
+from mobius_flow.core.descent import NoStep, Step
+from mobius_flow.core.driver.moves.remesh import split_edges
 from mobius_flow.core.driver.moves.rope import GiveWay
 from mobius_flow.core.driver.relax import begin
+from mobius_flow.core.energies.rope import Rope
 from mobius_flow.core.knots import knot, overhand, torus_knot
 
 WALL = Obstacle([[-9.0, -9, 0], [9, -9, 0], [0, 18, 0]], [[0, 1, 2]])
@@ -72,6 +76,52 @@ def test_the_radius_gives_way_where_it_is_in_its_own_way() -> None:
     assert "the rope gave way from radius" in rope.message
     assert rope.last.radius is not None
     assert rope.last.radius[0] < 0.8 * thickness(start)
+
+
+def test_it_gives_way_where_steps_gain_little_of_what_that_promises() -> None:
+    run = begin(Task.of(knot("3_1", 60)), RelaxOptions(radius="keep", vertices=60, mesh="fixed"))
+    point = run.point
+
+    def answers(gain: float) -> list[bool]:
+        """To steps that have gained so much, each."""
+        move, answered = GiveWay(run), []
+        for k in range(21):
+            run.point = copy(point)
+            run.point._energy_and_derivative = point.energy - k * gain, point.derivative
+            answered.append(move.stepped(step) is not None)
+        return answered
+
+    step = run.step()
+    assert isinstance(step, Step)
+    patience = GiveWay(run).first[0]
+    assert answers(0.0) == [k > patience and k % GiveWay.every == 2 for k in range(21)]
+    assert not any(answers(0.01 * point.energy))
+
+
+def test_what_a_thinner_rope_promises() -> None:
+    """−⟨P, ∂E/∂P⟩ is r ∂E/∂r, but for the lengths that weigh terms."""
+    curve = knot("4_1", 150)
+    radius = np.array([0.8 * thickness(curve)])
+    rope = Rope(radius).frozen_at(curve)
+    thick, thin = (Rope(share * radius).value(curve) for share in (1.0001, 0.9999))
+    promise = -np.sum(rope.value_and_derivative(curve)[1] * curve.vertices)
+    assert promise == pytest.approx((thick - thin) / 2e-4, rel=0.25)
+
+
+@pytest.mark.parametrize("name", ["4_1", "L6a4", "goeritz"])
+def test_edges_of_a_rope_are_split_as_its_bending_radii_bear(name: str) -> None:
+    """Without a rope corners get radii a quarter as large."""
+    task = Task.of(knot(name))
+    for radius in ("keep", "none"):
+        problem = begin(task, RelaxOptions(radius=radius)).problem
+        curve, rope = task.curve, problem.radius
+        finer = split_edges(problem, curve, np.full(curve.mesh.edges, 4))
+        assert finer is not None
+        least = bending_radii(Curve(finer.placed, finer.problem.mesh)).min()
+        if rope is None:
+            assert least == pytest.approx(bending_radii(curve).min() / 4, rel=1e-6)
+        else:
+            assert least >= (1 - 1e-9) * rope.min()
 
 
 def test_a_given_radius_does_not_give_way() -> None:
