@@ -81,8 +81,8 @@ def _info(options: argparse.Namespace) -> int:
         described = [_as_json(path, each) for path, each in found]
         emit(json.dumps(described if len(described) > 1 else described[0]))
     else:
-        advised = (([*_rows(each), *_advice(path, each, options.close)], path) for path, each in found)
-        emit("\n\n".join(report((path, ""), rows, sys.stdout, 1) for rows, path in advised))
+        rows = ((path, _rows(path, each, options.close)) for path, each in found)
+        emit("\n\n".join(report((path, ""), each, sys.stdout, 1) for path, each in rows))
     return 0
 
 
@@ -128,7 +128,8 @@ def _as_json(path: str, found: Info) -> Mapping[str, object]:
     }
 
 
-def _rows(found: Info) -> Iterator[tuple[str, str]]:
+def _rows(path: str, found: Info, closed: bool) -> Iterator[tuple[str, Item]]:
+    """What is known of a curve, and in the end what tells more about it."""
     sizes = f" ({', '.join(map(str, found.components))} vertices)"
     yield "components", f"{counted(len(found.components), 'component')}{sizes}"
     yield "type", found.type.sentence
@@ -155,10 +156,6 @@ def _rows(found: Info) -> Iterator[tuple[str, str]]:
     yield "gap between edges", _number(found.gap) + more
     if found.symmetry is not None and found.symmetry.name != "C1":
         yield "symmetry", f"{found.symmetry.name} (misses by {100 * found.symmetry.distance:.2g} % of the curve's size)"
-
-
-def _advice(path: str, found: Info, closed: bool) -> Iterator[tuple[str, Item]]:
-    """What tells more about a curve."""
     diagram = found.type.diagram
     if found.open and found.dimension == 3 and not closed:
         yield "next", [command("info", path, "--close")]

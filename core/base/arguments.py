@@ -52,7 +52,9 @@ def checked(function: Callable[_Arguments, _Result]) -> Callable[_Arguments, _Re
         hints = _hints(function)
         for name, value in given.items():
             if name in hints and not _fits(value, hints[name]):
-                raise MobiusFlowError(f"{name} is {_described(value)}; give {_wanted(hints[name])}")
+                is_short = isinstance(value, str | int | float | complex | tuple | None)
+                told = shown(value) if is_short else f"of type {type(value).__name__}"
+                raise MobiusFlowError(f"{name} is {told}; give {_wanted(hints[name])}")
         return function(*args, **keywords)
 
     return called
@@ -131,13 +133,6 @@ def _fits(value: Any, hint: Any) -> bool:
         at_run_time = getattr(kind, "_is_runtime_protocol", False)
         return not at_run_time or (isinstance(value, kind) and not isinstance(value, type))
     return isinstance(value, kind)
-
-
-def _described(value: Any) -> str:
-    """What is given: the value itself where that is short, or its type."""
-    if isinstance(value, str | int | float | complex | tuple | None):
-        return shown(value)
-    return f"of type {type(value).__name__}"
 
 
 def _wanted(hint: Any) -> str:

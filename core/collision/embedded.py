@@ -63,13 +63,26 @@ def check_embedded(curve: Curve) -> None:
 
 
 def _touching_pairs(curve: Curve, points: FloatArray) -> Iterator[tuple[int, int]]:
-    """Pairs of edges that touch, decided exactly; raises a CurveError if too many pairs are doubtful."""
-    for count, (i, j) in enumerate(_doubtful_pairs(curve.mesh, points)):
-        ends = curve.vertices[corners(curve.mesh, i, j)]  # as given: scaling may cost the smallest digits
-        if first_contact(ends, ends) is not None:
-            yield i, j
-        if count == 2000:  # that take about a second; `check_gap` refuses strands that need more, if not this
-            raise _refusal(DOUBTFUL, curve, i, j)
+    """Pairs of edges that touch, sorted batch by batch; raises a CurveError if too many pairs are doubtful.
+
+    Pairs are doubtful if no plane separates them certainly in floating-point numbers; these are decided exactly.  Never
+    all at once: where thousands of edges coincide there are millions, and the first is enough.  No comparison of boxes
+    is rounded: a gap has the sign of the exact difference.
+    """
+    tree, mesh, count = BoxTree.build(curve.mesh, points, points), curve.mesh, 0
+
+    def near(level: Level, a: IntArray, other: Level, b: IntArray) -> BoolArray:
+        return np.asarray((level.gaps(a, other, b)[0] <= 0).all(axis=0))
+
+    for a, b in tree.pairs(near):
+        pairs = np.sort(tree.order[np.stack([a, b])], axis=0)
+        for i, j in sorted(pairs[:, doubtful(points, corners(mesh, *pairs))].T.tolist()):
+            ends = curve.vertices[corners(mesh, i, j)]  # as given: scaling may cost the smallest digits
+            if first_contact(ends, ends) is not None:
+                yield i, j
+            if count == 2000:  # that take about a second; `check_gap` refuses strands that need more, if not this
+                raise _refusal(DOUBTFUL, curve, i, j)
+            count += 1
 
 
 def _coinciding_pairs(curve: Curve, points: FloatArray) -> Iterator[tuple[int, int]]:
@@ -77,23 +90,6 @@ def _coinciding_pairs(curve: Curve, points: FloatArray) -> Iterator[tuple[int, i
     nearest = MIN_SPACING * float(np.ptp(points, axis=1).max())
     for i, j, _ in near_edges(curve, points, lambda: nearest**2):
         yield from sorted(zip(*np.sort(np.stack([i, j]), axis=0).tolist(), strict=True))
-
-
-def _doubtful_pairs(mesh: Mesh, points: FloatArray) -> Iterator[tuple[int, int]]:
-    """Pairs of edges that no plane separates certainly in floating-point numbers, sorted batch by batch.
-
-    Never all at once: where thousands of edges coincide there are millions, and the first is enough. No comparison of
-    boxes is rounded: a gap has the sign of the exact difference.
-    """
-    tree = BoxTree.build(mesh, points, points)
-
-    def near(level: Level, a: IntArray, other: Level, b: IntArray) -> BoolArray:
-        return np.asarray((level.gaps(a, other, b)[0] <= 0).all(axis=0))
-
-    for a, b in tree.pairs(near):
-        i, j = np.sort(tree.order[np.stack([a, b])], axis=0)
-        kept = doubtful(points, corners(mesh, i, j))
-        yield from sorted(zip(i[kept].tolist(), j[kept].tolist(), strict=True))
 
 
 def meeting_point(ends: FloatArray) -> FloatArray:

@@ -132,16 +132,9 @@ def below(time: Fraction) -> float:
 
 
 def _free(motion: Motion) -> bool:
-    # whether one of the moving planes separates the segments all the time
-    return _skew(motion) or any(all(min(gap) > 0 for gap in gaps) for gaps in _gaps(motion))
-
-
-def _skew(motion: Motion) -> bool:
-    """Whether the two lines are coplanar at no time."""
-    if len(motion[0]) == 2:
-        return False
-    volume = _volume(motion)
-    return min(volume) > 0 or max(volume) < 0
+    """Whether the two lines are coplanar at no time, or a moving plane separates the segments all the time."""
+    volume = _volume(motion) if len(motion[0]) == 3 else [0]
+    return min(volume) > 0 or max(volume) < 0 or any(all(min(gap) > 0 for gap in gaps) for gaps in _gaps(motion))
 
 
 def _only_root(motion: Motion) -> tuple[int, int] | None:

@@ -1,6 +1,7 @@
 """Distances between edges that are not neighbours, folds of neighbours, and the resulting thickness."""
 
 from collections.abc import Callable, Iterator
+from itertools import chain
 
 import numpy as np
 
@@ -17,13 +18,18 @@ def minimal_gap(curve: Curve) -> tuple[float, tuple[int, int] | None]:
     edges, has no such pair: infinity and None.
     """
     points, unit = scaled_points(curve)
-    best, pair = _some_gap(curve, points)
+    best, pair = np.inf, None
     farthest = 4.0 * len(points)  # for coordinates within ±1; finite, since the boxes' padding is infinitely far
 
     def bound() -> float:
         return min(best, farthest)
 
-    for i, j, squares in near_edges(curve, points, bound):
+    mesh = curve.mesh
+    i, j = np.arange(mesh.edges), mesh.next[mesh.next]
+    apart = (j != mesh.next) & (mesh.next[j] != i)  # a triangle has no edges one edge apart, nor has the end of an arc
+    i, j = i[apart], j[apart]
+    begin = i, j, squared_segment_distances(points, corners(mesh, i, j))
+    for i, j, squares in chain([begin], near_edges(curve, points, bound)):
         if i.size and squares.min() < best:
             k = int(np.argmin(squares))
             best, pair = float(squares[k]), (int(i[k]), int(j[k]))
@@ -131,19 +137,6 @@ def squared_gaps(signed: FloatArray) -> FloatArray:
     rounded monotonically, in the same order for all pairs.
     """
     return np.asarray(sum(gap * gap for gap in np.maximum(signed[0], 0.0)))
-
-
-def _some_gap(curve: Curve, points: FloatArray) -> tuple[float, tuple[int, int] | None]:
-    """A squared gap to begin with: the smallest one between edges one edge apart, and these; infinite without any."""
-    mesh = curve.mesh
-    i, j = np.arange(mesh.edges), mesh.next[mesh.next]
-    apart = (j != mesh.next) & (mesh.next[j] != i)  # a triangle has no such edges, nor has the end of an arc
-    i, j = i[apart], j[apart]
-    if not i.size:
-        return np.inf, None
-    squares = squared_segment_distances(points, corners(mesh, i, j))
-    k = int(np.argmin(squares))
-    return float(squares[k]), (int(i[k]), int(j[k]))
 
 
 def folds(mesh: Mesh) -> IntArray:

@@ -129,6 +129,12 @@ class Curve:
         """Total length of all components."""
         return float(self.edge_lengths.sum())
 
+    @property
+    def barycenter(self) -> FloatArray:
+        """Σ ℓ_I m_I / Σ ℓ_I; shape (m,)."""
+        moments = np.ascontiguousarray((self.edge_lengths[:, None] * self.midpoints).T)  # so that sums are pairwise
+        return np.asarray(np.sum(moments, axis=1) / self.length)
+
     @cached_property
     def arc_starts(self) -> FloatArray:
         """Arc length from its component's first vertex to the tail of every edge; shape (edges,)."""

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from reprlib import repr as short
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -48,7 +47,11 @@ class Mesh:
             ) from error
         if not self.component_sizes:
             raise CurveError("the curve is empty: it has no component; give at least one polygon")
-        object.__setattr__(self, "closed", _flags(self.closed, len(self.component_sizes)))
+        components, flags = len(self.component_sizes), tuple(self.closed) if is_list(self.closed) else (None,)
+        if len(flags) not in (0, components) or not all(isinstance(flag, bool | np.bool_) for flag in flags):
+            told = f"closed is {shown(self.closed)}; it must have True or False for each of {components} components"
+            raise CurveError(told)
+        object.__setattr__(self, "closed", tuple(map(bool, flags)) or (True,) * components)
         for k, (size, closed) in enumerate(zip(self.component_sizes, self.closed, strict=True), start=1):
             least, kind = _KINDS[closed]
             if size < least:
@@ -243,16 +246,6 @@ def component_order(mesh: Mesh, points: FloatArray) -> IntArray:
 def near_to_near(points: FloatArray) -> IntArray:
     """Points in an order in which neighbours in space are near each other, that of a k-d tree; (m, k) -> (k,)."""
     return np.asarray(cKDTree(points.T, leafsize=1).indices)
-
-
-def _flags(closed: Any, components: int) -> tuple[bool, ...]:
-    """Whether each component is closed; by default all are."""
-    flags = tuple(closed) if is_list(closed) else None
-    if flags == ():
-        return (True,) * components
-    if flags is None or len(flags) != components or not all(isinstance(flag, bool | np.bool_) for flag in flags):
-        raise CurveError(f"closed is {shown(closed)}; it must have True or False for each of {components} components")
-    return tuple(map(bool, flags))
 
 
 def _slices(offsets: IntArray) -> tuple[slice, ...]:

@@ -255,14 +255,6 @@ class Point:
     def derivative(self) -> FloatArray:
         return self._energy_and_derivative[1]
 
-    @property
-    def energy_as_placed(self) -> float:
-        """The objective of the rounded coordinates that users get, which far from the origin are another curve's."""
-        rounded = self.problem.units.from_user(self.placed)
-        # a displacement that changes no energy visibly, in the program's units
-        same = np.max(np.abs(rounded - self.vertices)) <= 1e-8
-        return self.energy if same else self.problem.at(rounded).energy
-
     @cached_property
     def residual(self) -> FloatArray:
         """How far r lengths and p barycenters are from their targets, shape (r + p·m,); 0 where none is prescribed."""

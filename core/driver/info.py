@@ -127,7 +127,7 @@ def info(curve: Curve) -> Info:
     check_units(curve)
     check_embedded(curve)
     check_gap(curve)
-    in_space, few = curve.dimension == 3, len(curve) <= PAIRS_UP_TO
+    in_space, few, names = curve.dimension == 3, len(curve) <= PAIRS_UP_TO, ("moebius", "edge", "vertex")
     writhe, crossings = writhe_and_crossings(curve) if in_space and few else (None, None)
     kind, rest, smooth, symmetry = knot_type(curve), None, None, None
     if len(curve) <= REST_UP_TO:
@@ -148,9 +148,7 @@ def info(curve: Curve) -> Info:
         open=not curve.mesh.all_closed,
         dimension=curve.dimension,
         type=kind,
-        energies={
-            name: measure(curve, name) if few or name == "moebius" else None for name in ("moebius", "edge", "vertex")
-        },
+        energies={name: measure(curve, name) if few or name == "moebius" else None for name in names},
         rest=rest,
         smooth=smooth,
         length=curve.length,

@@ -85,10 +85,14 @@ class Run:
     def described(self, index: int, step_size: float = 0.0, path: tuple[FloatArray, ...] = ()) -> Iterate:
         """The point as an iterate with a number."""
         point, constraints, pull = self.point, self.problem.constraints, self.problem.objective.pull
+        # users get rounded coordinates: far from the origin those of another curve, of another energy beyond 1e-8
+        rounded = point.problem.units.from_user(point.placed)
+        same = np.max(np.abs(rounded - point.vertices)) <= 1e-8
+        energy = point.energy if same else point.problem.at(rounded).energy
         return Iterate(
             index=index,
             curve=Curve(point.placed, point.problem.mesh),
-            energy=point.energy_as_placed - (0.0 if pull is None else pull.value(point.curve)),
+            energy=energy - (0.0 if pull is None else pull.value(point.curve)),
             gradient_norm=point.gradient_norm,
             step_size=step_size,
             path=path,

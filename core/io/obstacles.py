@@ -10,7 +10,7 @@ import numpy as np
 from ..base import CurveError, CurveFileError, checked
 from ..curve.obstacle import Obstacle
 from . import load_curve
-from .obj import Content, Face, check_known, index_of, parsed
+from .obj import check_known, index_of, parsed
 from .source import Source
 
 Point = Sequence[float]
@@ -37,30 +37,26 @@ def read_obstacle(path: str | os.PathLike[str]) -> Obstacle:
                     f"a face with {len(face.words)} corners takes too long to cut into triangles after those before"
                 )
                 raise source.error(f"{reason} it; triangulate the mesh before exporting it", face.line)
-        triangles = [triangle for face in content.faces for triangle in _triangles(source, content, face)]
+        triangles: list[Triangle] = []
+        for face in content.faces:
+            if len(face.words) < 3:
+                raise source.error("a face (f) needs at least three vertices", face.line)
+            corners = [index_of(source, word, face.line, face.known) for word in face.words]
+            check_known(source, max(corners), len(content.points), face.line)
+            found = triangulated([content.points[k] for k in corners])
+            triangles += ((corners[a], corners[b], corners[c]) for a, b, c in found)
         segments = [(link.tail, link.head) for link in content.links]
         if not triangles and not segments:
             raise source.error("no face (f) and no polyline (l) found; an obstacle is made of these")
-        simplices: Sequence[tuple[int, ...]] = segments
-        if triangles:
-            simplices = [*triangles, *((i, j, j) for i, j in segments)]
+        mixed = [*triangles, *((i, j, j) for i, j in segments)]
         try:
-            return Obstacle(content.points, simplices, source.path.name)
+            return Obstacle(content.points, mixed if triangles else segments, source.path.name)
         except CurveError as error:
             raise source.error(str(error).removeprefix(f"{source.path.name}: ")) from error
     curve = load_curve(path).curve
     if curve.dimension != 3:
         raise CurveFileError(path, f"its points have {curve.dimension} coordinates; obstacles are in space")
     return Obstacle(curve.vertices, np.stack([curve.mesh.tails, curve.mesh.heads], axis=1), path.name)
-
-
-def _triangles(source: Source, content: Content, face: Face) -> list[Triangle]:
-    if len(face.words) < 3:
-        raise source.error("a face (f) needs at least three vertices", face.line)
-    corners = [index_of(source, word, face.line, face.known) for word in face.words]
-    check_known(source, max(corners), len(content.points), face.line)
-    found = triangulated([content.points[k] for k in corners])
-    return [(corners[a], corners[b], corners[c]) for a, b, c in found]
 
 
 def triangulated(points: Sequence[Point]) -> list[Triangle]:

@@ -30,8 +30,8 @@ def read(source: Source) -> list[Polygon]:
             apart, closed = apart or not sign or begins_open, closed and not begins_open
             continue
         words = _SEPARATOR.split(content.strip())
-        if columns is None and (chosen := _named(words)) is not None:
-            columns = len(words)
+        if columns is None and {"x", "y"} <= set(names := [word.strip("\"'").lower() for word in words]):
+            columns, chosen = len(words), [names.index(axis) for axis in "xyz" if axis in names]
             continue
         if columns is not None and len(words) != columns:
             raise source.error(f"{len(words)} columns where the lines before have {columns}", number)
@@ -47,12 +47,6 @@ def read(source: Source) -> list[Polygon]:
         components[-1][1].append(number)
         apart, closed = False, True
     return [Polygon(points, lines.__getitem__, closed) for points, lines, closed in components]
-
-
-def _named(words: list[str]) -> list[int] | None:
-    """The columns that a line of names assigns to coordinates; None if it is not such a line."""
-    names = [word.strip("\"'").lower() for word in words]
-    return [names.index(axis) for axis in "xyz" if axis in names] if {"x", "y"} <= set(names) else None
 
 
 def separated(separator: str, head: bool = False) -> Callable[[Curve, TextIO], None]:

@@ -108,33 +108,25 @@ class Drawing:
         parts, nearest = [], 1e-4 * _size(self.curve)
         for part in self.curve.mesh.slices:
             mine = order[(at[order] >= part.start) & (at[order] < part.stop)]
-            parts.append(_lifted(self.curve.vertices[part], at[mine] - part.start, lift[mine], nearest))
+            points, own = self.curve.vertices[part], lift[mine]
+            closed = np.concatenate([points, points[:1]])
+            arc = arc_lengths(closed)
+            marks = np.interp(at[mine] - part.start, np.arange(len(closed)), arc)
+            places = _with(marks, arc[:-1], nearest, arc[-1])  # vertices give way to crossings that are nearer
+            for a, b in pairwise([*marks, marks[0] + arc[-1]] if len(marks) else [0.0, arc[-1]]):
+                ramp = np.linspace(a, b, 10, endpoint=False)[1:]
+                places = _with(places, ramp % arc[-1], 0.5 * (ramp[1] - ramp[0]), arc[-1])
+            height = np.zeros(len(places))
+            if len(marks):  # smooth ramps between crossings
+                ends = np.concatenate([marks[-1:] - arc[-1], marks, marks[:1] + arc[-1]])
+                k = np.searchsorted(ends, places, side="right") - 1
+                u = (places - ends[k]) / (ends[k + 1] - ends[k])
+                low, high = np.take(own, k - 1, mode="wrap"), np.take(own, k, mode="wrap")
+                height = low + (high - low) * u * u * (3.0 - 2.0 * u)
+            parts.append(np.column_stack([*(np.interp(places, arc, x) for x in closed.T), height]))
         curve = Curve.from_components(parts)
         check_embedded(curve)
         return curve
-
-
-def _lifted(points: FloatArray, at: FloatArray, lift: FloatArray, nearest: float) -> FloatArray:
-    """Lift a closed polygon, shape (n, 2), to given heights at some places, with smooth ramps between them.
-
-    The places are edges and fractions of them, each as one number, sorted; vertices nearer to one than ``nearest`` give
-    way to it.  The result is a finer polygon, shape (m, 3), straight above the given one.
-    """
-    closed = np.concatenate([points, points[:1]])
-    arc = arc_lengths(closed)
-    marks = np.interp(at, np.arange(len(closed)), arc)
-    places = _with(marks, arc[:-1], nearest, arc[-1])
-    for a, b in pairwise([*marks, marks[0] + arc[-1]] if len(marks) else [0.0, arc[-1]]):
-        ramp = np.linspace(a, b, 10, endpoint=False)[1:]
-        places = _with(places, ramp % arc[-1], 0.5 * (ramp[1] - ramp[0]), arc[-1])
-    plane = [np.interp(places, arc, x) for x in closed.T]
-    if not len(marks):
-        return np.column_stack([*plane, np.zeros(len(places))])
-    ends = np.concatenate([marks[-1:] - arc[-1], marks, marks[:1] + arc[-1]])
-    k = np.searchsorted(ends, places, side="right") - 1
-    u = (places - ends[k]) / (ends[k + 1] - ends[k])
-    low, high = np.take(lift, k - 1, mode="wrap"), np.take(lift, k, mode="wrap")
-    return np.column_stack([*plane, low + (high - low) * u * u * (3.0 - 2.0 * u)])
 
 
 def _with(places: FloatArray, more: FloatArray, nearest: float, length: float) -> FloatArray:

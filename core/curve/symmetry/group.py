@@ -75,9 +75,8 @@ class SymmetryGroup:
         # of each component: a number of vertices that the group permutes, the place of the first one, a share of the
         # length, and the number of turns along the curve
         counts, begins, steps = np.array(sizes), np.zeros(len(sizes)), np.ones(len(sizes), dtype=np.intp)
-        orders, signs, shifts = (
-            np.stack([getattr(each, name) for each in self.elements]) for name in ("order", "signs", "shifts")
-        )
+        actions = zip(*((g.order, g.signs, g.shifts) for g in self.elements), strict=True)
+        orders, signs, shifts = map(np.stack, actions)
         for c in range(len(sizes)):
             orbit = np.unique(orders[:, c])
             if orbit[0] < c:
@@ -168,7 +167,7 @@ def symmetries(curve: Curve, tolerance: float = TOLERANCE) -> SymmetryGroup:
         raise CurveError(f"the curve is in dimension {curve.dimension}; symmetries are for curves in space")
     if components > 10:  # for so many all orders are looked at in a second
         raise CurveError(f"the curve has {components} components; symmetries are found with up to 10")
-    centre = curve.edge_lengths @ curve.midpoints / curve.length
+    centre = curve.barycenter
     identity = Isometry.identity(components)
     fit = Fit(curve, centre)
     mirrored = curve.with_vertices(2.0 * centre - curve.vertices)

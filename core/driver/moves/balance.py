@@ -21,7 +21,6 @@ from ...base.types import FloatArray
 from ...collision.motion import walk
 from ...curve import Curve, arc_lengths, bending, bending_and_derivative, cubic_spline, sample_parameters
 from ...descent import Leg, Point, Problem, Step, leg
-from ...solve.constraints import weighted_barycenter
 from ..move import Change, Move
 from ..outcome import Outcome, Status
 
@@ -37,7 +36,7 @@ class MoebiusImages:
     """
 
     def __init__(self, curve: Curve, lengths: FloatArray) -> None:
-        self._curve, self._center = curve, _barycenter(curve)
+        self._curve, self._center = curve, curve.barycenter
         # the unit sphere passes through the curve: poles far away and in its middle are about as far from (1, 0)
         self._radius = float(np.sqrt(np.square(curve.vertices - self._center).sum(axis=1).mean()))
         self._splines = [cubic_spline(self._unit(points)) for points in curve.components]
@@ -62,14 +61,10 @@ class MoebiusImages:
             pieces.append(moebius_image(spline(np.interp(wanted, arc, parameter)), q))
         image = self._curve.with_vertices(np.concatenate(pieces))
         scale = self._curve.length / image.length
-        return image.with_vertices(self._center + scale * (image.vertices - _barycenter(image)))
+        return image.with_vertices(self._center + scale * (image.vertices - image.barycenter))
 
     def _unit(self, vertices: FloatArray) -> FloatArray:
         return np.asarray((vertices - self._center) / self._radius)
-
-
-def _barycenter(curve: Curve) -> FloatArray:
-    return weighted_barycenter(curve) / curve.length
 
 
 @dataclass(eq=False)
@@ -139,9 +134,8 @@ class Balance(Move):
         reached, legs = 0.0, list[Leg]()
 
         def rotated(angle: float, stride: float) -> Leg | None:
-            found = leg(
-                legs[-1].end if legs else point, problem.at(images.at(turned_by(min(angle + stride, end))).vertices)
-            )
+            image = images.at(turned_by(min(angle + stride, end)))
+            found = leg(legs[-1].end if legs else point, problem.at(image.vertices))
             return found if found.open else None
 
         for place, found in walk(rotated, end, self.longest, self.shortest):

@@ -9,7 +9,6 @@ from ...collision.motion import walk
 from ...curve import SPLIT, affordable_pieces, graded_spacing, spans
 from ...descent import Leg, NoStep, Point, Step, Units, attempt, leg, on_target
 from ...energies.components import energy_scale
-from ...solve.constraints import weighted_barycenter
 from ..move import Change, Event, Move
 from ..outcome import Outcome
 from .remesh import FinerMesh, split_edges
@@ -45,8 +44,7 @@ class Grow(Move):
         if not (reached or problem.obstacles or len(problem.constraints.pins)):
             # nothing is in the way: scale the whole curve about its barycenter
             start, factor = self.run.iterate.curve, float(np.exp(left))
-            center = weighted_barycenter(start) / start.length
-            scaled = start.with_vertices(center + factor * (start.vertices - center))
+            scaled = start.with_vertices(start.barycenter + factor * (start.vertices - start.barycenter))
             constraints = problem.constraints.scaled(factor, problem.mesh)
             end = replace(problem, constraints=constraints).at_curve(scaled)
             return Change((Step((leg(point, end),), 0.0, None),), self._resolved(end))

@@ -89,9 +89,8 @@ class Schedule:
                 panels = panels[~far]
                 leaf = tree.is_leaf[panels.source]
                 seen = replace(panels[leaf], source=tree.start[panels.source[leaf]])
-                fine = (_analytic_ratios(curve, clusters, seen) >= EXACT[-1]) | (
-                    seen.width <= 2.0**-48
-                )  # even at contact
+                # pieces so narrow are not halved any more, even at contact
+                fine = (_analytic_ratios(curve, clusters, seen) >= EXACT[-1]) | (seen.width <= 2.0**-48)
                 single.append(seen[fine])
                 left = np.ones(len(panels), dtype=bool)
                 left[leaf] = ~fine

@@ -22,7 +22,7 @@ import scipy.sparse as sp
 from ...base.types import FloatArray, IntArray
 from ...curve import NO_PINS, NOWHERE, Curve, Mesh, Pins, free_edges
 from ...curve.symmetry import NO_SYMMETRY, Symmetry
-from .barycenters import Barycenters, Parts, weighted_barycenter
+from .barycenters import Barycenters, Parts
 
 _Block = TypeVar("_Block", bound="Block")
 

@@ -109,11 +109,6 @@ class BarycenterDerivative:
         return np.zeros_like(v)
 
 
-def weighted_barycenter(curve: Curve) -> FloatArray:
-    """Σ ℓ_I m_I of the whole curve; shape (m,)."""
-    return np.asarray(np.sum(_moments(curve), axis=1))
-
-
 def _moments(curve: Curve) -> FloatArray:
     """ℓ_I m_I as columns, so that sums over edges are pairwise ones; shape (m, edges)."""
     return np.ascontiguousarray((curve.edge_lengths[:, None] * curve.midpoints).T)

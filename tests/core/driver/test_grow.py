@@ -11,7 +11,7 @@ from mobius_flow.core.curve.pins import Pins
 from mobius_flow.core.curve.refine import SPLIT
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.knots import knot
-from mobius_flow.core.solve.constraints import Constraints, weighted_barycenter
+from mobius_flow.core.solve.constraints import Constraints
 from shapes import regular_polygon, torus_trefoil
 from solids import box, plate, rod
 from tasks import proved, wanted
@@ -79,7 +79,7 @@ def test_with_nothing_in_the_way_a_curve_is_scaled_at_once(factor):
     assert result.curve.length == pytest.approx(factor * curve.length, rel=1e-9)
     assert result.final_energy == pytest.approx(plain.final_energy, rel=1e-4)
     assert len(result.energies) <= len(plain.energies) + 3
-    centers = [weighted_barycenter(each) / each.length for each in (curve, result.curve)]
+    centers = [each.barycenter for each in (curve, result.curve)]
     assert centers[0] == pytest.approx(centers[1], abs=1e-9 * factor)
     link = knot("L2a1", vertices=60)
     result = minimize(link, RelaxOptions(grow=factor, vertices=60, mesh="fixed", max_iterations=5))
