@@ -148,7 +148,7 @@ def _near(
             if steps == _STEPS[-1]:
                 yield parts, vertices, np.stack([i[pair], j[pair]]), width
                 continue
-            near = np.unique(pair[march(*parts, vertices, np.zeros(len(pair)), 1.0, width) < 1.0])
+            near = np.unique(pair[march(parts[0], parts[1], vertices, np.zeros(len(pair)), 1.0, width) < 1.0])
             if not len(near):
                 break
             i, j, ways, half = i[near], j[near], ways[:, near], half[near]
