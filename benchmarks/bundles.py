@@ -1,6 +1,6 @@
 """Random bundles of strands between two plates, separated: the table in docs/separate.md.
 
-    OPENBLAS_NUM_THREADS=1 python benchmarks/bundles.py [COUNT]
+    OPENBLAS_NUM_THREADS=1 python benchmarks/bundles.py [COUNT [FIRST]]
 
 Strands of radius 1 lead from a hexagonal lattice, filled to 20 to 60 %, to a random permutation of its places, every
 second bundle with bends. A row tells strands, points of each, packing, height of the bundle, crossings of centre lines,
@@ -81,7 +81,8 @@ def bend(parts: list[np.ndarray]) -> float:
 def main() -> int:
     failed, seconds = 0, []
     print("seed strands points packing height crossings    s  apart  moved  bend length verdict")
-    for seed in range(int(sys.argv[1]) if len(sys.argv) > 1 else 100):
+    count, first = (int(each) for each in (*sys.argv[1:3], *("100", "0")[len(sys.argv) - 1 :]))
+    for seed in range(first, first + count):
         curve, (strands, points, packing, height) = bundle(seed)
         trajectory, began = Trajectory(), time.process_time()
         result = separate(curve, 1.0, callback=trajectory.add)

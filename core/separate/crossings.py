@@ -66,7 +66,7 @@ def lead_apart(
     i, j = np.sort([np.concatenate(each) for each in zip((none, none), *found, strict=True)], axis=0)
     far = arc_distance_of_pairs(curve, i, j, 0.5) - 0.5 * (curve.edge_lengths[i] + curve.edge_lengths[j]) > meets
     i, j = i[far], j[far]
-    if not len(i):
+    if not len(i) or held.all():
         return p, []
     chord, s, t = closest(EdgePairs.of(mesh, p, i, j))
     distance, tau = np.linalg.norm(chord, axis=1), curve.edge_vectors / curve.edge_lengths[:, None]

@@ -100,6 +100,8 @@ class Ropes:
 
         The decrement is twice what the whole step would lower it by if it were quadratic.
         """
+        if not len(self.free):
+            return None, 0.0, 0.0
         n, mesh, share, begins = len(curve), curve.mesh, self.share, min(BEGINS * self.most, FOLLOWS * self.share)
         near, _ = self.near(curve, begins)
         _, slope, curvature = near.barrier(share, begins)

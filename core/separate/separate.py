@@ -12,7 +12,7 @@ import numpy as np
 
 from ..base import BLAS, COMPONENT, CurveError, Message, OptionError, TimeLimit, check_known, checked
 from ..collision import check_clear, check_embedded, is_free, written
-from ..curve import Curve, Pins, at_edges, bending_radii, holds
+from ..curve import Curve, Pins, at_edges, bending_radii, holds, subdivide
 from ..descent.task import Task, check_units
 from ..driver import Outcome, Relaxation, Result, Status, finish
 from ..driver.outcome import stalled
@@ -21,6 +21,8 @@ from ..io.trajectory import Iterate
 from .crossings import AXES, Crossing, lead_apart
 from .ropes import Ropes
 
+COARSE = 4.0  # radii that edges may be long: ropes bend within some four
+MOST = 4000  # edges into which a curve is cut for that
 KEPT = 1e-3  # part by which kept lengths may differ at the end; ten times as much while ropes grow
 
 
@@ -92,23 +94,30 @@ def separating(task: Task, options: SeparateOptions) -> Relaxation:
 
 def _iterates(task: Task, options: SeparateOptions) -> Relaxation:
     """The given curve, if it is embedded, the first one whose centre lines do not meet, and the ropes from there on."""
-    curve, mesh = task.curve, task.curve.mesh
+    curve = task.curve
     check_units(curve)
     if curve.dimension != 3:
         raise CurveError(f"the curve has dimension {curve.dimension}; ropes are separated in space")
-    radius, parts = np.array(options.radius), len(mesh.component_sizes)
+    radius, parts = np.array(options.radius), len(curve.mesh.component_sizes)
     if len(radius) not in (1, parts):
         raise OptionError(f"radius has {len(radius)} numbers for {parts} components; give one, or one for each")
     if not (curve.edge_lengths.min() > 0.0 and bending_radii(curve).min() > 1e-9 * radius.min()):
         check_embedded(curve)  # which says where it doubles back
     check_clear(curve, task.obstacles)
+    radius = np.broadcast_to(radius, parts).copy()
+    # edges can bend around what is in their way; those of very thin ropes are longer, or there would be too many
+    longest = np.maximum(COARSE * radius[curve.mesh.edge_component], curve.length / MOST)
+    pieces = np.ceil(curve.edge_lengths / longest).astype(np.intp)
+    given, curve = curve.mesh, subdivide(curve, pieces)
+    mesh, now = curve.mesh, np.empty(given.size, dtype=np.intp)  # the numbers of the given vertices
+    now[given.tails], now[given.ends[:, 1]] = mesh.tails[np.cumsum(pieces) - pieces], mesh.ends[:, 1]
     ends, keep = () if options.free_ends else mesh.ends.ravel(), options.lengths == "keep"
-    pins = np.unique(np.array([*task.pins, *ends], dtype=np.intp))
+    pins = np.unique(np.array([*now[list(task.pins)], *ends], dtype=np.intp))
     if task.pin_tangents:
         pins = np.unique([pins, mesh.heads[mesh.outgoing[pins]], mesh.tails[mesh.incoming[pins]]])
     held = holds(mesh, Pins.of(curve, pins).vertices if keep else pins)  # taut arcs whose lengths are kept cannot move
-    ropes = Ropes(curve, np.broadcast_to(radius, parts).copy(), held, task.obstacles, keep)
-    apart, crossings = lead_apart(curve, ropes.radius, ropes.stiffness, held, options.over, task.obstacles)
+    ropes = Ropes(curve, radius, held, task.obstacles, keep)
+    apart, crossings = lead_apart(curve, radius, ropes.stiffness, held, options.over, task.obstacles)
     led = curve.with_vertices(apart)
     check_embedded(led)
     check_clear(led, task.obstacles)

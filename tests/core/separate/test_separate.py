@@ -107,6 +107,22 @@ def test_a_random_bundle():
     assert result.curve.length < 1.01 * curve.length
 
 
+def test_long_edges_are_cut_and_the_given_vertices_kept():
+    task = Task(curve=arcs([[-12.0, 0, 0], [2, 0, 0], [12, 0, 0]], [[0.0, -12, 0], [0, 12, 0]]), pins=(1,))
+    iterates = []
+    result = separate(task, 1.0, callback=iterates.append)
+    check(iterates, task)
+    assert result.status is Status.CONVERGED
+    assert [iterates[0].curve.vertices[k].tolist() for k in result.last.pins] == task.curve.vertices.tolist()
+    assert np.array_equal(result.curve.vertices[list(result.last.pins)], task.curve.vertices)
+    assert iterates[0].curve.edge_lengths.max() <= 4.1
+    thin = separate(task, 1e-4)
+    assert thin.status is Status.CONVERGED
+    assert len(thin.curve) < 5000
+    short = separate(arcs([[0.0, 0, 0], [3, 0, 0]], [[0.0, 1, 0], [3, 1, 0]]), 1.0)
+    assert "room for 50.0 %" in short.message
+
+
 def test_obstacles_are_respected():
     free = separated(arcs(X, Y), 1.0)
     between = separated(Task(curve=arcs(X, Y), obstacles=(WALL, POST)), 1.0)
