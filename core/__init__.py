@@ -13,6 +13,7 @@ from .io.obstacles import read_obstacle
 from .io.trajectory import Iterate, Trajectory
 from .morph import NoMotionError, morph
 from .separate import separate
+from .tighten import tighten
 
 __all__ = [
     "METHODS",
@@ -42,5 +43,6 @@ __all__ = [
     "read_obstacle",
     "relax",
     "separate",
+    "tighten",
     "write_curve",
 ]

@@ -1,0 +1,165 @@
+"""The shortest rope of radius 1: a primal–dual interior-point method, whose multipliers are the forces at contacts.
+
+    minimise  f = Σ √(m Σ ℓ²)  over components of m edges,  subject to  c ≥ 0  (`contacts`)
+
+f is the length where edges are equally long, and makes them so.  Steps are Newton's for  ∇f = Σ z ∇c  and  z c = μ:
+
+    (D²f − Σ z D²c + Σ (z/c) ∇c ∇cᵀ + δ D²f) dx = −∇f + Σ (μ/c) ∇c,    dz = μ/c − z − (z/c) ⟨∇c, dx⟩,
+
+where δ makes the matrix definite, and more where steps are too long.  Of a step so much is taken that the barrier
+function f − μ Σ log c falls enough, no c loses nearly all of itself, no vertex moves more than half a radius, and the
+motion is proved.  μ falls as soon as the rope is centred, that is, when steps promise little more (Nocedal and Wright,
+*Numerical Optimization*, chapter 19).
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import splu
+
+from ..base.deadline import check_time
+from ..base.types import FloatArray
+from ..curve import Curve
+from ..energies.edge_pairs import EdgePairs
+from .contacts import Contacts
+
+CENTRED = 0.01  # decrease that Newton's step promises, in μ for each constraint, below which μ falls
+STILL, PATIENCE = 0.1, 15  # share of the gap by which the length must fall in so many steps: else μ falls, too
+LONGEST = 0.5  # that a vertex moves at once, in radii: strands cannot change places
+LEAST_MARGIN = 0.005
+
+
+@dataclass(eq=False)
+class InteriorPoint:
+    """The rope reached so far, of radius 1, and the forces z at its contacts.
+
+    ``proved`` tells of vertices whether the straight motion there is proved that of a rope.  ``gap`` is Σ z c relative
+    to the length, ``residual`` |∇f − Σ z ∇c| relative to |∇f|; both are 0 at the shortest rope.
+    """
+
+    curve: Curve
+    mu: float
+    proved: Callable[[FloatArray], bool]
+    margin: float = 0.3  # of distances beyond 2, up to which strands are constraints
+    gap: float = field(default=np.inf, init=False)
+    residual: float = field(default=np.inf, init=False)
+
+    def __post_init__(self) -> None:
+        self.contacts = Contacts.near(self.curve, self.margin)
+        self.forces = self.mu / self.contacts.values(self.curve.vertices)
+        self._listed, self._delta = self.curve.vertices, 0.0
+
+    def run(self, gap: float, exact: bool, most: int = 400) -> Iterator[float]:
+        """Yield the share of Newton's step that was taken, until the gap is small.
+
+        Then a tenth of the residual is as small where this is to be ``exact``; else the rope is centred, or still.
+        """
+        lengths: list[float] = []
+        for _ in range(most):
+            check_time()
+            share, decrement = self.step()
+            lengths.append(self.curve.length)
+            promised = decrement / (self.mu * len(self.forces))
+            still = len(lengths) > PATIENCE and lengths[-1] > (1.0 - STILL * self.gap) * lengths[-1 - PATIENCE]
+            rests = self.residual <= 10.0 * gap if exact else still or promised < 0.1 * CENTRED
+            if self.gap <= gap and rests:
+                return
+            yield share
+            if promised < CENTRED or still:
+                least = 0.5 * gap * self.curve.length / len(self.forces)
+                self.mu = min(self.mu, max(0.2 * self.mu, least))
+                lengths = lengths[-1:] if self.mu > least else lengths
+
+    def step(self) -> tuple[float, float]:
+        """Take a step; the share of Newton's that is taken, and by how much the barrier function was to fall."""
+        x, mesh = self.curve.vertices, self.curve.mesh
+        moved = float(np.linalg.norm(x - self._listed, axis=1).max())
+        if moved > 0.15 * self.margin or self.margin > max(40.0 * self.gap, 2.0 * LEAST_MARGIN):
+            self._list()
+        contacts, z, mu = self.contacts, self.forces, self.mu
+        jet = contacts.jet(EdgePairs.of(mesh, x, contacts.i, contacts.j))
+        c, first, k = jet.value, jet.first, z / jet.value
+        # f = Σ w ℓ²/2 with these weights, to first order; elsewhere it is less
+        squares = np.add.reduceat(self.curve.edge_lengths**2, mesh.edge_offsets[:-1])
+        weight = np.sqrt(mesh.edge_counts / squares)
+        self._elastic = mesh.difference.T @ sp.diags_array(weight[mesh.edge_component]) @ mesh.difference
+        slope = self._elastic @ x
+        self.residual = float(np.linalg.norm(slope - contacts.sum_of(first, z)) / np.linalg.norm(slope))
+        self.gap = float(z @ c) / self.curve.length
+        right = contacts.sum_of(first, mu / c) - slope
+        solve = self._factorised(contacts.hessian(x, first, z, k))
+        dx = solve(right)
+        decrement, dz = float(np.sum(right * dx)), mu / c - z - k * contacts.along(first, dx)
+
+        def taken(share: float) -> tuple[FloatArray, float, FloatArray] | None:
+            """Where a share of the step leads, if that may be: vertices, the barrier function, and all c."""
+            there = x + share * dx + share * share * bend
+            value, values = self._barrier(there)
+            falls = value <= now - 1e-4 * share * decrement + 1e-13 * abs(now) and bool((values > 0.02 * c).all())
+            return (there, value, values) if falls and self._is_inside(there) and self.proved(there) else None
+
+        now, longest = self._barrier(x)[0], LONGEST / float(np.linalg.norm(dx, axis=1).max())
+        share = min(1.0, longest)
+        # walls are curved: the way bends so that constraints change as they would along a straight one
+        missed = c + share * contacts.along(first, dx) - contacts.values(x + share * dx)
+        bend = solve(contacts.sum_of(first, k * missed))
+        bend *= (np.linalg.norm(bend, axis=1).max() < share * np.linalg.norm(dx, axis=1).max()) / share**2
+        while (found := taken(share)) is None:
+            share *= 0.6
+            if share < 1e-8:
+                self._delta = max(4.0 * self._delta, 1e-4)
+                return 0.0, decrement
+        while self._delta > 0.0 and 1.0 <= share <= 0.5 * longest:  # δ may have made the step far too short
+            further = taken(2.0 * share)
+            if further is None or further[1] >= found[1]:
+                break
+            found, share = further, 2.0 * share
+        if share > 0.5:
+            self._delta = self._delta / 4.0 if self._delta > 1e-6 else 0.0
+        elif share < 0.2:
+            self._delta = max(4.0 * self._delta, 1e-4)
+        there, _, values = found
+        self.curve = self.curve.with_vertices(there)
+        shrinking = dz < 0.0
+        most = min(1.0, 0.98 * float((-z[shrinking] / dz[shrinking]).min(initial=np.inf)))
+        self.forces = np.clip(z + most * dz, mu / (20.0 * values), 20.0 * mu / values)
+        return share, decrement
+
+    def _barrier(self, vertices: FloatArray) -> tuple[float, FloatArray]:
+        """f − μ Σ log c, with f as about the present rope, and all c."""
+        values = self.contacts.values(vertices)
+        walls = -self.mu * float(np.log(values).sum()) if (values > 0.0).all() else np.inf
+        return 0.5 * float(np.sum(vertices * (self._elastic @ vertices))) + walls, values
+
+    def _is_inside(self, vertices: FloatArray) -> bool:
+        """Whether constraints that are not listed hold, too, if vertices have come so far that some may not."""
+        if np.linalg.norm(vertices - self._listed, axis=1).max() <= 0.4 * self.margin:
+            return True
+        return bool((Contacts.near(self.curve.with_vertices(vertices), 0.0).values(vertices) > 0.0).all())
+
+    def _list(self) -> None:
+        """List the constraints again; those that remain keep their forces."""
+        old, n = self.contacts, self.curve.mesh.edges
+        self.margin = float(np.clip(20.0 * self.gap, LEAST_MARGIN, self.margin))
+        self.contacts = new = Contacts.near(self.curve, self.margin)
+        forces = self.mu / new.values(self.curve.vertices)
+        before, after = (each.i[: each.strands] * n + each.j[: each.strands] for each in (old, new))
+        _, here, there = np.intersect1d(before, after, assume_unique=True, return_indices=True)
+        forces[there] = self.forces[here]
+        forces[new.strands :] = self.forces[old.strands :]
+        self.forces, self._listed = forces, self.curve.vertices
+
+    def _factorised(self, hessian: sp.csr_array) -> Callable[[FloatArray], FloatArray]:
+        """Solve with Newton's matrix, with the least δ, up to a factor, that makes it definite."""
+        elastic = sp.kron(self._elastic, sp.eye_array(3), format="csr")
+        ridge = 1e-6 * elastic.diagonal().mean() * sp.eye_array(elastic.shape[0], format="csr")  # holds it in its place
+        while True:
+            matrix = sp.csc_array(hessian + (1.0 + self._delta) * elastic + (1.0 + 1e4 * self._delta) * ridge)
+            # pivots on the diagonal have the signs of the eigenvalues
+            options = {"SymmetricMode": True}
+            factor = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+            if (factor.perm_r == factor.perm_c).all() and (factor.U.diagonal() > 0.0).all():
+                return lambda right: np.asarray(factor.solve(right.ravel()).reshape(-1, 3))
+            self._delta = max(4.0 * self._delta, 1e-4)

@@ -1,0 +1,227 @@
+"""Pull knots and links tight: the flow spreads them out, and then the rope keeps its radius while it gets shorter.
+
+All motions are proved those of a rope.  Few vertices find the shape, more of them the length: the error of a polygon
+falls with the square of its edges.  Where vertices double, every edge is halved, which leaves the curve as it is, and
+all vertices move on by half an edge, which cuts corners.
+"""
+
+import math
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ..base.arguments import check_number, checked
+from ..base.deadline import TimeLimit
+from ..base.errors import CurveError, OptionError
+from ..base.messages import Message
+from ..base.threads import BLAS
+from ..base.types import FloatArray
+from ..collision import is_rope, thickness
+from ..collision.motion import walk
+from ..curve import Curve, check_closed
+from ..curve.refine import onto_chords, subdivide
+from ..descent.task import Task, check_refined
+from ..driver import Outcome, Relaxation, RelaxOptions, Status, relax
+from ..driver.moves.hops import Field, random_flow
+from ..driver.moves.hops import radius as size
+from ..driver.outcome import stalled
+from ..driver.prepare import rope_radius
+from ..driver.relax import within
+from ..io.trajectory import Iterate
+from .contacts import Contacts
+from .interior_point import InteriorPoint
+
+COARSE = 100  # vertices that find the shape, up to twice as many
+MOST = 20_000  # of vertices, starts and seeds
+GAP = 1e-6  # of forces times clearances, relative to the length, at rest
+ROOM = 1e-6  # of the radius, which motions are proved with: between their ends strands come a little nearer
+SHRINK = 0.95  # of the size at least is left at once, where nothing touches
+
+
+@checked
+@BLAS.bounded()
+def tighten(
+    curve: Curve | Task, vertices: int = 400, starts: int = 1, seed: int = 0, time_limit: float | None = None
+) -> Relaxation:
+    """Pull a knot or link tight: yield it, then the end of every step; return how it ended.
+
+    The rope's radius is nine tenths of the thickness of the curve, refined; ``energy`` of iterates is the ropelength,
+    length over radius, ``gradient_norm`` the residual of the equilibrium of forces, relative to the tension.  In the
+    end there are ``vertices`` or up to twice as many.  Of several ``starts`` all but the first are stirred at random,
+    and the one that is shortest on few vertices goes on; ``time_limit`` is in seconds.
+
+    Raises CurveError if the curve is not closed or not in space, touches itself, or has corners too sharp for a rope,
+    OptionError if there are pins or obstacles, or numbers are out of range.
+    """
+    began, task = time.perf_counter(), Task.of(curve)
+    if task.pins or task.obstacles:
+        raise OptionError("a knot is pulled tight in free space; leave pins and obstacles out")
+    check_closed(task.curve, "tightening")
+    if task.curve.dimension != 3:
+        raise CurveError(f"the curve has dimension {task.curve.dimension}; only curves in space are pulled tight")
+    for name, value, low in (("vertices", vertices, COARSE), ("starts", starts, 1), ("seed", seed, 0)):
+        check_number(name, value, low - 1, MOST)
+    if time_limit is not None:
+        check_number("time_limit", time_limit, 0.0, math.inf)
+    coarse = vertices >> int(math.log2(vertices / COARSE))
+    start = task.refined(max(len(task.curve), coarse))
+    thick = rope_radius(start, RelaxOptions(radius="keep"))
+    if thick is None:
+        raise CurveError("the curve is no rope: a corner is too sharp, or strands are too near; smooth or relax it")
+    work = BLAS.bounding(_tightened(start, float(thick.min()), coarse, vertices, starts, np.random.default_rng(seed)))
+    if time_limit is None:
+        return work
+    return within(TimeLimit(time_limit, used=time.perf_counter() - began), work)
+
+
+def _tightened(
+    start: Task, unit: float, coarse: int, vertices: int, starts: int, rng: np.random.Generator
+) -> Relaxation:
+    options = RelaxOptions(
+        radius=unit, mesh="fixed", vertices=len(start.curve), untangle="never", tolerance=1e-2, max_iterations=500
+    )
+    flow = relax(start, options)
+    rope = _Rope(next(flow), unit)
+    yield rope.last
+    if not rope.is_tight:
+        for iterate in flow:
+            yield from rope.follow(iterate.path, iterate.gradient_norm, iterate.step_size)
+    yield from rope.thinned(coarse)
+    done = len(rope.curve) >= vertices
+    if starts == 1:
+        yield from rope.shrunk()
+        yield from rope.pulled(done)
+    else:
+        trials = []
+        for k in range(starts):
+            trial = _Rope(rope.last, unit)
+            trials.append((trial, [*(trial.stirred(rng) if k else ()), *trial.shrunk(), *trial.pulled(done)]))
+        rope, way = min(trials, key=lambda each: each[0].curve.length)
+        yield from way
+    while len(rope.curve) < vertices:
+        before = len(rope.curve)
+        yield from rope.doubled()
+        if len(rope.curve) == before:
+            break
+        yield from rope.pulled(len(rope.curve) >= vertices)
+    point = rope.point
+    assert point is not None, "it has been pulled"
+    facts = {"ropelength": rope.curve.length / thickness(rope.curve), "gap": point.gap, "residual": point.residual}
+    told = Message("ropelength {ropelength:.7g}, gap {gap:.1g}, residual {residual:.1g}", **facts)
+    if point.gap > GAP or point.residual > 10.0 * GAP:
+        return stalled(Message("forces are not in equilibrium: {told}", told=told))
+    outcome = Outcome(Status.CONVERGED, (Message("converged: {told}", told=told),))
+    if (point.curve.component_lengths < 2.01 * math.pi).all():
+        return outcome.adding("circles of the rope's radius are left, as of unknots")
+    return outcome
+
+
+class _Rope:
+    """The rope on its way: the last iterate, and the interior point on its mesh, in radii around a centre."""
+
+    def __init__(self, last: Iterate, unit: float) -> None:
+        radius = (unit * (1.0 - ROOM),) * len(last.curve.mesh.component_sizes)
+        self.last = replace(last, radius=radius, energy=last.curve.length / unit)
+        self.unit, self.center = unit, last.curve.vertices.mean(axis=0)
+        self.point: InteriorPoint | None = None
+
+    @property
+    def curve(self) -> Curve:
+        return self.last.curve
+
+    @property
+    def is_tight(self) -> bool:
+        """Whether half of the edges touch others, about as near as any do."""
+        touching = Contacts.near(self.curve.with_vertices(self.curve.vertices / thickness(self.curve)), 0.1)
+        strands = slice(touching.strands)
+        return len(np.unique([touching.i[strands], touching.j[strands]])) > 0.5 * len(self.curve)
+
+    def proves(self, vertices: FloatArray) -> bool:
+        return is_rope(self.curve.mesh, self.curve.vertices, vertices, np.array(self.last.radius))
+
+    def follow(self, path: Sequence[FloatArray], residual: float = np.inf, share: float = 0.0) -> Iterator[Iterate]:
+        """The iterate at the end of a path, with proved legs."""
+        curve = self.curve.with_vertices(path[-1])
+        self.last = replace(
+            self.last,
+            index=self.last.index + 1,
+            curve=curve,
+            energy=curve.length / self.unit,
+            path=tuple(path),
+            gradient_norm=residual,
+            step_size=share,
+            edge_length_error=0.0,
+        )
+        yield self.last
+
+    def remeshed(self, curve: Curve) -> Iterator[Iterate]:
+        """The same curve with other vertices on its edges."""
+        self.last = replace(self.last, index=self.last.index + 1, curve=curve, path=(), step_size=0.0)
+        yield self.last
+
+    def thinned(self, count: int) -> Iterator[Iterate]:
+        """As few vertices, as far as the way of the others onto the chords of their neighbours is proved."""
+        while len(self.curve) > count:
+            # evenly, and no neighbours
+            mesh, every = self.curve.mesh, max(2.0, len(self.curve) / (len(self.curve) - count))
+            gone = [np.arange(part.start, part.stop - 1, every).astype(np.intp) for part in mesh.slices]
+            moved = self.curve.with_vertices(onto_chords(self.curve, np.concatenate(gone)))
+            rest = [
+                np.delete(points, k - part.start, axis=0)
+                for points, k, part in zip(moved.components, gone, mesh.slices, strict=True)
+            ]
+            if min(map(len, rest)) < 16 or not self.proves(moved.vertices):
+                return
+            yield from self.follow([moved.vertices])
+            yield from self.remeshed(Curve.from_components(rest))
+
+    def stirred(self, rng: np.random.Generator) -> Iterator[Iterate]:
+        """The rope after random motions."""
+        for _ in range(3):
+            velocity = random_flow(self.curve.vertices, rng, 4, 2.0)
+
+            def moved(_: float, stride: float, velocity: Field = velocity) -> FloatArray | None:
+                x = self.curve.vertices
+                there = np.asarray(x + stride * size(x) * velocity(x))
+                return there if self.proves(there) else None
+
+            for _, vertices in walk(moved, 0.5, 0.02, 0.005):
+                yield from self.follow([vertices])
+
+    def shrunk(self) -> Iterator[Iterate]:
+        """The curve as small as its thickness allows, and a little larger than its rope needs."""
+        start, wanted = self.curve.vertices, 1.001 * self.unit / thickness(self.curve)
+        steps = max(1, math.ceil(math.log(wanted) / math.log(SHRINK)))
+        for k in range(1, steps + 1):
+            yield from self.follow([self.center + wanted ** (k / steps) * (start - self.center)])
+
+    def doubled(self) -> Iterator[Iterate]:
+        """Twice as many vertices on a smoother curve, larger if the rope needs room; nothing if that is blocked."""
+        before, finer = self.last, subdivide(self.curve, np.full(self.curve.mesh.edges, 2))
+        check_refined(self.curve, finer, ())
+        moved = finer.with_vertices(finer.vertices + 0.5 * finer.edge_vectors)
+        assert self.point is not None, "it has been pulled"
+        larger = max(1.0, (1.0 + 0.5 * self.point.gap) * self.unit / thickness(moved))
+        halved = [*self.remeshed(finer)]
+        for scale in larger + 0.002 * np.arange(10):
+            there = self.center + scale * (moved.vertices - self.center)
+            if self.proves(there):
+                yield from halved
+                yield from self.follow([there])
+                return
+        self.last = before
+
+    def pulled(self, exact: bool) -> Iterator[Iterate]:
+        """The steps of an interior point, with forces as the last one had them, on half as many vertices."""
+        curve, last = self.curve.with_vertices((self.curve.vertices - self.center) / self.unit), self.point
+        mu, margin = (0.007 * curve.length / len(curve), 0.3) if last is None else (0.25 * last.mu, last.margin)
+
+        def placed(vertices: FloatArray) -> FloatArray:
+            return np.asarray(self.center + self.unit * vertices)
+
+        self.point = point = InteriorPoint(curve, mu, lambda vertices: self.proves(placed(vertices)), margin)
+        for share in point.run(GAP if exact else 0.01, exact):
+            if share > 0.0:
+                yield from self.follow([placed(point.curve.vertices)], point.residual, share)

@@ -1,0 +1,145 @@
+"""Knots pulled tight: derivatives of contacts, equilibrium at rest, proofs of the way, and known lengths."""
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve, CurveError, OptionError, Task, tighten
+from mobius_flow.core.collision import thickness
+from mobius_flow.core.driver import WithOutcome
+from mobius_flow.core.energies.edge_pairs import EdgePairs
+from mobius_flow.core.knots import knot
+from mobius_flow.core.tighten.contacts import Contacts
+from mobius_flow.core.tighten.interior_point import InteriorPoint
+from tasks import check
+from taylor import taylor_slope
+
+RING = np.exp(2j * np.pi * np.arange(60) / 60)
+CIRCLE = np.stack([RING.real, RING.imag, 0 * RING.real], axis=1)
+HOPF = Curve.from_components([CIRCLE, CIRCLE[:, [0, 2, 1]] + [1.0, 0.0, 0.0]])
+
+
+@pytest.fixture(scope="module")
+def loose():
+    """A trefoil of thickness 1, a little off its symmetry."""
+    rough = knot("3_1", 60)
+    curve = rough.with_vertices(rough.vertices + 0.01 * np.random.default_rng(1).normal(size=(60, 3)))
+    return curve.with_vertices(1.01 * curve.vertices / thickness(curve))
+
+
+def test_contacts_have_first_and_second_derivatives(loose):
+    contacts = Contacts.near(loose, 0.5)
+    assert contacts.strands > 5
+    rng, x = np.random.default_rng(2), loose.vertices
+    v, z = rng.normal(size=x.shape), rng.random(len(contacts.i))
+    v /= 100.0 * np.abs(v).max()
+
+    def jet(t):
+        return contacts.jet(EdgePairs.of(loose.mesh, x + t * v, contacts.i, contacts.j))
+
+    first = jet(0.0).first
+    assert taylor_slope(lambda t: jet(t).value, [jet(0.0).value, contacts.along(first, v)]) >= 1.95
+    hessian = contacts.hessian(x, first, z, np.zeros_like(z))
+    second = -(hessian @ v.ravel()).reshape(v.shape)
+    slope = taylor_slope(lambda t: contacts.sum_of(jet(t).first, z), [contacts.sum_of(first, z), second])
+    assert slope >= 1.95
+    outer = contacts.hessian(x, first, 0.0 * z, z)
+    assert np.allclose(v.ravel() @ (outer @ v.ravel()), z @ contacts.along(first, v) ** 2)
+
+
+def test_constraints_are_those_of_the_thickness(loose):
+    for scale in (0.9, 1.0, 1.1):
+        curve = loose.with_vertices(scale * loose.vertices)
+        holds = (Contacts.near(curve, 0.1).values(curve.vertices) >= 0.0).all()
+        assert holds == (thickness(curve) >= 1.0)
+
+
+def test_forces_at_rest_balance_the_tension():
+    """Σ ⟨∇c, x⟩ z is the length: the forces of a rope that is pulled tight do as much work as its tension."""
+    curve = HOPF.with_vertices(2.2 * HOPF.vertices)
+    point = InteriorPoint(curve, 1e-3, lambda vertices: True)
+    assert sum(1 for _ in point.run(1e-6, True)) < 100
+    assert point.gap <= 1e-6
+    assert point.residual <= 1e-5
+    x, contacts = point.curve.vertices, point.contacts
+    first = contacts.jet(EdgePairs.of(curve.mesh, x, contacts.i, contacts.j)).first
+    assert point.forces @ contacts.along(first, x) == pytest.approx(point.curve.length, rel=1e-4)
+    assert 1.0 <= thickness(point.curve) < 1.00001
+    assert point.curve.length == pytest.approx(8.0 * np.pi, rel=2e-3)  # of 60 vertices each
+
+
+def run(curve, **settings):
+    way, iterates = WithOutcome(tighten(curve, **settings)), []
+    iterates.extend(way)
+    return iterates, way.outcome
+
+
+@pytest.mark.parametrize(
+    ("curve", "ropelength", "error"),
+    [(knot("3_1"), 32.7436, 1e-3), (HOPF, 8.0 * np.pi, 5e-4)],
+    ids=["trefoil", "Hopf link"],
+)
+def test_knots_reach_known_ropelengths_as_proved_ropes(curve, ropelength, error):
+    iterates, outcome = run(curve, vertices=200)
+    assert outcome.converged, outcome.message
+    last = iterates[-1].curve
+    assert ropelength < last.length / thickness(last) < (1.0 + error) * ropelength
+    assert len(last) == 200
+    verdict = check(iterates)
+    assert min(verdict.radius) > 0.89 * thickness(iterates[0].curve)
+    assert min(verdict.radius) == pytest.approx(thickness(last), rel=1e-5)
+    assert iterates[-1].energy == pytest.approx(last.length / thickness(last), rel=1e-5)
+
+
+def test_what_is_tight_is_not_let_loose():
+    first = run(knot("3_1"), vertices=100)[0]
+    again = [iterate.energy for iterate in run(first[-1].curve, vertices=100)[0]]
+    assert max(again) < 1.2 * min(again)
+
+
+def test_an_unknot_becomes_the_circle_of_its_rope():
+    iterates, outcome = run(Curve(CIRCLE * [1.0, 2.0, 1.0] + 0.1 * CIRCLE[:, [2, 2, 0]]), vertices=100)
+    last = iterates[-1].curve
+    assert last.length / thickness(last) == pytest.approx(2.0 * np.pi, rel=1e-3)
+    assert "circles" in outcome.message
+
+
+def test_of_several_starts_the_shortest_goes_on_and_a_seed_tells_which():
+    alone, _ = run(HOPF, vertices=100)
+    several, _ = run(HOPF, vertices=100, starts=3, seed=4)
+    again, _ = run(HOPF, vertices=100, starts=3, seed=4)
+    assert several[-1].energy <= alone[-1].energy * (1.0 + 1e-9)
+    assert [each.energy for each in several] == [each.energy for each in again]
+    check(several)
+
+
+def test_many_vertices_are_thinned_out():
+    iterates, outcome = run(knot("3_1", 500), vertices=200)
+    assert outcome.converged
+    assert {len(each.curve) for each in iterates} >= {500, 100, 200}
+    check(iterates)
+
+
+@pytest.mark.parametrize(
+    ("given", "error", "said"),
+    [
+        (Task(curve=knot("3_1"), pins=(1,)), OptionError, "leave pins and obstacles out"),
+        (Curve.from_components([[[0, 0, 0], [1, 0, 0], [1, 1, 1]]], closed=[False]), CurveError, "is open"),
+        (Curve([[0, 0], [1, 0], [0, 1]]), CurveError, "dimension 2"),
+        (Curve([[0, 0, 0], [1, 1, 0], [1, 0, 0], [0, 1, 0]]), CurveError, "touch or cross"),
+    ],
+    ids=["pins", "open", "plane", "through itself"],
+)
+def test_what_cannot_be_pulled_tight_is_refused(given, error, said):
+    with pytest.raises(error, match=said):
+        tighten(given)
+
+
+@pytest.mark.parametrize("settings", [{"vertices": 10}, {"starts": 0}, {"seed": -1}])
+def test_numbers_out_of_range_are_refused(settings):
+    with pytest.raises(OptionError, match="must be"):
+        tighten(knot("3_1"), **settings)
+
+
+def test_a_time_limit_keeps_what_was_reached():
+    iterates, outcome = run(knot("3_1"), time_limit=1e-9)
+    assert outcome.status.value == "time_limit"
+    assert len(iterates) <= 1
