@@ -19,6 +19,20 @@ from ...core.knots import ALIASES, KNOTS
 
 SHEET = Path(__file__).parents[1] / "assets" / "knots.png"
 COLUMNS, SIDE = 16, 96  # squares in a row of the sheet, and pixels of a square's sides
+COMMON: Sequence[str] = ("0_1", "3_1", "4_1", "5_1", "5_2", "6_1", "7_4", "L2a1", "L4a1", "L5a1", "L6a4")
+"""What most people look for."""
+
+GROUPS: Mapping[str, tuple[str, str]] = {
+    "FEW": ("Up to 7 Crossings", "Knots that can be drawn with seven crossings or fewer"),
+    "8": ("8 Crossings", "Knots that need eight crossings"),
+    "9": ("9 Crossings", "Knots that need nine crossings"),
+    "10A": ("10 Crossings, I", "The first knots that need ten crossings"),
+    "10B": ("10 Crossings, II", "The other knots that need ten crossings"),
+    "LINKS": ("Links", "Several closed curves, linked with each other"),
+}
+"""Titles and descriptions of the groups."""
+
+_TITLES = {"solomon": "Solomon's Link", "hopf": "Hopf Link", "whitehead": "Whitehead Link", "perko": "Perko Pair"}
 
 
 def icon(name: str) -> int:
@@ -71,20 +85,6 @@ def _sheet() -> tuple[npt.NDArray[np.uint8], FloatArray]:
     return rows[:, 1:], np.column_stack([colours, np.arange(len(colours)) > 0])
 
 
-COMMON: Sequence[str] = ("0_1", "3_1", "4_1", "5_1", "5_2", "6_1", "7_4", "L2a1", "L4a1", "L5a1", "L6a4")
-"""What most people look for."""
-
-GROUPS: Mapping[str, tuple[str, str]] = {
-    "FEW": ("Up to 7 Crossings", "Knots that can be drawn with seven crossings or fewer"),
-    "8": ("8 Crossings", "Knots that need eight crossings"),
-    "9": ("9 Crossings", "Knots that need nine crossings"),
-    "10A": ("10 Crossings, I", "The first knots that need ten crossings"),
-    "10B": ("10 Crossings, II", "The other knots that need ten crossings"),
-    "LINKS": ("Links", "Several closed curves, linked with each other"),
-}
-"""Titles and descriptions of the groups."""
-
-_TITLES = {"solomon": "Solomon's Link", "hopf": "Hopf Link", "whitehead": "Whitehead Link", "perko": "Perko Pair"}
 _TITLES |= {"borromean": "Borromean Rings", "figure eight": "Figure-Eight", "circle": ""}
 
 

@@ -20,6 +20,9 @@ from .problem import Geometry, Point, Problem
 from .second_order import BackwardEuler, TrustRegion
 from .step import NoStep, SearchState, Step
 
+_GRADIENTS = "projected fractional Sobolev gradients"
+METRIC_STEPS = 3  # of L-BFGS: with more, more steps take back what is saved; conjugacy bears no change
+
 
 @dataclass(frozen=True)
 class Constrained:
@@ -123,8 +126,6 @@ class Penalised:
 
 
 _CONSTRAINED = Constrained()
-_GRADIENTS = "projected fractional Sobolev gradients"
-METRIC_STEPS = 3  # of L-BFGS: with more, more steps take back what is saved; conjugacy bears no change
 
 
 class StepRule(Protocol):

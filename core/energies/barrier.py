@@ -43,6 +43,9 @@ from .quadrature import gauss_legendre
 
 NEAR = 1.0  # of q, up to which only the exact energy of a pair counts,
 FAR = 2.25  # and from which only its midpoint energy does
+CONTACT = 1e-16  # distance of edges, relative to their length, below which they count as that far apart
+_SERIES = [(-1.0) ** k * (k + 1) / (2 * k + 3) for k in range(14)]  # of the tail, in powers of x²
+_POINT_COUNTS = np.array([8, 12, 16, 24, 32, 48, 64, 96, 128])
 
 
 @checked_fields
@@ -172,11 +175,6 @@ def near_pairs(curve: Curve) -> tuple[IntArray, IntArray]:
     i, j = i[kept], j[kept]
     swapped = ell[i] > ell[j]
     return np.where(swapped, j, i), np.where(swapped, i, j)
-
-
-CONTACT = 1e-16  # distance of edges, relative to their length, below which they count as that far apart
-_SERIES = [(-1.0) ** k * (k + 1) / (2 * k + 3) for k in range(14)]  # of the tail, in powers of x²
-_POINT_COUNTS = np.array([8, 12, 16, 24, 32, 48, 64, 96, 128])
 
 
 def inverse_square(pairs: EdgePairs) -> Jet:

@@ -35,6 +35,8 @@ from .quadrature import MIDPOINT
 Coefficients = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
 """s, a, b and c of pairs: ∂W/∂e_I = s (ℓ_J τ_I + e_J) − 2 b Δ and ∂W/∂Δ = 2 (a Δ − b e_I − c e_J)."""
 
+CONSTANT = 4.0  # of a closed component
+
 
 class Edges(NamedTuple):
     """The edges of a curve; the derivative is linear in edges e, lengths ℓ and midpoints m."""
@@ -148,9 +150,6 @@ class EdgeDerivatives(NamedTuple):
         """The derivative with respect to the vertices, shape (n, m)."""
         by_edge, half = self.by_edge + self.by_length[:, None] * tau, 0.5 * self.by_midpoint
         return mesh.scatter(half - by_edge, half + by_edge)
-
-
-CONSTANT = 4.0  # of a closed component
 
 
 @checked_fields

@@ -38,6 +38,7 @@ PROVED = "whose type is not proved to be one of the table"
 APART = "whose trajectory does not end at their curve"
 UNLIKE = "whose curve, or smooth shape, is not of the type reported"
 MOVING = "whose smooth shape is not at rest with the energy reported"
+Values = dict[str, Any]
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,9 +125,6 @@ def _type_of(row: Row) -> tuple[str, bool]:
     return "", False
 
 
-Values = dict[str, Any]
-
-
 def entry(folder: Folder, name: str, runs: Sequence[AtlasRun]) -> tuple[Values | None, Mapping[str, list[str]]]:
     """The entry of a type, if any runs are as reported, and the names of those that are not, by reason.
 
@@ -209,8 +207,8 @@ def _proved(name: str, curve: FourierCurve) -> tuple[float, float] | None:
 def _command(row: Row) -> str:
     """The command that repeats a run, along with those of all earlier starts; FILE stands for a file."""
     seed = [] if row.seed in (None, row.start) else ["--seed", str(row.seed - row.start)]
-    name, file = (
-        (row.name, "") if row.input_sha256 is None else ("FILE", f"  # SHA-256 of FILE: {one_line(row.input_sha256)}")
-    )
+    name, file = row.name, ""
+    if row.input_sha256 is not None:
+        name, file = "FILE", f"  # SHA-256 of FILE: {one_line(row.input_sha256)}"
     words = [name, "--starts", str(row.start), *seed, *flags(json.loads(row.options)), "--extrapolate"]
     return shlex.join(["mobius-flow", "batch", *words, "-o", "results"]) + file

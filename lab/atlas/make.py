@@ -3,37 +3,37 @@
 The pages are an index that can be sorted and filtered, and one for each knot or link.
 """
 
-import re
-import shlex
-from collections.abc import Sequence
-from html import escape
-from importlib.resources import files
-from importlib.util import find_spec
-from typing import TYPE_CHECKING
-
-from ... import __version__
-from ...core.base.errors import MobiusFlowError, counted
-from .data import ARCHIVE, CURVES, TITLE, bounds, curve_path, rounded, template
-from .entries import Values
-from .folder import Folder
-
-if TYPE_CHECKING:
-    from jinja2 import Environment
 import argparse
 import hashlib
 import json
+import re
+import shlex
 import sys
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from html import escape
+from importlib.resources import files
+from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from ... import __version__
 from ...cli.options import DEFAULT
 from ...cli.places import check_directory, export
 from ...cli.progress import live
 from ...cli.terminal import emit, quoted, report
+from ...core.base import MobiusFlowError, counted
 from . import data
-from .entries import Runs, curve_of, entry
+from .data import ARCHIVE, CURVES, TITLE, bounds, curve_path, rounded, template
+from .entries import Runs, Values, curve_of, entry
+from .folder import Folder
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+LARGE, SMALL = (640, 480), (240, 180)
+SAMPLES = 8  # of a pixel: more make no visible difference after denoising
+NO_LOOK = "none"
 
 
 def environment() -> "Environment":
@@ -80,11 +80,6 @@ def energy(minimum: Values) -> str:
     digits, power = f"{minimum['error']:.0e}".split("e")
     error = f"{digits}·10<sup>{int(power)}</sup>".replace("-", "−")
     return f"{rounded(minimum['energy'], minimum['error'])} <small>± {error}</small>"
-
-
-LARGE, SMALL = (640, 480), (240, 180)
-SAMPLES = 8  # of a pixel: more make no visible difference after denoising
-NO_LOOK = "none"
 
 
 def make(options: argparse.Namespace) -> int:

@@ -88,7 +88,7 @@ def save(rows: Iterable[Row], directory: Path) -> None:
     check_tables(directory)
     cells = list(map(asdict, in_order(rows)))
     text = as_csv([field.name for field in fields(Row)], cells)
-    mark = f"{_sha256(text)} {sha256_of(directory / CSV) or ''}"
+    mark = f"{hashlib.sha256(text).hexdigest()} {sha256_of(directory / CSV) or ''}"
     kinds = {str: pa.string(), int: pa.int64(), float: pa.float64(), bool: pa.bool_()}
     columns = [(name, kinds[(get_args(hint) or (hint,))[0]]) for name, hint in get_type_hints(Row).items()]
     stream = io.BytesIO()
@@ -126,11 +126,8 @@ def _marks(parquet: Path) -> list[str]:
     except pyarrow.ArrowException:
         return []
     marks = (table.schema.metadata or {}).get(_MARK, b"").decode("ascii", "replace").split()
-    return marks if marks and marks[0] == _sha256(as_csv(table.column_names, table.to_pylist())) else []
-
-
-def _sha256(data: bytes) -> str:
-    return hashlib.sha256(data).hexdigest()
+    text = as_csv(table.column_names, table.to_pylist())
+    return marks if marks and marks[0] == hashlib.sha256(text).hexdigest() else []
 
 
 def as_csv(columns: Sequence[str], cells: Iterable[Mapping[str, object]], end: str = "\r\n") -> bytes:

@@ -26,6 +26,12 @@ except ImportError as error:
     raise MobiusFlowError('ball arithmetic needs python-flint: pip install python-flint (the extra "lab")') from error
 
 precise = partial(ctx.workprec, 128)  # bits, more than cancellation here takes from those of two doubles
+_DEPTH = 13  # of the smallest intervals, 2⁻¹³
+_ORDERS = 14  # of derivatives in Taylor's formula
+_SHARE = 0.9  # of a distance that balls may take
+_NEAR = 6  # intervals from one to another, an even number, that the mean of γ' is taken over
+_LEVELS = np.concatenate([[0], np.repeat(np.arange(_DEPTH + 1), 2 ** np.arange(_DEPTH + 1))])
+_HALVES = 0.5 ** np.arange(1, _DEPTH + 2, dtype=np.float64)  # of the lengths of intervals, by level
 
 
 def points(coefficients: ComplexArray, nodes: int, order: int = 0, shift: int = 0) -> tuple[FloatArray, FloatArray]:
@@ -44,14 +50,6 @@ def points(coefficients: ComplexArray, nodes: int, order: int = 0, shift: int = 
         high = [[float(x) for x in row] for row in exact]
         low = [[float(x - y) for x, y in zip(*rows, strict=True)] for rows in zip(exact, high, strict=True)]
     return np.array(high), np.array(low)
-
-
-_DEPTH = 13  # of the smallest intervals, 2⁻¹³
-_ORDERS = 14  # of derivatives in Taylor's formula
-_SHARE = 0.9  # of a distance that balls may take
-_NEAR = 6  # intervals from one to another, an even number, that the mean of γ' is taken over
-_LEVELS = np.concatenate([[0], np.repeat(np.arange(_DEPTH + 1), 2 ** np.arange(_DEPTH + 1))])
-_HALVES = 0.5 ** np.arange(1, _DEPTH + 2, dtype=np.float64)  # of the lengths of intervals, by level
 
 
 def scaled(coefficients: Sequence[ComplexArray]) -> tuple[list[ComplexArray], int]:

@@ -26,6 +26,7 @@ from .fields import FarField, NearField
 MAX_ORDER = 8  # every two orders make errors some forty times smaller, and half of the work twice as much
 KEPT = 1.05  # times θ: separation up to which a list is as good as a new one
 OUTDATED = 1.0 / 3.0  # blocks with less separation make a new list; up to 1/3 all replaced pairs are near pairs
+EXACT_UP_TO = 30_000  # vertices; all pairs of edges take some fifteen seconds there
 
 
 @checked_fields
@@ -142,9 +143,6 @@ def _unit_sized(curve: Curve) -> tuple[Curve, int]:
     """The curve divided by a power of two, so that its size is about 1 whatever its units, and the exponent."""
     exponent = int(np.frexp(np.ptp(curve.vertices, axis=0).max())[1])
     return curve.with_vertices(np.ldexp(curve.vertices, -exponent)), exponent
-
-
-EXACT_UP_TO = 30_000  # vertices; all pairs of edges take some fifteen seconds there
 
 
 @dataclass(frozen=True)

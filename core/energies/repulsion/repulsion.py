@@ -32,6 +32,9 @@ MAX_POINTS = 8
 # simplices, and of exp(−8) = 3e-4 for clusters, still less than what moments leave: k points have the error ρ⁻²ᵏ, and
 # the Bernstein ellipse lies within a disc of R half lengths if ρ + 1/ρ ≤ 2R.
 EXACT, CLUSTERED = (np.cosh(exponent / (2.0 * np.arange(1, MAX_POINTS + 1))) for exponent in (20.0, 8.0))
+THETA = 0.4  # errors up to some 6·10⁻⁴ of R and 10⁻³ of its derivative
+KEPT = 0.9  # slack up to which a schedule is as good as a new one
+OUTDATED = 0.75  # slack up to which it is good enough for a line search
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,11 +155,6 @@ def _grouped(panels: Panels, ratio: FloatArray, least: FloatArray) -> Groups:
     order = np.argsort(panels.edge, kind="stable")
     points, panels = points[order], panels[order]
     return tuple((k, panels[points == k]) for k in np.unique(points).tolist())
-
-
-THETA = 0.4  # errors up to some 6·10⁻⁴ of R and 10⁻³ of its derivative
-KEPT = 0.9  # slack up to which a schedule is as good as a new one
-OUTDATED = 0.75  # slack up to which it is good enough for a line search
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,6 +25,8 @@ LEAST = 1e-6  # modulated value, relative to the largest one: where edges double
 Symbol = Callable[[FloatArray], FloatArray]
 """A positive function of frequencies."""
 
+SPACING = 3.5  # of log σ: with 2.3 there is no iteration less, with 5 there are half as many more
+
 
 @dataclass(frozen=True, eq=False)
 class Parameter:
@@ -174,9 +176,6 @@ def _filtered(u: FloatArray, factor: FloatArray) -> FloatArray:
     waves = rfft(u, axis=1)
     waves *= factor[..., None]
     return np.asarray(irfft(waves, u.shape[1], axis=1))
-
-
-SPACING = 3.5  # of log σ: with 2.3 there is no iteration less, with 5 there are half as many more
 
 
 class TwoLevel:
