@@ -10,7 +10,7 @@ from ..base.types import BoolArray, FloatArray, IntArray
 from .planes import doubtful, overlapping
 
 SLACK = 1e-12  # relative to the size of coordinates and lengths, far above their rounding
-STEPS = 16  # as `checker.RopeLeg` has
+STEPS = (4, 16)  # the last as `checker.RopeLeg` has
 
 
 def crowded(
@@ -62,22 +62,23 @@ def crowded(
         yield from zip(left[0].tolist(), left[2].tolist(), repeat(None))
         # of the others parts, whose ends are points of their own
         i, j, half, ways = i[~whole], j[~whole], half[~whole], ways[:, ~whole]
-        back, k = ways[1] < ways[0], np.arange(STEPS)[:, None]
-        rest = half - ways.min(axis=0)
-        u = rest * (1.0 - (k + 1) / STEPS) / longest[i]
-        v, w = rest * k / STEPS / longest[j], np.where(k + 1 == STEPS, 1.0, rest * (k + 1) / STEPS / longest[j])
-        there = (u <= 1.0) & (v <= 1.0)
-        i, j, back = (np.broadcast_to(each, there.shape)[there] for each in (i, j, back))
-        u, v, w = u[there] * (1.0 - SLACK), v[there] * (1.0 - SLACK), np.minimum(w[there] * (1.0 + SLACK), 1.0)
-        shares = (i, np.where(back, u, 1.0 - u)), (i, 1.0 * back), *((j, np.where(back, 1.0 - s, s)) for s in (v, w))
-        points = [
-            np.concatenate([p[tails[k]] + s[:, None] * d[k] for k, s in shares])
-            for p, d in zip((start, end), spans, strict=True)
-        ]
-        names = np.stack([i, j])
-        corners = np.arange(4 * len(i)).reshape(4, -1)
-        left = doubtful(points[0], points[1], corners, 0.0, 2.0 * r[i])
-        yield from zip(*tails[np.unique(names[:, left[0]], axis=1)].tolist(), repeat(None))
+        for steps in STEPS:
+            back, rest, k = ways[1] < ways[0], half - ways.min(axis=0), np.arange(steps)[:, None]
+            u = rest * (1.0 - (k + 1) / steps) / longest[i]
+            v, w = rest * k / steps / longest[j], np.where(k + 1 == steps, 1.0, rest * (k + 1) / steps / longest[j])
+            pair = np.broadcast_to(np.arange(len(i)), u.shape)[there := (u <= 1.0) & (v <= 1.0)]
+            u, v, w = u[there] * (1.0 - SLACK), v[there] * (1.0 - SLACK), np.minimum(w[there] * (1.0 + SLACK), 1.0)
+            a, b, back = i[pair], j[pair], back[pair]
+            shares = [(a, np.where(back, u, 1.0 - u)), (a, 1.0 * back)]
+            shares += [(b, np.where(back, 1.0 - s, s)) for s in (v, w)]
+            points = [
+                np.concatenate([p[tails[k]] + s[:, None] * d[k] for k, s in shares])
+                for p, d in zip((start, end), spans, strict=True)
+            ]
+            left = doubtful(points[0], points[1], np.arange(4 * len(pair)).reshape(4, -1), 0.0, 2.0 * r[a])
+            left = np.unique(pair[left[0]])
+            i, j, half, ways = i[left], j[left], half[left], ways[:, left]
+        yield from zip(tails[i].tolist(), tails[j].tolist(), repeat(None))
 
     if len(still):
         moving = [np.concatenate([p, still]) for p in (start, end)]
