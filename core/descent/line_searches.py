@@ -9,6 +9,7 @@ import numpy as np
 
 from ..base import ENERGY_ROUNDING, FloatArray
 from ..collision import Contact
+from ..curve import Curve
 from ..energies.components import energy_scale
 from ..solve.metrics import Metric
 from ..solve.saddle import TangentSpace
@@ -36,7 +37,9 @@ class FirstTrial:
         if speed == 0.0:
             return 0.0, None
         tau = min(longest, self.max_displacement / speed)
-        if point.problem.radius is not None:  # a rope's barrier shortens steps
+        if (rope := point.problem.objective.rope) is not None:  # its barrier shortens steps, here at little cost
+            while np.isinf(rope.value(Curve(point.vertices + tau * direction, point.problem.mesh))) and tau > 1e-9:
+                tau *= 0.5
             return tau, None
         end = point.problem.at(point.vertices + tau * direction)
         free = point.problem.free_motion(point.placed, end.placed)

@@ -24,6 +24,7 @@ from .energy import (
 from .moebius import MoebiusEnergy
 from .pull import Pull
 from .repulsion import Repulsion
+from .rope import Rope
 
 
 class Weighted(NamedTuple):
@@ -66,6 +67,11 @@ class Objective:
     def pull(self) -> Pull | None:
         """The pull of a hand, if one holds the curve."""
         return next((term for term, _ in self.further if isinstance(term, Pull)), None)
+
+    @property
+    def rope(self) -> Rope | None:
+        """The barrier of a rope, if the curve is one."""
+        return next((term for term, _ in self.further if isinstance(term, Rope)), None)
 
     def having(self, kind: type[Term], term: Term | None) -> "Objective":
         """The same with another term of some kind, such as the pull of a hand or a rope's barrier, or none."""

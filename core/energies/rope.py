@@ -9,8 +9,8 @@ The barrier begins at c = 3r and b = 2r.  φ is that of incremental potential co
 2020).
 """
 
-from dataclasses import dataclass, replace
-from typing import ClassVar
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar
 
 import numpy as np
 import scipy.sparse as sp
@@ -39,6 +39,7 @@ class Rope:
     weight: float = 0.05  # a tenth of it lets curves stick to the wall, ten times as much holds them off their minima
     reach: float = 1.5  # of strands' distance, over 2r
     bend: float = 2.0  # of bending radii, over r
+    _near: list[Any] = field(default_factory=list, init=False)  # a curve, and what may be in reach nearby, once known
 
     scale_exponent: ClassVar[float] = 0.0  # of rope and curve together
     name: ClassVar[str] = "rope"
@@ -92,22 +93,27 @@ class Rope:
         return total, first
 
     def _strands(self, curve: Curve) -> tuple[IntArray, IntArray]:
-        """Unordered pairs of edges within the barrier's reach that are far enough along the curve."""
-        mesh, seen, component = curve.mesh, self._seen(curve), curve.mesh.edge_component
-        cut = 2.0 * self.reach * float(self.radius.max()) + float(curve.edge_lengths.max())
-        i, j = cKDTree(curve.midpoints).query_pairs(cut, output_type="ndarray").T
-        ell = seen.edge_lengths
-        position, around = np.cumsum(ell) - 0.5 * ell, np.add.reduceat(ell, mesh.edge_offsets[:-1])
-        arc = np.abs(position[i] - position[j])
-        arc = np.minimum(arc, np.where(mesh.closed, around, np.inf)[component[i]] - arc)
-        far = arc > np.pi * self.radius[component[i]] + 0.5 * (ell[i] + ell[j])
-        kept = far | (component[i] != component[j])
-        i, j = i[kept], j[kept]
+        """Unordered pairs of edges within the barrier's reach that are far enough along the curve.
+
+        They are among those found for a curve nearby.
+        """
+        mesh, r, margin = curve.mesh, self.radius[curve.mesh.edge_component], 0.1 * float(self.radius.max())
+        there = self._near[0] if self._near else None
+        if there is None or there.mesh != mesh or not np.abs(curve.vertices - there.vertices).max() <= margin:
+            seen, component = self._seen(curve), mesh.edge_component
+            cut = 2.0 * self.reach * float(self.radius.max()) + float(curve.edge_lengths.max())
+            i, j = cKDTree(curve.midpoints).query_pairs(cut + 4.0 * margin, output_type="ndarray").T
+            ell = seen.edge_lengths
+            position, around = np.cumsum(ell) - 0.5 * ell, np.add.reduceat(ell, mesh.edge_offsets[:-1])
+            arc = np.abs(position[i] - position[j])
+            arc = np.minimum(arc, np.where(mesh.closed, around, np.inf)[component[i]] - arc)
+            far = (component[i] != component[j]) | (arc > np.pi * r[i] + 0.5 * (ell[i] + ell[j]))
+            i, j = i[far], j[far]
+            self._near[:] = [curve, i, j] if seen is self.seen else []
+        else:
+            _, i, j = self._near
         chord, _, _ = closest(EdgePairs.of(mesh, curve.vertices, i, j))
-        near = (
-            np.einsum("km,km->k", chord, chord)
-            < (self.reach * (self.radius[component[i]] + self.radius[component[j]])) ** 2
-        )
+        near = np.einsum("km,km->k", chord, chord) < (self.reach * (r[i] + r[j])) ** 2
         return i[near], j[near]
 
     def _corners(self, curve: Curve) -> tuple[IntArray, IntArray]:

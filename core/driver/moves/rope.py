@@ -70,8 +70,7 @@ class GiveWay(Move):
     @property
     def _rope(self) -> Rope | None:
         """The barrier of a rope that may give way."""
-        terms = self.run.problem.objective.terms if self.run.options.radius == "keep" else ()
-        return next((term for term in terms if isinstance(term, Rope)), None)
+        return self.run.problem.objective.rope if self.run.options.radius == "keep" else None
 
     def _thinner(self) -> Change:
         point = self.run.point

@@ -62,11 +62,13 @@ def random_legs(rng: np.random.Generator, kind: str, count: int) -> tuple[np.nda
         legs[:, :, 3] = legs[:, :, 2] + legs[:, :, 1] - legs[:, :, 0]
     if kind == "near":
         legs[1] = legs[0] + legs[1] // 4
+    legs[:, :, 1::2] += (legs[:, :, 1::2] == legs[:, :, ::2]).all(axis=3, keepdims=True)  # no edge is a point
     mesh, best = Mesh((2,) * (2 * count), (False,) * (2 * count)), np.full(count, np.inf)
     i, j = np.arange(2 * count).reshape(-1, 2).T
     for t in np.linspace(0.0, 1.0, 65):
         pairs = EdgePairs.of(mesh, ((1 - t) * legs[0] + t * legs[1]).reshape(-1, 3), i, j)
-        best = np.minimum(best, np.linalg.norm(closest(pairs)[0], axis=1))
+        with np.errstate(invalid="ignore"):  # unless it turns round
+            best = np.fmin(best, np.linalg.norm(closest(pairs)[0], axis=1))
     width = best * (1 + rng.choice([-0.3, -0.01, -1e-3, -1e-4, 0.0, 1e-4, 0.01], count))
     return legs.astype(object), np.maximum(np.rint(width), 1).astype(np.int64).astype(object)
 

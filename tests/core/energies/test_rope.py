@@ -1,5 +1,7 @@
 """A rope's barrier: its derivatives, where it acts and where not."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from mobius_flow.core import Curve
@@ -91,3 +93,15 @@ def test_split_edges_may_bend_as_they_do() -> None:
     assert np.isfinite(allowed.value(finer))
     smooth = regular_polygon(24)
     assert (allowed.frozen_at(smooth).tightest == rope.radius).all()
+
+
+@pytest.mark.parametrize("step", [1e-3, 0.05, 0.5, 3.0])
+def test_pairs_in_reach_are_found_again(step: float) -> None:
+    """Of curves nearby, which are looked for among those of the first, and further away."""
+    curve = knot("7_7", 150)
+    rope, rng = tight(curve, 0.6), np.random.default_rng(3)
+    assert rope.value(curve) > 0.0
+    for _ in range(3):
+        away = rng.uniform(-1.0, 1.0, curve.vertices.shape) * step * rope.radius.max()
+        moved = curve.with_vertices(curve.vertices + away)
+        assert rope.value(moved) == replace(rope).value(moved)
