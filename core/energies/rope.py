@@ -39,7 +39,7 @@ class Rope:
     weight: float = 0.05  # a tenth of it lets curves stick to the wall, ten times as much holds them off their minima
     reach: float = 1.5  # of strands' distance, over 2r
     bend: float = 2.0  # of bending radii, over r
-    _near: list[Any] = field(default_factory=list, init=False)  # a curve, and what may be in reach nearby, once known
+    _near: list[Any] = field(default_factory=list, init=False, repr=False)  # a curve, and pairs in reach nearby
 
     scale_exponent: ClassVar[float] = 0.0  # of rope and curve together
     name: ClassVar[str] = "rope"

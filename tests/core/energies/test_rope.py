@@ -99,7 +99,7 @@ def test_split_edges_may_bend_as_they_do() -> None:
 def test_pairs_in_reach_are_found_again(step: float) -> None:
     """Of curves nearby, which are looked for among those of the first, and further away."""
     curve = knot("7_7", 150)
-    rope, rng = tight(curve, 0.6), np.random.default_rng(3)
+    rope, rng = tight(curve, 0.8), np.random.default_rng(3)
     assert rope.value(curve) > 0.0
     for _ in range(3):
         away = rng.uniform(-1.0, 1.0, curve.vertices.shape) * step * rope.radius.max()
