@@ -58,9 +58,8 @@ class Curve:
         arrays = [_numbers(component, f"component {k + 1}") for k, component in enumerate(components)]
         for k, array in enumerate(arrays):
             if array.ndim != 2 or array.shape[1] != arrays[0].shape[-1]:
-                raise CurveError(
-                    f"component {k + 1} has shape {array.shape}; all components must be arrays (n, m) with one m"
-                )
+                told = f"component {k + 1} has shape {array.shape}; all components must be arrays (n, m) with one m"
+                raise CurveError(told)
         mesh = Mesh(tuple(len(array) for array in arrays), cast(tuple[bool, ...], closed))  # which checks it
         return cls(np.concatenate(arrays), mesh)
 

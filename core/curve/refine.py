@@ -48,9 +48,8 @@ def refine(curve: Curve, vertices: int | None = None) -> Curve:
     Raises CurveOptionError if fewer vertices are requested than the curve has: corners are never cut.
     """
     if vertices is not None and vertices < len(curve):
-        raise CurveOptionError(
-            f"vertices is {vertices}, but the curve has {len(curve)} already; ask for that many or more"
-        )
+        told = f"vertices is {vertices}, but the curve has {len(curve)} already; ask for that many or more"
+        raise CurveOptionError(told)
     spacing = target_spacing(curve, Resolution())
     if vertices is not None:
         edges = vertices - len(curve.mesh.ends)

@@ -81,9 +81,8 @@ def rope_radius(task: Task, options: RelaxOptions) -> FloatArray | None:
     if not isinstance(wanted, str):
         given = np.ravel(wanted)
         if curve.dimension > 3:
-            raise OptionError(
-                f"radius is for curves in the plane and in space, not in R^{curve.dimension}; leave it out"
-            )
+            told = f"radius is for curves in the plane and in space, not in R^{curve.dimension}; leave it out"
+            raise OptionError(told)
         if len(given) not in (1, components):
             raise OptionError(f"radius has {len(given)} numbers; give one, or {components}, one for each component")
         radius = np.broadcast_to(given, components).astype(np.float64)

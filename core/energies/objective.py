@@ -10,17 +10,7 @@ import scipy.sparse as sp
 from ..base import FloatArray, OptionError, checked_fields
 from ..curve import Curve, Obstacle
 from .barrier import Barrier, replaced_pairs
-from .energy import (
-    Approximate,
-    Assembled,
-    Confining,
-    Energy,
-    LocalTerm,
-    Stiff,
-    Term,
-    WithMidpointPairs,
-    scale_exponent,
-)
+from .energy import Approximate, Assembled, Confining, Energy, LocalTerm, Stiff, Term, WithMidpointPairs, scale_exponent
 from .moebius import MoebiusEnergy
 from .pull import Pull
 from .repulsion import Repulsion

@@ -190,9 +190,8 @@ def _numbers(match: re.Match[str], name: str) -> Word:
     numbers = match["numbers"].split(",") if match["numbers"] else []
     for number in numbers:
         if not _NUMBER.fullmatch(number):
-            raise UnknownKnotError(
-                f"{number[:30]!r} in {name[:60]!r} is not a whole number of up to 18 digits; {_FORMS}"
-            )
+            told = f"{number[:30]!r} in {name[:60]!r} is not a whole number of up to 18 digits; {_FORMS}"
+            raise UnknownKnotError(told)
     return tuple(map(int, numbers))
 
 

@@ -258,9 +258,8 @@ def _gauss(text: str) -> Diagram:
             passes[-1].append((number.setdefault(crossing, len(number)), over))
     for crossing, found in levels.items():
         if sorted(found) != [False, True]:
-            raise CurveError(
-                f"crossing {crossing} of the Gauss code must be there once above (positive) and once below"
-            )
+            told = f"crossing {crossing} of the Gauss code must be there once above (positive) and once below"
+            raise CurveError(told)
     if not signed:
         return realized(passes)
     return _in_the_plane(Diagram(tuple(map(tuple, passes)), tuple(signs.values())), "the Gauss code with these signs")
