@@ -17,6 +17,7 @@ COMMANDS = {  # the module of each, which has add_COMMAND(parser), and what it d
     "morph": ("morph", "find a proved motion from one curve to another"),
     "separate": ("separate", "make ropes of curves that run through each other"),
     "same": ("morph", "tell whether two curves are the same knot or link"),
+    "tighten": ("tighten", "pull a knot or link tight"),
     "energy": ("info", "print the energy of a curve"),
     "info": ("info", "identify the knot type of curves, and measure them"),
     "verify": ("verify", "check a trajectory for contact"),

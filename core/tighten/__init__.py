@@ -1,5 +1,5 @@
-"""Knots pulled tight: the shortest rope of a given thickness."""
+"""Tighten: knots and links as the shortest ropes of their thickness."""
 
-from .tighten import tighten
+from .tighten import Strut, Tightened, TightenOptions, tighten, tightening
 
-__all__ = ["tighten"]
+__all__ = ["Strut", "TightenOptions", "Tightened", "tighten", "tightening"]

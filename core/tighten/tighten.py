@@ -7,8 +7,9 @@ all vertices move on by half an edge, which cuts corners.
 
 import math
 import time
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,10 +24,9 @@ from ..collision.motion import walk
 from ..curve import Curve, check_closed
 from ..curve.refine import onto_chords, subdivide
 from ..descent.task import Task, check_refined
-from ..driver import Outcome, Relaxation, RelaxOptions, Status, relax
+from ..driver import Outcome, Relaxation, RelaxOptions, Result, Status, finish, relax
 from ..driver.moves.hops import Field, random_flow
-from ..driver.moves.hops import radius as size
-from ..driver.outcome import stalled
+from ..driver.moves.hops import radius as radius_of_gyration
 from ..driver.prepare import rope_radius
 from ..driver.relax import within
 from ..io.trajectory import Iterate
@@ -40,79 +40,127 @@ ROOM = 1e-6  # of the radius, which motions are proved with: between their ends 
 SHRINK = 0.95  # of the size at least is left at once, where nothing touches
 
 
-@checked
-@BLAS.bounded()
-def tighten(
-    curve: Curve | Task, vertices: int = 400, starts: int = 1, seed: int = 0, time_limit: float | None = None
-) -> Relaxation:
-    """Pull a knot or link tight: yield it, then the end of every step; return how it ended.
+@dataclass(frozen=True, kw_only=True)
+class TightenOptions:
+    """How a knot is pulled tight: ``vertices`` in the end, or up to twice as many, and ``starts``, drawn by a seed."""
 
-    The rope's radius is nine tenths of the thickness of the curve, refined; ``energy`` of iterates is the ropelength,
-    length over radius, ``gradient_norm`` the residual of the equilibrium of forces, relative to the tension.  In the
-    end there are ``vertices`` or up to twice as many.  Of several ``starts`` all but the first are stirred at random,
-    and the one that is shortest on few vertices goes on; ``time_limit`` is in seconds.
+    vertices: int = 400
+    starts: int = 1
+    seed: int = 0
+    time_limit: float | None = None
 
-    Raises CurveError if the curve is not closed or not in space, touches itself, or has corners too sharp for a rope,
-    OptionError if there are pins or obstacles, or numbers are out of range.
+    def __post_init__(self) -> None:
+        for name, low in (("vertices", COARSE), ("starts", 1), ("seed", 0)):
+            check_number(name, getattr(self, name), low - 1, MOST)
+        if self.time_limit is not None:
+            check_number("time_limit", self.time_limit, 0.0, math.inf)
+
+
+class Strut(NamedTuple):
+    """Two edges that press on each other, and the force, relative to the tension of the rope."""
+
+    edge: int
+    other: int
+    force: float
+
+
+@dataclass(frozen=True)
+class Tightened(Outcome):
+    """How tightening ended.
+
+    - ``ropelength``: length over thickness.
+    - ``gap``: Σ force × clearance, relative to the length: by about that part the rope could still be shorter.
+    - ``residual``: what forces lack to be in equilibrium, relative to the tension.
+    - ``struts``: where strands press on each other.
     """
-    began, task = time.perf_counter(), Task.of(curve)
+
+    ropelength: float = 0.0
+    gap: float = math.inf
+    residual: float = math.inf
+    struts: tuple[Strut, ...] = ()
+
+
+@checked
+def tighten(
+    curve: Curve | Task,
+    *,
+    vertices: int = 400,
+    starts: int = 1,
+    seed: int = 0,
+    callback: Callable[[Iterate], None] | None = None,
+) -> Result:
+    """Pull a knot or link tight: as short as a rope of its radius can be, nine tenths of the curve's thickness.
+
+    In the end there are ``vertices`` or up to twice as many.  Of several ``starts`` all but the first are stirred at
+    random, and the one that is shortest on few vertices goes on.  ``energy`` of iterates is length over radius,
+    ``gradient_norm`` the residual.  The result's outcome is a `Tightened`, unless it was cut short.
+
+    Raises CurveError if the curve is not closed, not in space, touches itself or is too thin for a rope; OptionError if
+    there are pins or obstacles, or numbers are out of range.
+    """
+    task = Task.of(curve)
+    return finish(tightening(task, TightenOptions(vertices=vertices, starts=starts, seed=seed)), task, callback)
+
+
+@BLAS.bounded()
+def tightening(task: Task, options: TightenOptions) -> Relaxation:
+    """Yield the curve and all steps on its way; return how it ended, a `Tightened`.  Raises as `tighten` does."""
+    began = time.perf_counter()
     if task.pins or task.obstacles:
         raise OptionError("a knot is pulled tight in free space; leave pins and obstacles out")
-    check_closed(task.curve, "tightening")
+    check_closed(task.curve, "the shortest ropes")
     if task.curve.dimension != 3:
         raise CurveError(f"the curve has dimension {task.curve.dimension}; only curves in space are pulled tight")
-    for name, value, low in (("vertices", vertices, COARSE), ("starts", starts, 1), ("seed", seed, 0)):
-        check_number(name, value, low - 1, MOST)
-    if time_limit is not None:
-        check_number("time_limit", time_limit, 0.0, math.inf)
-    coarse = vertices >> int(math.log2(vertices / COARSE))
+    coarse = options.vertices >> int(math.log2(options.vertices / COARSE))
     start = task.refined(max(len(task.curve), coarse))
     thick = rope_radius(start, RelaxOptions(radius="keep"))
     if thick is None:
         raise CurveError("the curve is no rope: a corner is too sharp, or strands are too near; smooth or relax it")
-    work = BLAS.bounding(_tightened(start, float(thick.min()), coarse, vertices, starts, np.random.default_rng(seed)))
-    if time_limit is None:
+    work = BLAS.bounding(_tightened(start, float(thick.min()), coarse, options))
+    if options.time_limit is None:
         return work
-    return within(TimeLimit(time_limit, used=time.perf_counter() - began), work)
+    return within(TimeLimit(options.time_limit, used=time.perf_counter() - began), work)
 
 
-def _tightened(
-    start: Task, unit: float, coarse: int, vertices: int, starts: int, rng: np.random.Generator
-) -> Relaxation:
-    options = RelaxOptions(
-        radius=unit, mesh="fixed", vertices=len(start.curve), untangle="never", tolerance=1e-2, max_iterations=500
-    )
-    flow = relax(start, options)
+def _tightened(start: Task, unit: float, coarse: int, wanted: TightenOptions) -> Relaxation:
+    rng, size = np.random.default_rng(wanted.seed), len(start.curve)
+    loosely = {"mesh": "fixed", "untangle": "never", "tolerance": 1e-2, "max_iterations": 500}
+    flow = relax(start, RelaxOptions(radius=unit, vertices=size, **loosely))
     rope = _Rope(next(flow), unit)
     yield rope.last
     if not rope.is_tight:
         for iterate in flow:
             yield from rope.follow(iterate.path, iterate.gradient_norm, iterate.step_size)
     yield from rope.thinned(coarse)
-    done = len(rope.curve) >= vertices
-    if starts == 1:
+    done = len(rope.curve) >= wanted.vertices
+    if wanted.starts == 1:
         yield from rope.shrunk()
         yield from rope.pulled(done)
     else:
         trials = []
-        for k in range(starts):
+        for k in range(wanted.starts):
             trial = _Rope(rope.last, unit)
             trials.append((trial, [*(trial.stirred(rng) if k else ()), *trial.shrunk(), *trial.pulled(done)]))
         rope, way = min(trials, key=lambda each: each[0].curve.length)
         yield from way
-    while len(rope.curve) < vertices:
+    while len(rope.curve) < wanted.vertices:
         before = len(rope.curve)
         yield from rope.doubled()
         if len(rope.curve) == before:
             break
-        yield from rope.pulled(len(rope.curve) >= vertices)
+        yield from rope.pulled(len(rope.curve) >= wanted.vertices)
     point = rope.point
     assert point is not None, "it has been pulled"
+    contacts, strands = point.contacts, slice(point.contacts.strands)
+    struts = zip(*(x[strands].tolist() for x in (contacts.i, contacts.j, point.forces)), strict=True)
     facts = {"ropelength": rope.curve.length / thickness(rope.curve), "gap": point.gap, "residual": point.residual}
     told = Message("ropelength {ropelength:.7g}, gap {gap:.1g}, residual {residual:.1g}", **facts)
-    if point.gap > GAP or point.residual > 10.0 * GAP:
-        return stalled(Message("forces are not in equilibrium: {told}", told=told))
-    outcome = Outcome(Status.CONVERGED, (Message("converged: {told}", told=told),))
+    if point.gap <= GAP and point.residual <= 10.0 * GAP:
+        status, said = Status.CONVERGED, Message("converged: {told}", told=told)
+    else:
+        status, said = Status.STALLED, Message("stalled: forces are not in equilibrium: {told}", told=told)
+    pressing = tuple(Strut(*each) for each in struts if each[2] > 1e-4)
+    outcome = Tightened(status, (said,), **facts, struts=pressing)
     if (point.curve.component_lengths < 2.01 * math.pi).all():
         return outcome.adding("circles of the rope's radius are left, as of unknots")
     return outcome
@@ -141,7 +189,9 @@ class _Rope:
     def proves(self, vertices: FloatArray) -> bool:
         return is_rope(self.curve.mesh, self.curve.vertices, vertices, np.array(self.last.radius))
 
-    def follow(self, path: Sequence[FloatArray], residual: float = np.inf, share: float = 0.0) -> Iterator[Iterate]:
+    def follow(
+        self, path: Sequence[FloatArray], residual: float | None = None, share: float = 0.0
+    ) -> Iterator[Iterate]:
         """The iterate at the end of a path, with proved legs."""
         curve = self.curve.with_vertices(path[-1])
         self.last = replace(
@@ -150,7 +200,7 @@ class _Rope:
             curve=curve,
             energy=curve.length / self.unit,
             path=tuple(path),
-            gradient_norm=residual,
+            gradient_norm=self.last.gradient_norm if residual is None else residual,
             step_size=share,
             edge_length_error=0.0,
         )
@@ -184,7 +234,7 @@ class _Rope:
 
             def moved(_: float, stride: float, velocity: Field = velocity) -> FloatArray | None:
                 x = self.curve.vertices
-                there = np.asarray(x + stride * size(x) * velocity(x))
+                there = np.asarray(x + stride * radius_of_gyration(x) * velocity(x))
                 return there if self.proves(there) else None
 
             for _, vertices in walk(moved, 0.5, 0.02, 0.005):

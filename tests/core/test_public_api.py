@@ -87,7 +87,10 @@ FINE: dict[str, tuple[Callable[..., object], dict[str, object]]] = {
             "callback": lambda *_: None,
         },
     ),
-    "tighten": (core.tighten, {"curve": TREFOIL, "vertices": 100, "starts": 1, "seed": 0, "time_limit": 1.0}),
+    "tighten": (
+        core.tighten,
+        {"curve": TREFOIL, "vertices": 100, "starts": 1, "seed": 0, "callback": lambda *_: None},
+    ),
     "Iterate": (Iterate, vars(START)),
     "Outcome": (Outcome, {"status": Status.STALLED, "clauses": ("stuck",), "place": None}),
     "Result": (Result, vars(minimize(TREFOIL, SHORT))),

@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, CurveError, OptionError, Task, tighten
+from mobius_flow.core import Curve, CurveError, OptionError, Status, Task, tighten
 from mobius_flow.core.collision import thickness
 from mobius_flow.core.driver import WithOutcome
 from mobius_flow.core.energies.edge_pairs import EdgePairs
 from mobius_flow.core.knots import knot
+from mobius_flow.core.tighten import TightenOptions, tightening
 from mobius_flow.core.tighten.contacts import Contacts
 from mobius_flow.core.tighten.interior_point import InteriorPoint
 from tasks import check
@@ -67,9 +68,10 @@ def test_forces_at_rest_balance_the_tension():
 
 
 def run(curve, **settings):
-    way, iterates = WithOutcome(tighten(curve, **settings)), []
-    iterates.extend(way)
-    return iterates, way.outcome
+    iterates = []
+    result = tighten(curve, callback=iterates.append, **settings)
+    assert result.certified
+    return iterates, result.outcome
 
 
 @pytest.mark.parametrize(
@@ -86,6 +88,9 @@ def test_knots_reach_known_ropelengths_as_proved_ropes(curve, ropelength, error)
     verdict = check(iterates)
     assert min(verdict.radius) > 0.89 * thickness(iterates[0].curve)
     assert min(verdict.radius) == pytest.approx(thickness(last), rel=1e-5)
+    assert outcome.ropelength == pytest.approx(last.length / thickness(last))
+    # struts and bends carry the tension together: Σ force × distance is the length if nothing bends as much as it can
+    assert 0.2 * outcome.ropelength < 2.0 * sum(strut.force for strut in outcome.struts) < 1.01 * outcome.ropelength
     assert iterates[-1].energy == pytest.approx(last.length / thickness(last), rel=1e-5)
 
 
@@ -140,6 +145,6 @@ def test_numbers_out_of_range_are_refused(settings):
 
 
 def test_a_time_limit_keeps_what_was_reached():
-    iterates, outcome = run(knot("3_1"), time_limit=1e-9)
-    assert outcome.status.value == "time_limit"
-    assert len(iterates) <= 1
+    way = WithOutcome(tightening(Task(curve=knot("3_1")), TightenOptions(time_limit=1e-9)))
+    assert len(list(way)) <= 1
+    assert way.outcome.status is Status.TIME_LIMIT

@@ -1,0 +1,47 @@
+"""``mobius-flow tighten`` from the terminal's point of view."""
+
+import json
+
+import pytest
+from mobius_flow.core import read_curve, write_curve
+from mobius_flow.core.collision import thickness
+from mobius_flow.core.knots import knot
+from mobius_flow.core.proof import verify
+
+
+@pytest.fixture
+def trefoil(tmp_path):
+    path = tmp_path / "trefoil.txt"
+    write_curve(path, knot("3_1", 40))
+    return path
+
+
+def test_a_trefoil_is_written_with_report_and_proof(trefoil, tmp_path, run):
+    outputs = tmp_path / "out.obj", tmp_path / "r.json", tmp_path / "t.npz"
+    words = ("--vertices", "200", "--report", outputs[1], "--trajectory", outputs[2])
+    status, _, said = run("tighten", trefoil, outputs[0], *words)
+    assert status == 0
+    assert "ropelength 32.7" in said
+    assert "a rope of radius" in said
+    verdict = verify(outputs[2])
+    assert verdict.accepted
+    curve, report = read_curve(outputs[0]), json.loads(outputs[1].read_text(encoding="utf-8"))
+    assert report["ropelength"] == pytest.approx(curve.length / thickness(curve), rel=1e-6)
+    assert report["radius"] == pytest.approx(verdict.radius)
+    assert report["energy"][0] > report["energy"][-1] == pytest.approx(report["ropelength"], rel=1e-5)
+    assert report["gap"] <= 1e-6
+    assert report["options"]["vertices"] == report["vertices"] == 200
+    assert all(0 <= a < b < 200 for a, b, _ in report["struts"])
+
+
+@pytest.mark.parametrize(
+    ("words", "said"), [(("--vertices", "7"), "vertices is 7"), (("--starts", "0"), "starts is 0")]
+)
+def test_bad_input_is_one_line(trefoil, tmp_path, refused, words, said):
+    assert said in refused("tighten", trefoil, tmp_path / "o.txt", *words)
+
+
+def test_open_curves_are_refused_with_their_file(tmp_path, refused):
+    path = tmp_path / "open.txt"
+    path.write_text("# open\n0 0 0\n1 0 0\n1 1 1\n", encoding="utf-8")
+    assert "open.txt" in refused("tighten", path, tmp_path / "o.txt")
