@@ -21,6 +21,7 @@ from ..core import Curve, Hand, Iterate, MobiusFlowError
 from ..core.keys.key_options import Pace
 from ..core.keys.placement import Measure
 from ..core.separate import SeparateOptions
+from ..core.tighten import TightenOptions
 from .curves import bake, bevel, sizes
 from .curves.recorded import BakedKeys
 from .curves.session import Report, Session
@@ -122,6 +123,15 @@ class Relaxation:
         )
         return begin(self.objects, values, False, self.sample_splines, ropes=ropes).run()
 
+    def tighten(self, starts: int = 1, **settings: Any) -> Report:
+        """Pull closed curves tight, as ropes of nine tenths of their thickness, and keep the motion as keys.
+
+        Of several ``starts`` the shortest goes on; of the settings of `relax`, ``vertices``, ``seed`` and
+        ``time_limit`` count, and those of keys.  Otherwise as `relax`.
+        """
+        values = complete(settings) | {"avoid": ()}
+        return begin(self.objects, values, False, self.sample_splines, starts=starts).run()
+
     def relax_further(self, avoid: Iterable[bpy.types.Object] = (), **settings: Any) -> Report:
         """Go on from the end of the animation, with new keys after the old ones; otherwise as `relax`.
 
@@ -174,10 +184,12 @@ def begin(
     sample_splines: bool,
     goals: Sequence[bpy.types.Object] = (),
     ropes: Mapping[str, Any] | None = None,
+    starts: int = 0,
 ) -> Session:
     """A session with the values of all settings, which becomes the goals if there are any; raises MobiusFlowError.
 
     ``ropes``: the options of `separate` but for the radii, which are the tubes', if curves are to be separated.
+    ``starts``: their number if curves are to be pulled tight.
     """
     bpy.context.view_layer.update()  # of where objects are that a script has just moved
     require(
@@ -197,7 +209,7 @@ def begin(
         raise MobiusFlowError(f"avoid has {wrong[0]!r:.40}, which is not an object")
     surroundings = Surroundings.of(avoid, [*objects, *goals])
     pins, tangents = values.get("pins", ()), values["pin_tangents"]
-    job = None
+    job: SeparateOptions | TightenOptions | None = None
     if ropes is not None:  # sizes are what is asked for: nothing is scaled, and no tube fitted
         require(TUBED.of(objects))
         options = replace(options, keep_size=Measure.LENGTH, fit_bevel=False)
@@ -207,6 +219,11 @@ def begin(
             for each in obj.data.splines
         ]
         job = SeparateOptions(radius=widths, **ropes)
+    elif starts:  # the rope gets shorter, not thicker
+        options = replace(options, keep_size=options.keep_size or Measure.LENGTH, constant_radius=True)
+        wanted = relax_options(values)
+        facts = {"vertices": wanted.vertices} if wanted.vertices else {}
+        job = TightenOptions(starts=starts, seed=wanted.seed, time_limit=wanted.time_limit, **facts)
     return Session(objects, relax_options(values), options, continues, surroundings, pins, tangents, goals, job)
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import bpy
 import numpy as np
-from bpy.props import BoolProperty, EnumProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 
 from ...core import MobiusFlowError
 from ...core.base.messages import Message
@@ -208,6 +208,25 @@ moved as little as that allows; ends and pins stay in place. Where two curves me
         over, lengths = None if self.over == "AUTO" else self.over.lower(), "keep" if self.keep_lengths else "free"
         ropes = {"over": over, "lengths": lengths, "free_ends": self.free_ends}
         return begin(selected_curves(context), values, False, self.sample_splines, ropes=ropes)
+
+
+class CURVE_OT_mobius_flow_tighten(Relaxing, bpy.types.Operator):
+    """Pull the selected closed curves tight: the shortest rope of nine tenths of their thickness, which stays, and \
+keep the motion as keyframes"""
+
+    bl_label = "Tighten"
+    needs = (RELAXABLE, POLYGONS)
+
+    starts: IntProperty(
+        name="Starts",
+        description="Starts on few vertices, stirred at random but for the first, of which the shortest goes on",
+        default=1,
+        min=1,
+        options={"SKIP_SAVE"},
+    )
+
+    def session(self, context: bpy.types.Context, values: dict[str, Any]) -> Session:
+        return begin(selected_curves(context), values, False, self.sample_splines, starts=self.starts)
 
 
 class CURVE_OT_mobius_flow_pack(Relaxing, bpy.types.Operator):

@@ -23,6 +23,7 @@ from ...core.keys.motion import Key, Keys, Kind, Proof, Recording
 from ...core.keys.placement import Frame, Measure, Placement, Spot, spots
 from ...core.keys.tube import eased
 from ...core.separate import SeparateOptions
+from ...core.tighten import TightenOptions
 from ..engine.worker import begun, in_common_space
 from . import bake, bevel
 from .goals import Goals
@@ -99,7 +100,7 @@ class Session:
     keys are added to theirs. ``pins``: points that are pinned besides the marked ones, counted from 0 through all
     splines of all objects; ``pin_tangents``: whether the neighbours of pinned points in the refined curve are, too.
     ``goals``: curve objects that the link is to become, one after the other; by default it is relaxed alone.
-    ``ropes``: how it is separated instead.
+    ``ropes``: how it is separated, or pulled tight, instead.
 
     ``curve``: all splines as polygons in world space; ``link``: where their vertices are stored; ``outcome``: how the
     relaxation ended, once it has.  Raises MobiusFlowError if the curves cannot be relaxed, or there is no room for
@@ -116,7 +117,7 @@ class Session:
         pins: Sequence[int] = (),
         pin_tangents: bool = False,
         goals: Sequence["bpy.types.Object"] = (),
-        ropes: SeparateOptions | None = None,
+        ropes: SeparateOptions | TightenOptions | None = None,
     ) -> None:
         key_options.check_room(options.max_iterations)
         self.surroundings, self._key_options, self._continues = surroundings, key_options, continues

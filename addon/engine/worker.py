@@ -34,6 +34,7 @@ from ...core.keys.motion import frames_of
 from ...core.keys.placement import Frame, Link, Placement
 from ...core.morph import morphing
 from ...core.separate import SeparateOptions, separating
+from ...core.tighten import TightenOptions, tightening
 
 Inbox = queue.SimpleQueue[Any]
 
@@ -75,10 +76,15 @@ def messages(inbox: Inbox) -> Iterator[Any]:
         yield error
 
 
-def begun(task: Task, options: RelaxOptions | SeparateOptions, goals: Mapping[str, Curve], hand: Hand) -> Relaxation:
-    """The relaxation of a task, which a hand may drag, its motion to goals, one after the other, or its separation."""
+Job = RelaxOptions | SeparateOptions | TightenOptions
+
+
+def begun(task: Task, options: Job, goals: Mapping[str, Curve], hand: Hand) -> Relaxation:
+    """The relaxation of a task, which a hand may drag, its motion to goals, one after the other, or what else to do."""
     if isinstance(options, SeparateOptions):
         return separating(task, options)
+    if isinstance(options, TightenOptions):
+        return tightening(task, options)
     if not goals:
         return relax(task, options, hand)
     return morphing(
@@ -111,7 +117,7 @@ class Worker:
     def __init__(
         self,
         task: Task,
-        options: RelaxOptions | SeparateOptions,
+        options: Job,
         link: Link,
         stays: bool = False,
         goals: Mapping[str, Curve] = MappingProxyType({}),

@@ -12,7 +12,7 @@ _OPERATORS = (
     ("bake_again", "continue", "morph", "clear", "scene_range"),
     ("fit_tube", "color_components"),
     ("keep_size", "lay_flat", "face_camera"),
-    ("pin", "unpin", "pack", "separate"),
+    ("pin", "unpin", "pack", "separate", "tighten"),
 )
 
 

@@ -119,7 +119,7 @@ class VIEW3D_PT_mobius_flow_surroundings(SubPanel, bpy.types.Panel):
         row(button("pin", "PINNED"), button("unpin", "UNPINNED")),
         settings("avoid", "container", of="mobius_flow_surroundings"),
         button("pack", "CUBE"),
-        button("separate", "MOD_PHYSICS"),
+        row(button("separate", "MOD_PHYSICS"), button("tighten", "FORCE_CURVE")),
         _pin_count,
     )
 

@@ -124,8 +124,8 @@ def tightening(task: Task, options: TightenOptions) -> Relaxation:
 
 def _tightened(start: Task, unit: float, coarse: int, wanted: TightenOptions) -> Relaxation:
     rng, size = np.random.default_rng(wanted.seed), len(start.curve)
-    loosely = {"mesh": "fixed", "untangle": "never", "tolerance": 1e-2, "max_iterations": 500}
-    flow = relax(start, RelaxOptions(radius=unit, vertices=size, **loosely))
+    loosely = RelaxOptions(mesh="fixed", untangle="never", tolerance=1e-2, max_iterations=500)
+    flow = relax(start, replace(loosely, radius=unit, vertices=size))
     rope = _Rope(next(flow), unit)
     yield rope.last
     if not rope.is_tight:
@@ -153,14 +153,15 @@ def _tightened(start: Task, unit: float, coarse: int, wanted: TightenOptions) ->
     assert point is not None, "it has been pulled"
     contacts, strands = point.contacts, slice(point.contacts.strands)
     struts = zip(*(x[strands].tolist() for x in (contacts.i, contacts.j, point.forces)), strict=True)
-    facts = {"ropelength": rope.curve.length / thickness(rope.curve), "gap": point.gap, "residual": point.residual}
-    told = Message("ropelength {ropelength:.7g}, gap {gap:.1g}, residual {residual:.1g}", **facts)
-    if point.gap <= GAP and point.residual <= 10.0 * GAP:
+    ropelength, gap, residual = rope.curve.length / thickness(rope.curve), point.gap, point.residual
+    template = "ropelength {ropelength:.7g}, gap {gap:.1g}, residual {residual:.1g}"
+    told = Message(template, ropelength=ropelength, gap=gap, residual=residual)
+    if gap <= GAP and residual <= 10.0 * GAP:
         status, said = Status.CONVERGED, Message("converged: {told}", told=told)
     else:
         status, said = Status.STALLED, Message("stalled: forces are not in equilibrium: {told}", told=told)
     pressing = tuple(Strut(*each) for each in struts if each[2] > 1e-4)
-    outcome = Tightened(status, (said,), **facts, struts=pressing)
+    outcome = Tightened(status, (said,), ropelength=ropelength, gap=gap, residual=residual, struts=pressing)
     if (point.curve.component_lengths < 2.01 * math.pi).all():
         return outcome.adding("circles of the rope's radius are left, as of unknots")
     return outcome

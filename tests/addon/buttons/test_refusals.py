@@ -119,7 +119,7 @@ def hidden_container():
 
 SELECT = "Select a curve object first"
 SMOOTH, BAKES = ("fit_tube", "tube_mesh", "smooth_curve"), ("continue", "bake_again", "clear", "keep_size")
-RELAXING = ("relax", "grab", "pack", "morph", "separate")
+RELAXING = ("relax", "grab", "pack", "morph", "separate", "tighten")
 SHAPES = ("lay_flat", "face_camera", "color_components", *SMOOTH)
 CASES = {
     nothing: {
