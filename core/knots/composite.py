@@ -13,34 +13,16 @@ from itertools import chain, compress, product
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
-from ..base import BoolArray, FloatArray, IntArray, checked_fields, number
+from ..base import BoolArray, FloatArray, IntArray
 from ..curve import Curve, Obstacle
 from .diagrams import linking_numbers, quick_invariants
 from .diagrams.invariants import TRIVIAL
 
+# How thoroughly balls are searched for
+SHORTEST = 1 / 8  # arc, as a fraction of its component
+SAMPLES = 120  # vertices of the curve that balls are fitted to
+TRIALS = 3000  # balls that are fitted at most; other links are not searched
 _MARGIN = 1e-6  # of the separating plane, for a curve of size 1: far above rounding
-
-
-@checked_fields
-@dataclass(frozen=True)
-class BallSearch:
-    """How thoroughly balls are searched for."""
-
-    arcs: int = number(24, above=1)  # places where arcs of a knot begin and end; components of a link share them
-    shortest: float = number(1 / 8, most=0.5)  # arc, as a fraction of its component
-    samples: int = number(120, above=5)  # vertices of the curve that balls are fitted to
-    trials: int = number(3000)  # balls that are fitted at most; other links are not searched
-
-    def places(self, components: int) -> int:
-        return max(int(1 / self.shortest), self.arcs // components)
-
-    def lengths(self, components: int) -> range:
-        """Lengths of arcs, from place to place."""
-        places = self.places(components)
-        return range(int(self.shortest * places), places // 2 + 1)
-
-
-DEFAULT_SEARCH = BallSearch()
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,32 +42,39 @@ class Ball:
         return bool(np.linalg.norm(outside, axis=1).min() > self.radius)
 
 
-def knotted_ball(curve: Curve, search: BallSearch = DEFAULT_SEARCH) -> Ball | None:
+def knotted_ball(curve: Curve) -> Ball | None:
     """A ball whose sphere meets the curve in two points, both parts being knotted or linked; None if none is found.
 
     A ball proves that the curve is composite.  None proves nothing: parts may have a trivial Alexander polynomial, or
     lie in no round ball, and a link may be beyond `is_searchable`.  Only closed polygons in space can be knots.
     """
-    if curve.dimension != 3 or not curve.mesh.all_closed or not is_searchable(curve, search):
+    if curve.dimension != 3 or not curve.mesh.all_closed or not is_searchable(curve):
         return None
     middle = curve.vertices.mean(axis=0)
     size = float(np.abs(curve.vertices - middle).max())
     normal = curve.with_vertices((curve.vertices - middle) / size)
-    sample = np.arange(0, len(curve), max(1, len(curve) // search.samples))
-    for inside in _arcs(curve, search, sample):
+    sample = np.arange(0, len(curve), max(1, len(curve) // SAMPLES))
+    for inside in _arcs(curve, sample):
         for ball in _separating(normal.vertices[sample], np.where(inside, -1.0, 1.0)):
             if _is_knotted(normal, ball):
                 return Ball(middle + size * ball.center, size * ball.radius)
     return None
 
 
-def is_searchable(curve: Curve, search: BallSearch = DEFAULT_SEARCH) -> bool:
+def is_searchable(curve: Curve) -> bool:
     """Whether there are few enough ways in which the components of a curve in space can lie about a ball."""
     components = len(curve.mesh.component_sizes)
-    arcs = search.places(components) * len(search.lengths(components))
-    if components * arcs > search.trials:
+    places, lengths = _places(components)
+    arcs = places * len(lengths)
+    if components * arcs > TRIALS:
         return False
-    return arcs * sum(1 << len(groups) for groups in _linked_groups(curve)) <= search.trials
+    return arcs * sum(1 << len(groups) for groups in _linked_groups(curve)) <= TRIALS
+
+
+def _places(components: int) -> tuple[int, range]:
+    """The number of places where arcs of a component begin and end, and lengths of arcs, from place to place."""
+    places = max(int(1 / SHORTEST), 24 // components)
+    return places, range(int(SHORTEST * places), places // 2 + 1)
 
 
 def _linked_groups(curve: Curve) -> list[list[IntArray]]:
@@ -104,14 +93,14 @@ def _linked_groups(curve: Curve) -> list[list[IntArray]]:
     return found
 
 
-def _arcs(curve: Curve, search: BallSearch, sample: IntArray) -> Iterator[BoolArray]:
+def _arcs(curve: Curve, sample: IntArray) -> Iterator[BoolArray]:
     """For each component which sampled vertices are inside, shape (m, n): one of its arcs, the longest ones first, and
     any whole components among the others that can lie there together."""
     slices, component = curve.mesh.slices, curve.mesh.component[sample]
-    places, wanted = search.places(len(slices)), np.array(search.lengths(len(slices)))
+    places, wanted = _places(len(slices))
     for part, groups in zip(slices, _linked_groups(curve), strict=True):
         size = part.stop - part.start
-        starts, lengths = np.unique(np.arange(places) * size // places), np.unique(wanted * size // places)
+        starts, lengths = np.unique(np.arange(places) * size // places), np.unique(np.array(wanted) * size // places)
         along = (sample - part.start - starts[:, None]) % size
         arcs = (along < lengths[::-1, None, None]) & (part.start <= sample) & (sample < part.stop)
         choices = product((False, True), repeat=len(groups))

@@ -140,16 +140,14 @@ def simplifying(diagram: Diagram) -> Iterator[Diagram]:
         yield (diagram := reduced(move.after))
 
 
-def shuffled_down(
-    diagram: Diagram, enough: Callable[[Diagram], bool], *, seed: int = 20219, patience: int = 150, most: int = 60
-) -> Diagram:
+def shuffled_down(diagram: Diagram, enough: Callable[[Diagram], bool]) -> Diagram:
     """Move strands at random until crossings can be removed, again and again.
 
-    Ends at a diagram that is simple ``enough``, after ``patience`` moves in a row that removed none, or at once if
-    there are more than ``most`` crossings, which random moves hardly improve.
+    Ends at a diagram that is simple ``enough``, after 150 moves in a row that removed none, or at once if there are
+    more than 60 crossings, which random moves hardly improve.
     """
-    rng, vain, trial = np.random.default_rng(seed), 0, diagram
-    while vain < patience and diagram.crossings <= most and not enough(diagram):
+    rng, vain, trial = np.random.default_rng(20219), 0, diagram
+    while vain < 150 and diagram.crossings <= 60 and not enough(diagram):
         # some diagrams have no way on: every now and then it begins anew
         trial, vain = trial if vain % 20 else diagram, vain + 1
         move = shuffled(trial, rng)
