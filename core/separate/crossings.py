@@ -53,7 +53,8 @@ def lead_apart(
     met.  A CurveError names strands that are ``held``, (n,), where they meet.
     """
     mesh, p = curve.mesh, curve.vertices
-    meets = MEETS * float(radius.min())
+    scale = min(float(radius.min()), float(curve.edge_lengths.max()))
+    meets = MEETS * scale
     pinned = np.flatnonzero(held)
     for k, other in pinned[cKDTree(p[pinned]).query_pairs(meets, output_type="ndarray")][:1]:
         parts = [Message(COMPONENT, number=int(mesh.component[each]) + 1) for each in (k, other)]
@@ -100,7 +101,7 @@ def lead_apart(
     u = u.reshape(-1, 3)
     others = contacts(curve, radius, curve.edge_lengths, 0.1, obstacles)
     apart = others.value * np.where(others.edges[:, 1] < 0, 1.0, 2.0) * float(radius.min())
-    room = float(apart[apart > meets].min(initial=0.1 * float(radius.min())))
+    room = float(apart[apart > meets].min(initial=0.1 * scale))
     places = np.einsum("kc,kcm->km", shares[:, :2], p[ends[:, :2]])[met]
     lower, higher = np.sort(label[np.stack([i, j])[:, met]], axis=0)
     _, first, number = np.unique(lower * mesh.edges + higher, return_index=True, return_inverse=True)

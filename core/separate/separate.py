@@ -101,6 +101,12 @@ def _iterates(task: Task, options: SeparateOptions) -> Relaxation:
     radius, parts = np.array(options.radius), len(curve.mesh.component_sizes)
     if len(radius) not in (1, parts):
         raise OptionError(f"radius has {len(radius)} numbers for {parts} components; give one, or one for each")
+    size = float(np.abs(curve.vertices).max())
+    if not 1e-6 * size < radius.min() <= radius.max() < 1e2 * size:  # thinner ones cannot be proved
+        worst = radius.min() if radius.min() <= 1e-6 * size else radius.max()
+        raise OptionError(
+            f"radius is {worst:g}, but coordinates are up to {size:g}; give {1e-6 * size:g} to {1e2 * size:g}"
+        )
     if not (curve.edge_lengths.min() > 0.0 and bending_radii(curve).min() > 1e-9 * radius.min()):
         check_embedded(curve)  # which says where it doubles back
     check_clear(curve, task.obstacles)
@@ -200,6 +206,6 @@ def _outcome(ropes: Ropes, curve: Curve, crossings: tuple[Crossing, ...]) -> Sep
         where = Message("at a corner of {one}", one=one)
     elif one == other:
         where = Message("between parts of {one}", one=one)
-    tight = "there is room for {share:.1f} % of the radius only; it is tight {where}, near {place}"
+    tight = "there is room for {share:.3g} % of the radius only; it is tight {where}, near {place}"
     reason = Message(tight, share=100.0 * ropes.share, where=where, place=written(np.array(place.position)))
     return Separated(Status.STALLED, (*stalled(reason).clauses, *told), place=place, **facts)

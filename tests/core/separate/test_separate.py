@@ -120,7 +120,7 @@ def test_long_edges_are_cut_and_the_given_vertices_kept():
     assert thin.status is Status.CONVERGED
     assert len(thin.curve) < 5000
     short = separate(arcs([[0.0, 0, 0], [3, 0, 0]], [[0.0, 1, 0], [3, 1, 0]]), 1.0)
-    assert "room for 50.0 %" in short.message
+    assert "room for 50 %" in short.message
 
 
 def test_obstacles_are_respected():
@@ -154,7 +154,7 @@ def test_free_ends_move_with_their_strand():
 @pytest.mark.parametrize(
     ("curve", "radius", "options", "said"),
     [
-        (arcs(X, X + np.array([0, 1.0, 0])), 1.0, {}, "room for 50.0 % of the radius only"),
+        (arcs(X, X + np.array([0, 1.0, 0])), 1.0, {}, "room for 50 % of the radius only"),
         (Task(curve=arcs([[0.0, 0, 0], [2, 0, 0], [1, 1.5, 0]]), pins=(1,)), 1.0, {}, "at a corner of component 1"),
         (Task(curve=arcs(X), obstacles=(Obstacle([[-12.0, 0.5, 0], [-12, 9, 0]], [[0, 1]]),)), 1.0, {}, "an obstacle"),
         (LINKED, 3.0, {"lengths": "keep"}, "room for 8"),
@@ -181,6 +181,8 @@ def test_where_there_is_no_room_the_best_is_kept_and_the_place_told(curve, radiu
         (Task(curve=arcs(Y), obstacles=(GATE,)), {}, "pierces"),
         (arcs(X, Y), {"radius": (1.0, 2.0, 3.0)}, "3 numbers for 2 components"),
         (arcs(X, Y), {"radius": -1.0}, "a number above 0"),
+        (arcs(X, Y), {"radius": 1e-300}, "radius is 1e-300, but coordinates are up to 12; give 1.2e-05 to 1200"),
+        (arcs(X, Y), {"radius": (1.0, 1e300)}, "radius is 1e+300"),
         (arcs(X, Y), {"radius": float("nan")}, "a number above 0"),
         (arcs(X, Y), {"over": "up"}, "choose one of x"),
         (arcs(X, Y), {"lengths": "kept"}, "did you mean keep"),
