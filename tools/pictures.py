@@ -4,6 +4,7 @@
     knots    sixteen knots and links of the table, as the extension adds them
     looks    a knot in each look
     morph    one famous unknot on its way to another
+    cables   strands that run through each other, and six moments on their way to ropes that keep clear
     world    what curves in the world do, before and after a relaxation: world-*.png
 
 The moving picture is a film, as ffmpeg makes it smaller; speed.png is drawn by benchmarks/speed.py.
@@ -24,15 +25,18 @@ import numpy as np
 from matplotlib.figure import Figure
 from mobius_flow.addon.pictures.export import write_picture
 from mobius_flow.addon.pictures.looks import LOOKS
-from mobius_flow.addon.pictures.materials import colour_components
+from mobius_flow.addon.pictures.materials import bundled, colour_components
 from mobius_flow.addon.pictures.rendering import use_cycles
-from mobius_flow.addon.pictures.stage import Stage, build, sky
-from mobius_flow.core import Curve, Iterate, RelaxOptions, Task, minimize, morph, read_obstacle
+from mobius_flow.addon.pictures.stage import Stage, build
+from mobius_flow.core import Curve, Iterate, RelaxOptions, Task, minimize, morph, read_obstacle, separate
 from mobius_flow.core.knots import knot, overhand
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from PIL import Image
 
 ROOT = Path(__file__).resolve().parents[1]
+sys.path.append(str(ROOT / "benchmarks"))
+from bundles import bundle  # noqa: E402
+
 TARGET = ROOT / "docs" / "pictures"
 
 
@@ -56,9 +60,9 @@ def knots() -> None:
     scene = bpy.context.scene
     width, height = step * columns, step * (len(names) // columns)
     middle = np.array([0.5 * (width - step), -0.5 * (height - step), 0.0])
-    floor = build(scene.collection, Stage(np.eye(3), middle, 0.6 * width, 0.5 * np.pi), LOOKS[look])
+    floor = build(scene.collection, Stage(np.eye(3), middle, 0.6 * width, 0.5 * np.pi, 1.0), LOOKS[look])
     floor.location = middle - [0.0, 0.0, 1.0]
-    scene.world = sky(LOOKS[look], "World")
+    scene.world = bundled("worlds", LOOKS[look].label)
     data = bpy.data.cameras.new("Camera")
     data.type, data.ortho_scale = "ORTHO", width
     scene.camera = bpy.data.objects.new("Camera", data)
@@ -69,6 +73,44 @@ def knots() -> None:
     scene.render.filepath = str(TARGET / "knots.png")
     bpy.ops.render.render(write_still=True)
     save(Image.open(TARGET / "knots.png").convert("RGB"), "knots")
+
+
+def cables() -> None:
+    """Render moments of the motion of a bundle from the side, each as far from the one before, as thick tubes."""
+    curve, path = bundle(76)[0], list[Curve]()
+    separate(curve, 1.0, callback=lambda iterate: path.append(iterate.curve))
+    shapes = np.array([each.vertices for each in path])
+    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(shapes, axis=0), axis=2).max(axis=1))])
+    shown = [int(np.abs(way - share * way[-1]).argmin()) for share in (0.0, 0.15, 0.3, 0.5, 0.75, 1.0)]
+    side, look, whole = (200, 420), LOOKS["STUDIO"], Image.new("RGB", (6 * 200, 420))
+    for k, vertices in enumerate(shapes[shown]):
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        data, scene = bpy.data.curves.new("Bundle", "CURVE"), bpy.context.scene
+        data.dimensions, data.bevel_depth, data.bevel_resolution, data.use_fill_caps = "3D", 1.0, 6, True
+        for part in curve.mesh.slices:
+            spline = data.splines.new("POLY")
+            spline.points.add(part.stop - part.start - 1)
+            spline.points.foreach_set("co", np.column_stack([vertices[part], np.ones(part.stop - part.start)]).ravel())
+        scene.collection.objects.link(bpy.data.objects.new("Bundle", data))
+        colour_components(data, look="STUDIO")
+        middle = 0.5 * (curve.vertices.min(axis=0) + curve.vertices.max(axis=0))
+        height = 1.08 * float(np.ptp(curve.vertices[:, 2]))
+        upright = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+        build(scene.collection, Stage(upright, middle, 0.6 * height, 0.5 * np.pi, 1.0), look).location = [
+            0.0,
+            100.0,
+            0.0,
+        ]
+        scene.world, lens = bundled("worlds", look.label), bpy.data.cameras.new("Camera")
+        lens.type, lens.ortho_scale, lens.sensor_fit = "ORTHO", height, "VERTICAL"
+        scene.camera = bpy.data.objects.new("Camera", lens)
+        scene.collection.objects.link(scene.camera)
+        scene.camera.location, scene.camera.rotation_euler = middle - [0.0, 60.0, 0.0], (0.5 * np.pi, 0.0, 0.0)
+        use_cycles(scene, look, *side)
+        scene.render.image_settings.color_mode, scene.render.filepath = "RGB", str(TARGET / "cables.png")
+        bpy.ops.render.render(write_still=True)
+        whole.paste(Image.open(TARGET / "cables.png").convert("RGB"), (side[0] * k, 0))
+    save(whole, "cables")
 
 
 def strip(name: str, parts: Sequence[tuple[Curve, str]], columns: int, side: int = 300) -> None:
@@ -138,5 +180,5 @@ def world() -> None:
 
 
 if __name__ == "__main__":
-    for wanted in sys.argv[1:] or ("knots", "looks", "morph", "world"):
-        {"knots": knots, "looks": looks, "morph": unknots, "world": world}[wanted]()
+    for wanted in sys.argv[1:] or ("knots", "cables", "looks", "morph", "world"):
+        {"knots": knots, "cables": cables, "looks": looks, "morph": unknots, "world": world}[wanted]()

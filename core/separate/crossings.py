@@ -69,25 +69,26 @@ def lead_apart(
     i, j = i[far], j[far]
     if not len(i) or held.all():
         return p, []
-    chord, s, t = closest(EdgePairs.of(mesh, p, i, j))
-    distance, tau = np.linalg.norm(chord, axis=1), curve.edge_vectors / curve.edge_lengths[:, None]
-    met = distance <= 1e-12 * np.abs(p).max()  # what is left of them is rounding
-    tangents = tau[np.concatenate([i, j])]
-    least = np.linalg.eigh(tangents.T @ tangents)[1][:, 0]
-    up = AXES[over] if over else least * np.sign(least[np.abs(least).argmax()])
-    normal = np.cross(tau[i], tau[j])
-    sine = np.linalg.norm(normal, axis=1)
-    parallel = sine < 1e-3
-    normal = np.where(parallel[:, None], up, normal / np.where(parallel, 1.0, sine)[:, None])
-    normal *= np.where(normal @ up < 0.0, -1.0, 1.0)[:, None]
     # edges in a row that meet others are one pass; later ones are higher, so that three through a point agree
     edges = np.unique([i, j])
     on = edges[np.isin(mesh.next[edges], edges)]
     row = sp.coo_array((np.ones(len(on)), (on, mesh.next[on])), shape=(mesh.edges, mesh.edges))
-    label = connected_components(row, directed=False)[1]  # in the order of their first edges
-    height = np.searchsorted(np.unique(label[edges]), label).astype(float)
+    passes = connected_components(row, directed=False)[1]  # numbered in the order of their first edges
+    height = np.searchsorted(np.unique(passes[edges]), passes).astype(float)
+    i, j = np.where(height[i] <= height[j], (i, j), (j, i))
+    chord, s, t = closest(EdgePairs.of(mesh, p, i, j))
+    distance, tau = np.linalg.norm(chord, axis=1)[:, None], curve.edge_vectors / curve.edge_lengths[:, None]
+    rounding = 1e-12 * np.abs(p).max()
+    met = distance[:, 0] <= rounding
+    tangents = tau[np.concatenate([i, j])]
+    least = np.linalg.eigh(tangents.T @ tangents)[1][:, 0]
+    up = AXES[over] if over else least * np.sign(least[np.abs(least).argmax()])
+    normal = np.cross(tau[i], tau[j])
+    sine = np.linalg.norm(normal, axis=1)[:, None]
+    normal = np.where(sine < 1e-3, up, normal / np.maximum(sine, 1e-3))
+    normal *= np.where(normal @ up < 0.0, -1.0, 1.0)[:, None]
+    normal = np.where(met[:, None], normal, chord / np.where(met[:, None], 1.0, distance))
     goal = np.where(met, height[i] - height[j], 1.0)
-    normal = np.where(met[:, None], normal, chord / np.where(met, 1.0, distance)[:, None])
     shares = np.stack([np.ones_like(s), s, -t], axis=1) @ CORNERS.T
     ends = np.stack([mesh.tails[i], mesh.heads[i], mesh.tails[j], mesh.heads[j]], axis=1)
     k = len(i)
@@ -103,15 +104,10 @@ def lead_apart(
     apart = others.value * np.where(others.edges[:, 1] < 0, 1.0, 2.0) * float(radius.min())
     room = float(apart[apart > meets].min(initial=0.1 * scale))
     places = np.einsum("kc,kcm->km", shares[:, :2], p[ends[:, :2]])[met]
-    lower, higher = np.sort(label[np.stack([i, j])[:, met]], axis=0)
-    _, first, number = np.unique(lower * mesh.edges + higher, return_index=True, return_inverse=True)
-    lie_under = goal[met] < 0.0
-    under, above = (
-        mesh.edge_component[np.where(lie_under, *each)[first]] for each in ((i[met], j[met]), (j[met], i[met]))
-    )
-    crossings = [
-        Crossing(int(above[k]), int(under[k]), tuple(places[number == k].mean(axis=0).tolist()))
-        for k in range(len(first))
-    ]
+    places = np.where(np.abs(places) <= rounding, 0.0, places)
+    _, first, number = np.unique(passes[i][met] * mesh.edges + passes[j][met], return_index=True, return_inverse=True)
+    lower, upper = (mesh.edge_component[each[met][first]].tolist() for each in (i, j))
+    middles = [tuple(places[number == k].mean(axis=0).tolist()) for k in range(len(first))]
+    crossings = [Crossing(*each) for each in zip(upper, lower, middles, strict=True)]
     furthest = max(float(np.linalg.norm(u, axis=1).max()), 1e-300)
     return p + 0.4 * room / furthest * u, crossings
