@@ -79,8 +79,8 @@ def test_materials_change_with_the_timing_and_stay_when_it_continues(red, blue, 
 def test_each_spline_takes_on_that_of_the_one_it_becomes(red, blue):
     """A large ring and a small one are linked, and come in the other order in what they become."""
     angles = np.linspace(0.0, 2.0 * np.pi, 12, endpoint=False)
-    large = np.stack([2.0 * np.cos(angles), 2.0 * np.sin(angles), 0.0 * angles], axis=1)
-    small = np.stack([2.0 + 0.5 * np.cos(angles), 0.0 * angles, 0.5 * np.sin(angles)], axis=1)
+    large = np.stack([2.0 * np.cos(angles), 2.0 * np.sin(angles), 0.1 * np.sin(2 * angles)], axis=1)
+    small = np.stack([2.0 + 0.5 * np.cos(angles), 0.1 * np.sin(2 * angles), 0.5 * np.sin(angles)], axis=1)
     moving = painted([large, small], red, blue)
     there = painted([small + FAR, large + FAR], blue, red)
     Relaxation(moving).morph(there, **SHORT | {"vertices": 40})

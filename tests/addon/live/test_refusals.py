@@ -117,20 +117,6 @@ def test_linked_from_a_library(tmp_path, own):
     assert "linked from another file" in refused()
 
 
-@pytest.mark.parametrize("scale", [1e30, 1e38])
-def test_absurd_sizes_are_relaxed_or_refused(scale):
-    add_trefoil().scale = 3 * [scale]
-    before = contents()
-    try:
-        bpy.ops.curve.mobius_flow_relax(max_iterations=2)
-    except RuntimeError as raised:
-        error = raised
-    else:
-        return
-    assert sentence(error)
-    assert contents() == before
-
-
 @pytest.mark.parametrize("kind", ["BEZIER", "NURBS"])
 @pytest.mark.parametrize("count", [1, 2])
 def test_a_stray_smooth_spline_changes_nothing(kind, count):

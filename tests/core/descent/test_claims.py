@@ -13,7 +13,7 @@ from mobius_flow.core.driver.moves.rest import stability
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.energies import ENERGIES, MoebiusEnergy
 from mobius_flow.core.knots import knot
-from shapes import torus_trefoil
+from shapes import graded_trefoil, torus_trefoil
 from taylor import taylor_slope
 
 
@@ -149,24 +149,14 @@ def test_trefoil_is_a_minimum_with_four_flat_and_two_soft_modes(minimum):
 
 def test_edge_length_distribution_hardly_matters():
     """The paper's remark: a minimum with targets varying 4:1 along the curve is that of equal ones."""
-    n = 400
-    s = (np.arange(n) + 0.5) / n
-    t = 2 * np.pi * np.interp(np.arange(n) / n, np.linspace(0, 1, n + 1), _graded(s))
-    radius = 2 + np.cos(3 * t)
-    graded = Curve(np.stack([radius * np.cos(2 * t), radius * np.sin(2 * t), np.sin(3 * t)], axis=1))
+    graded = graded_trefoil(200, 4.1)
     assert graded.edge_lengths.max() > 4 * graded.edge_lengths.min()
-    options = {"method": "trust-region", "vertices": n, "tolerance": 1e-4}
+    options = {"method": "trust-region", "vertices": 200, "tolerance": 1e-4}
     kept = minimize(graded, RelaxOptions(edge_lengths="keep", **options))
-    equal = minimize(torus_trefoil(n), RelaxOptions(**options))
+    equal = minimize(torus_trefoil(200), RelaxOptions(**options))
     assert kept.status is equal.status is Status.CONVERGED
     assert kept.last.edge_length_error < 1e-7
     assert kept.energies[-1] == pytest.approx(equal.energies[-1], rel=5e-3)
-
-
-def _graded(s: np.ndarray) -> np.ndarray:
-    """Parameters of n + 1 points whose spacing varies 4:1."""
-    density = 1 + 0.6 * np.cos(2 * np.pi * s)
-    return np.concatenate([[0], np.cumsum(density) / density.sum()])
 
 
 def test_target_lengths_may_be_given_one_by_one():

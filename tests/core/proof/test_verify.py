@@ -53,17 +53,6 @@ def test_links_and_plane_curves(tmp_path: Path) -> None:
     assert checked(tmp_path, trajectory(walk(regular_polygon(30, dimension=2), 6))).accepted
 
 
-def test_a_strand_moved_through_another(tmp_path: Path) -> None:
-    frames = np.stack(walk(hopf_link(40), 10))
-    frames[8:, 40:] += [5.0, 0.0, 0.0]
-    verdict = checked(tmp_path, trajectory(([40, 40], frames)))
-    assert (verdict.accepted, verdict.stage, verdict.frame, verdict.legs) == (False, 0, 7, 8)
-    assert verdict.edges is not None
-    i, j = verdict.edges
-    assert min(i, j) < 40 <= max(i, j)
-    assert str(verdict) == f"rejected: stage 0, frame 7: edges {i + 1} and {j + 1} (counted from 1) meet"
-
-
 def test_a_single_frame_that_touches_itself(tmp_path: Path) -> None:
     verdict = checked(tmp_path, trajectory([np.array([[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]])]))
     assert (verdict.accepted, verdict.edges, verdict.frame) == (False, (0, 2), 0)

@@ -11,7 +11,7 @@ from mobius_flow.core.curve import refine
 from mobius_flow.core.descent import METHODS, Point, SearchState, Step
 from mobius_flow.core.descent.task import centred
 from mobius_flow.core.knots import knot, torus_knot
-from mobius_flow.core.solve.constraints import Barycenters, Constraints
+from mobius_flow.core.solve.constraints import Constraints
 from mobius_flow.core.solve.hierarchical import CompressedInnerProduct, moebius_inner_product
 from mobius_flow.core.solve.metrics import DenseInnerProduct, MoebiusMetric
 from mobius_flow.core.solve.saddle import TangentSpace
@@ -175,22 +175,6 @@ def test_no_gradient_where_the_derivative_is_normal() -> None:
     u, _ = space.gradient(normal)
     assert space.norm(u) < 1e-8 * np.sqrt(np.sum(normal * spaces("knot")[1]._inner.solve(normal)))  # type: ignore[attr-defined]
     assert not np.any(space.gradient(np.zeros_like(u))[0])
-
-
-def test_several_barycenters() -> None:
-    curve = centred(CURVES["hopf"])
-    apart = curve.with_vertices(curve.vertices + 5.0 * curve.mesh.component[:, None])
-    inner, constraints = (
-        moebius_inner_product(apart),
-        Constraints(apart.edge_lengths, (Barycenters.of(apart, parts=(0, 1)),)).derivative(apart),
-    )
-    assert constraints.count == len(apart) + 6
-    load = smooth_load(apart)
-    u, _ = inner.tangent_space(constraints).gradient(load)
-    expected, _ = DenseInnerProduct(inner.dense()).tangent_space(constraints).gradient(load)
-    error = u - expected
-    assert np.sqrt(np.sum(error * inner.apply(error)) / np.sum(load * expected)) < 1e-2
-    np.testing.assert_allclose(constraints.apply(u), 0.0, atol=1e-9 * np.abs(u).max())
 
 
 @pytest.mark.parametrize("method", ["lbfgs", "cg", "trust-region", "penalty-lbfgs"])
