@@ -283,7 +283,6 @@ class RelaxOptions:
             raise OptionError(f"mesh={self.mesh!r} makes its own edge_lengths; leave one of the two options out")
         if self.untangle == "always" and not self.resolved.may_untangle:
             other = "mesh='fixed'" if self.mesh == "fixed" else "symmetry" if self.symmetry else "edge_lengths"
-            other = "radius" if self.radius != "none" else other
             raise OptionError(f"untangle='always' changes the mesh; leave it or {other} out")
         if self.symmetry is not None:
             if self.symmetry != "auto" and not IS_NAME.fullmatch(self.symmetry):
@@ -314,7 +313,7 @@ class RelaxOptions:
     def may_untangle(self) -> bool:
         """Whether the mesh may change in the way that strand moves require."""
         free = self.mesh != "fixed" and self.edge_lengths in ("auto", "equal")
-        return free and self.symmetry is None and self.radius == "none"
+        return free and self.symmetry is None
 
     @property
     def ends_finer(self) -> bool:

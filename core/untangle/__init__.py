@@ -1,4 +1,3 @@
-"""Strand moves of diagrams made in space: curves are untangled by straight motions that are all proved."""
+"""Strand moves of diagrams, made by a rope that lies on a table: all its motions are proved."""
 
-from .moving import Stage
-from .untangle import Untangled, untangled, worth
+from .untangle import Stage, Untangled, untangled, worth

@@ -1,34 +1,49 @@
-"""From a tangled curve to one with few crossings, by strand moves that are found on its diagram and made in space.
+"""From a tangled curve to one with few crossings: strand moves that are found on its diagram, and made by a rope.
 
-A knot that is stuck in one view comes apart in another: with level heights, two dozen views from the side were enough.
+The curve lies down on a table as it looks best.  Of the moves that lead on, the shortest are made; those that turn out
+to save nothing are taken back.  A knot that is stuck in one view comes apart in another.
 """
 
-from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
-from contextlib import suppress
-from functools import partial
-from itertools import chain
+import math
+from collections.abc import Generator, Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
+from scipy.spatial import ConvexHull
 
 from ..base.deadline import check_time
 from ..base.messages import Message
-from ..base.types import FloatArray, IntArray
-from ..collision import free_motion
-from ..curve import Curve
+from ..base.types import BoolArray, FloatArray, IntArray
+from ..collision import is_rope, minimal_gap, survives_rounding
+from ..curve import Curve, Mesh, refine
 from ..curve.obstacle import Obstacle
-from ..curve.pins import NOWHERE
+from ..curve.pins import NOWHERE, Pins, holds
 from ..knots.diagrams.diagram import Diagram
 from ..knots.diagrams.projection import rotation
-from ..knots.diagrams.rerouting import factors, is_least, shortenings, simplified
-from .drawing import PlaneDrawing, UnclearError, level_heights
-from .moving import MovingCurve, Stage
-from .strand_move import make_move
-from .tidying import spread, thin
+from ..knots.diagrams.rerouting import (
+    Move,
+    Strand,
+    factors,
+    is_least,
+    reduced,
+    shortenings,
+    shortest_route,
+    simplified,
+    strands,
+)
+from .drawing import PlaneDrawing, UnclearError
+from .leading import Lead, lead
+from .rope import ElasticRope, Stage
+from .ways import Plane
 
 MOST_VERTICES = 20_000
-_VIEWS = 24
-_FEW = 4  # of them are looked at before it is known whether any move is worthwhile
+VIEWS = 24
+FEW = 4  # of them are looked at before it is known whether any move is worthwhile
+WORK = 60_000  # crossings that may be visited to find out how few moves lead to
+WIDE, FAT = 1.2, 0.08  # a face's width, times the root of area per crossing, and a rope's radius, in faces
+AT_ONCE = 4  # so many strands move, where they are far from each other
+PATIENCE = 12  # moves in vain, after which a view is given up
+TABU = 8  # moves for which a strand that moved in vain is left alone
 
 
 class Untangled(NamedTuple):
@@ -40,10 +55,20 @@ class Untangled(NamedTuple):
     moves: int = 0
 
 
+def shows_least(diagram: Diagram) -> bool:
+    """Whether no diagram has fewer crossings than a simplified one: true for sums of alternating ones."""
+    return all(is_least(factor) for piece in diagram.without_pins.pieces() for factor in factors(piece))
+
+
 def untangled(
-    curve: Curve, pins: IntArray = NOWHERE, obstacles: Sequence[Obstacle] = (), seed: int = 20231
+    curve: Curve,
+    pins: IntArray = NOWHERE,
+    obstacles: Sequence[Obstacle] = (),
+    radius: FloatArray | None = None,
+    seed: int = 20231,
+    share: float = 0.0,
 ) -> Generator[Stage, None, Untangled]:
-    """Yield stages of motions, all proved free of contact, to a curve with fewer crossings; return how it ended.
+    """Yield stages of motions, all of them proved, to a curve with fewer crossings; return how it ended.
 
     Parameters
     ----------
@@ -53,136 +78,175 @@ def untangled(
         Vertices that stay where they are.
     obstacles
         What the curve must not meet.
+    radius
+        That of each component, shape (components,), if the curve is a rope, and stays one.
     seed
         The same seed gives the same motions.
+    share
+        Of the crossings that can go, so many may be left to the flow.
     """
     if curve.dimension != 3 or len(curve) > MOST_VERTICES:
         told = Message("only curves in space with at most {most:,} vertices are untangled", most=MOST_VERTICES)
         return Untangled(None, False, told)
-    rng = np.random.default_rng(seed)
-    body = MovingCurve(curve, pins, obstacles)
+    rng, moves, few = np.random.default_rng(seed), 0, 0
     reached: int | None = None
-    blocked = False
+    held: BoolArray = holds(curve.mesh, np.concatenate([pins, curve.mesh.ends.ravel()]))
+    frame, blocked = np.eye(3), False
     try:
-        face(body, rng)
-        yield from _take(body, rng)
-        thin(body)
-        _settle(body, rng)
         for _ in range(6):  # from different views, as long as moves lead to fewer crossings
-            yield from _take(body, rng)
-            reached = draw(body, rng).diagram.crossings
-            if turn(body, rng, away=blocked) >= reached:
+            found = _best_view(curve, frame, held, rng, reached)
+            if found is None:
                 break
-            blocked = yield from _make_moves(body, rng)
-        diagram = draw(body, rng).diagram
-        reached = diagram.crossings
+            frame, drawing = found
+            crossings = drawing.diagram.crossings
+            if reached is None:
+                few = math.floor(share * (crossings - outlook(drawing.diagram, rng)))
+                fine = _refined(curve, 8 * crossings + 40, radius)
+                held = holds(fine.mesh, Pins(np.flatnonzero(held), curve.vertices[held]).on(fine).vertices)
+                curve = fine
+            rope = ElasticRope(curve, frame, held, obstacles, radius)
+            _lay_down(rope, crossings)
+            drawing = draw(rope, rng)
+            yield rope.take(drawing.diagram.crossings, moves)
+            drawing, moves, blocked = yield from _make_moves(rope, drawing, moves, rng, few)
+            curve, reached = rope.curve, drawing.diagram.crossings
+            left = simplified(drawing.diagram)
+            if left.crossings == reached and shows_least(left):
+                told = Message("{count} crossings are left, as few as can be", count=reached)
+                return Untangled(reached, True, told if reached else Message("no crossing is left"), moves)
+            if reached <= left.crossings + few:
+                told = Message("{count} crossings are left to the flow", count=reached)
+                return Untangled(reached, False, told, moves)
     except UnclearError as error:
-        return Untangled(reached, False, error.reason, body.moves)
-    if simplified(diagram).crossings == reached and shows_least(diagram):
-        body.resize(curve.length)
-        yield from _take(body, rng)
-        left = Message("{count} crossings are left, as few as can be", count=reached)
-        return Untangled(reached, True, left if reached else Message("no crossing is left"), body.moves)
+        return Untangled(reached, False, error.reason, moves)
     why = "{count} crossings are left, as no move of a strand is known that saves any"
     if blocked:
         why = "{count} crossings are left, as no way for a strand is free"
-    return Untangled(reached, False, Message(why, count=reached), body.moves)
+    return Untangled(reached, False, Message(why, count=reached), moves)
 
 
-def _make_moves(body: MovingCurve, rng: np.random.Generator) -> Generator[Stage, None, bool]:
-    """Make moves in one view until none is left to make; return whether that is because they are not free."""
-    failures = 0
-    _settle(body, rng)
-    while failures <= 8:  # moves in a row that are not free, after which a view is given up
-        yield from _take(body, rng)
-        drawing = draw(body, rng)
-        move = next(shortenings(drawing.diagram, rng if failures else None), None)
-        if move is None:
-            return False
-        if _succeeds(body, partial(make_move, body, drawing, move)):
-            failures = 0
-            body.moves += 1
-            _settle(body, rng)
-        else:
-            failures += 1
-    return True
+def _make_moves(
+    rope: ElasticRope, drawing: PlaneDrawing, moves: int, rng: np.random.Generator, few: int
+) -> Generator[Stage, None, tuple[PlaneDrawing, int, bool]]:
+    """Make moves in one view until few crossings can still go; return the drawing, and whether no way has been free.
 
-
-def _succeeds(body: MovingCurve, motions: Callable[[], bool]) -> bool:
-    """Make motions, or none if one is not free or rounding leaves the way unclear; return whether they are made."""
-    mark = body.mark()
-    with suppress(UnclearError):
-        if motions():
-            return True
-    body.rewind(mark)
-    return False
-
-
-def _settle(body: MovingCurve, rng: np.random.Generator) -> None:
-    """Level the curve, drop vertices that it can do without, and spread it where strands are near each other."""
-    _level(body, rng)
-    gap, mark = body.gap, body.mark()
-    near = gap < 4e-3 * body.size and not body.held.any()
-    if near and _succeeds(body, lambda: spread(body, draw(body, rng))):
-        _level(body, rng)
-        if body.gap < min(gap, 1e-4 * body.size):  # spreading must not bring strands so near
-            body.rewind(mark)
-
-
-def _level(body: MovingCurve, rng: np.random.Generator) -> None:
-    """Make heights as level as crossings and free motion allow, twice, and drop vertices in between."""
-    for again in (False, True):
-        if again:
-            thin(body)
-        drawing = draw(body, rng)
-        heights = level_heights(drawing, body.held) if drawing.diagram.crossings else None
-        if heights is None:
-            continue
-        everything, targets = np.arange(body.mesh.size), np.column_stack([drawing.points[:, :2], heights])
-        if not body.move(everything, targets):  # then most of the way that is free
-            end = targets @ body.frame.T
-            part = 0.9 * free_motion(body.mesh, body.curve.vertices, end, body.obstacles).time
-            body.move(everything, drawing.points + part * (targets - drawing.points))
-
-
-def _take(body: MovingCurve, rng: np.random.Generator) -> Iterator[Stage]:
-    """Yield the stages not yet taken, with what is seen at the end."""
-    yield from body.take(draw(body, rng).diagram.crossings)
-
-
-def draw(body: MovingCurve, rng: np.random.Generator) -> PlaneDrawing:
-    """The drawing of the curve, in the frame or, if need be, in one turned from it by very little."""
-    tilts = (rotation(np.eye(3) + 1e-3 * rng.normal(size=(3, 3))) for _ in range(8))
-    body.frame, drawing = next(_draw_clear(body, chain([body.frame], (body.frame @ tilt for tilt in tilts))))
-    return drawing
-
-
-def face(body: MovingCurve, rng: np.random.Generator, count: int = _VIEWS) -> PlaneDrawing:
-    """Turn the frame to where the fewest strands cross, as seen from where the curve is flattest or at random."""
-    middle = body.curve.vertices - body.curve.vertices.mean(axis=0)
-    flattest = np.linalg.svd(middle / np.abs(middle).max(), full_matrices=False)[2] + 0.02 * rng.normal(size=(3, 3))
-    seen = _draw_clear(body, [rotation(each) for each in (flattest, *rng.normal(size=(count - 1, 3, 3)))])
-    body.frame, drawing = min(seen, key=lambda each: each[1].diagram.crossings)
-    return drawing
-
-
-def turn(body: MovingCurve, rng: np.random.Generator, *, away: bool = False, count: int = _VIEWS) -> int:
-    """Turn the frame to where moves lead to fewer crossings than are seen now, if there is such a view.
-
-    Returns how many they lead to.  If it is to turn ``away``, moves that begin in the present frame do not count.
+    A move that adds crossings may be what leads on; what does not is taken back.
     """
-    best, here = draw(body, rng).diagram.crossings, body.frame
-    # random views of a curve that is taken to be three times as high as it is
-    sides = [here @ rotation(each) for each in rng.normal(size=(count, 3, 3)) * [1.0, 1.0, 3.0]]
-    for frame, drawing in sorted(_draw_clear(body, [here, *sides]), key=lambda each: each[1].diagram.crossings):
-        if away and frame is here:
-            continue
-        left = simplified(drawing.diagram, work=60_000)
-        if left.crossings < best:
-            best, body.frame = left.crossings, frame
-        if shows_least(left):
+    lowest, best, vain, tried, made, blocked = drawing, outlook(drawing.diagram, rng), 0, 0, 0, False
+    tabu: list[tuple[int, set[int]]] = []  # strands that have moved in vain, each with the number of moves by then
+    mark = rope.mark()
+    while drawing.diagram.crossings > best + few and vain < PATIENCE:
+        left_alone = [strand for when, strand in tabu if tried - when < TABU]
+        leads = _choose(rope, drawing, left_alone, best, rng, AT_ONCE if vain < 2 else 1)
+        if not leads:
             break
-    return best
+        before, count, tried = rope.mark(), drawing.diagram.crossings, tried + 1
+        led = [(tried, set(each.vertices.tolist())) for each in leads]
+        arrived = lead(rope, leads)
+        _settle(rope)
+        after = draw(rope, rng)
+        seen, low = after.diagram.crossings, lowest.diagram.crossings
+        if seen >= count and (seen > low + max(4, low // 8) or outlook(after.diagram, rng) > best):
+            rope.rewind(before)
+            tabu, vain, blocked = tabu + led, vain + 1, not arrived
+            continue
+        drawing, made = after, made + len(leads)
+        if seen < low:
+            lowest, moves, made, vain, blocked = drawing, moves + made, 0, 0, False
+            best = min(best, outlook(drawing.diagram, rng))
+            rope.thicken(FAT * rope.face)
+            yield rope.take(seen, moves)
+            mark = rope.mark()
+        else:
+            tabu, vain = tabu + led, vain + 1
+    rope.rewind(mark)
+    return lowest, moves, blocked
+
+
+def _choose(
+    rope: ElasticRope,
+    drawing: PlaneDrawing,
+    left_alone: Sequence[set[int]],
+    best: int,
+    rng: np.random.Generator,
+    most: int,
+) -> list[Lead]:
+    """The strands that are nearest to where moves lead on, as many as are far from each other."""
+    plane, diagram = Plane(drawing, rope.face), drawing.diagram
+    found: list[Lead] = []
+    for strand in _pieces(diagram):
+        if shortest_route(diagram, strand, len(strand.inner)) is None:
+            continue
+        way = plane.way(strand)
+        if way is not None and len(way.route) < len(strand.inner):
+            each = Lead(rope, drawing, Move(diagram, strand, way.route), way)
+            own = set(each.vertices.tolist())
+            if each.count > 3 and not any(2 * len(other & own) > len(other | own) for other in left_alone):
+                found.append(each)
+    found.sort(key=lambda each: each.cost)
+    chosen: list[Lead] = []
+    second: tuple[int, Lead] | None = None
+    for each in found[:40]:
+        gaps = (np.maximum(each.low - other.high, other.low - each.high).max() for other in chosen)
+        if chosen and (len(chosen) == most or each.cost > 4.0 * chosen[0].cost or min(gaps) < 0.8 * rope.face):
+            continue
+        left = outlook(each.move.after, rng)
+        if left <= best:
+            chosen.append(each)
+        elif second is None or left < second[0]:
+            second = left, each
+    return chosen or ([second[1]] if second else [])
+
+
+def _pieces(diagram: Diagram) -> Iterator[Strand]:
+    """All strands, and the short pieces of each."""
+    for strand in strands(diagram):
+        yield strand
+        for length in range(1, min(6, len(strand.inner))):
+            for begin in range(len(strand.inner) - length + 1):
+                inner = strand.inner[begin : begin + length]
+                yield Strand(inner, diagram.previous[inner[0]], strand.over)
+
+
+def _lay_down(rope: ElasticRope, crossings: int) -> None:
+    """Let a rope lie down flat, and become as thick as is good for leading strands."""
+    thick = 0.0 if rope.radius is None else 1.05 * float(rope.radius.max())
+    rope.face = max(WIDE * math.sqrt(ConvexHull(rope.seen[:, :2]).volume / max(crossings, 3)), thick / FAT)
+    rope.thick = max(0.45 * minimal_gap(rope.curve)[0], thick)
+    for k in range(40):
+        if not rope.step():
+            break
+        rope.thicken(FAT * rope.face)
+        if k > 10 and rope.speed < 0.1 * rope.face and rope.thick > 0.99 * FAT * rope.face:
+            break
+
+
+def _settle(rope: ElasticRope) -> None:
+    """Let the rope come to rest, or nearly so."""
+    for k in range(20):
+        if not rope.step() or (k >= 3 and rope.speed < 0.08 * rope.face):
+            break
+
+
+def _refined(curve: Curve, vertices: int, radius: FloatArray | None) -> Curve:
+    """The curve with so many vertices at least, unless it is a rope with too sharp corners for more."""
+    if len(curve) >= vertices:
+        return curve
+    fine = refine(curve, vertices)
+    sound = survives_rounding(fine) if radius is None else is_rope(fine.mesh, fine.vertices, fine.vertices, radius)
+    return fine if sound else curve
+
+
+def outlook(diagram: Diagram, rng: np.random.Generator) -> int:
+    """How few crossings moves are known to lead to: the longest strands first, or in random orders."""
+    best = simplified(diagram, WORK)
+    left = best.crossings
+    for _ in range(2 if left and not shows_least(best) else 0):
+        trial, work = reduced(diagram), WORK
+        while work > 0 and (move := next(shortenings(trial, rng), None)) is not None:
+            trial, work = reduced(move.after), work - trial.crossings
+        left = min(left, trial.crossings)
+    return left
 
 
 def shows_least(diagram: Diagram) -> bool:
@@ -197,29 +261,58 @@ def worth(curve: Curve, least: int = 0, seed: int = 20231) -> tuple[int, int]:
     """
     if curve.dimension != 3 or len(curve) > MOST_VERTICES:
         return 0, 0
-    body, rng = MovingCurve(curve, NOWHERE), np.random.default_rng(seed)
+    held = holds(curve.mesh, curve.mesh.ends.ravel())
+    frames = _frames(curve, np.random.default_rng(seed), FEW)
     try:
-        drawing = face(body, rng, _FEW)
-        crossings = drawing.diagram.crossings
-        if crossings < least:
-            return 0, crossings
-        heights = level_heights(drawing, body.held)
-        if heights is not None:
-            level = np.column_stack([drawing.points[:, :2], heights])
-            body = MovingCurve(curve.with_vertices(level), NOWHERE)
-        left = turn(body, rng, count=_FEW)
+        seen = [drawing.diagram for _, drawing in _draw_clear(curve.mesh, curve.vertices, frames, held)]
     except UnclearError:
         return 0, 0
+    crossings = left = min(diagram.crossings for diagram in seen)
+    if crossings >= least:
+        left = min(left, *(simplified(diagram, WORK).crossings for diagram in seen))
     return crossings - left, left
 
 
-def _draw_clear(body: MovingCurve, frames: Iterable[FloatArray]) -> Iterator[tuple[FloatArray, PlaneDrawing]]:
+def draw(rope: ElasticRope, rng: np.random.Generator) -> PlaneDrawing:
+    """The drawing of a rope as it lies or, if need be, turned by very little."""
+    turns = (rotation(np.eye(3) + 1e-4 * k * rng.normal(size=(3, 3))) for k in range(8))
+    return next(_draw_clear(rope.mesh, rope.seen, turns, rope.held))[1]
+
+
+def _best_view(
+    curve: Curve, here: FloatArray, held: BoolArray, rng: np.random.Generator, reached: int | None
+) -> tuple[FloatArray, PlaneDrawing] | None:
+    """The frame from which moves lead to the fewest crossings, and what is seen; None if not to fewer than now."""
+    frames = _frames(curve, rng, VIEWS)
+    if reached is not None:  # as if it were three times as high as it is
+        frames = [here @ rotation(each) for each in rng.normal(size=(VIEWS, 3, 3)) * [1.0, 1.0, 3.0]]
+    views = _draw_clear(curve.mesh, curve.vertices, frames, held)
+    best, least = None, math.inf if reached is None else reached
+    for frame, drawing in sorted(views, key=lambda each: each[1].diagram.crossings):
+        left = simplified(drawing.diagram, WORK)
+        if left.crossings < least:
+            best, least = (frame, drawing), left.crossings
+        if shows_least(left):
+            break
+    return best
+
+
+def _frames(curve: Curve, rng: np.random.Generator, count: int) -> list[FloatArray]:
+    """Frames of views: from where the curve is flattest, turned by a little, and at random."""
+    middle = curve.vertices - curve.vertices.mean(axis=0)
+    flattest = np.linalg.svd(middle / np.abs(middle).max(), full_matrices=False)[2] + 0.02 * rng.normal(size=(3, 3))
+    return [rotation(each) for each in (flattest, *rng.normal(size=(count - 1, 3, 3)))]
+
+
+def _draw_clear(
+    mesh: Mesh, points: FloatArray, frames: Iterable[FloatArray], held: BoolArray
+) -> Iterator[tuple[FloatArray, PlaneDrawing]]:
     """Yield the drawings in some frames, except where they are unclear; raise UnclearError if all of them are."""
     none, reason = True, UnclearError()
     for frame in frames:
         check_time()
         try:
-            drawing = PlaneDrawing.of(body.mesh, body.curve.vertices @ frame, body.held)
+            drawing = PlaneDrawing.of(mesh, points @ frame, held)
         except UnclearError as error:
             reason = error
         else:

@@ -42,12 +42,16 @@ class Untangling(Move):
     # crossings that must go from a curve with pins: lengths between them, which moves change, come back step by step
     many: int = 20
     room: int = 50  # iterations to be left: with fewer the flow might end higher
+    often: int = 25  # iterations in which the flow makes no headway unless it lowers the energy
+    fall: float = 0.03  # by this part
 
     remarks: list[Message] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self._given, self._stuck_at = len(self.run.iterate.curve), np.inf  # vertices; energy where strands moved last
         self._in_vain: Message | None = None
+        self._looked = 0, np.inf  # when the flow's headway was last looked at: iterate, energy
+        self._shares = iter((0.35, 0.15))  # of the crossings that can go, which are left to the flow each time
 
     def started(self) -> Change | None:
         """Before the flow, if requested."""
@@ -59,10 +63,15 @@ class Untangling(Move):
             left = "none, as what grows between pins or among obstacles is left to the flow"
             self._tell(Message(left if packed else "none, as there are to be no iterations"))
             return None
+        self._shares = iter(())
         return Change(iterates=self._untangled())
 
     def stepped(self, step: Step) -> Change | None:
-        return None if self.run.makes_headway else self._where_stuck()
+        index, energy = self.run.iterate.index, self.run.iterate.energy
+        if index < self._looked[0] + self.often:
+            return None
+        slow, self._looked = energy > (1.0 - self.fall) * self._looked[1], (index, energy)
+        return self._where_stuck() if slow else None
 
     def ended(self, outcome: Outcome) -> Change | None:
         return self._where_stuck() if outcome.may_be_left else None
@@ -79,7 +88,6 @@ class Untangling(Move):
         run, curve = self.run, self.run.iterate.curve
         if len(curve) < self._given:
             return None  # the coarse start is over first
-        run.energies.clear()  # headway is judged from here on
         wanted = run.options.untangle != "never" and run.options.may_untangle and run.options.grow == 1.0
         held = run.frozen or run.problem.objective.pull is not None or not run.problem.geometry.prescribes
         if not wanted or held or not self._ends_are_pinned or run.iterations_left < self.room:
@@ -116,10 +124,9 @@ class Untangling(Move):
             self._tell(Message("none are made: {reason}", reason=reason))
             return
         self._tell(reason)
-        coarse, wanted, least, point = run.iterate.curve, run.options.vertices, len(first.curve), run.point
+        coarse, point = run.iterate.curve, run.point
         with suppress(MobiusFlowError, np.linalg.LinAlgError):  # it stays where the other cannot be computed with
-            fine = refine(coarse, None if wanted is None else max(wanted, len(coarse)))
-            fine = fine if wanted or len(fine) >= least else refine(coarse, least)
+            fine = refine(coarse, max(len(coarse), len(first.curve)))
             check_refined(coarse, fine, run.problem.obstacles)
             pins = run.problem.constraints.pins.on(fine).vertices
             point = lengths.point(fine, target_lengths(fine, pins, run.problem.obstacles, run.options))
@@ -141,7 +148,8 @@ class Untangling(Move):
         held = self._ends_are_pinned and not start.curve.mesh.all_closed
         ways = start.curve.vertices.mean(axis=0) + start.curve.length * WAYS if held else ()
         knots = _closures(start.curve, ways)
-        work = untangled(start.curve, pins, run.problem.obstacles, run.options.seed)
+        given = run.problem.obstacles, run.problem.radius, run.options.seed, next(self._shares, 0.0)
+        work = untangled(start.curve, pins, *given)
         stages: list[Stage] = []
         refused: Message | None = None
         earlier, least, began = run.strand_moves, None, time.perf_counter()
@@ -177,7 +185,7 @@ class Untangling(Move):
             frames: list[tuple[Curve, tuple[FloatArray, ...]]] = []
             for stage in stages:
                 frames += [(stage.start, ())] * (stage.start.mesh is not mesh)
-                frames += [(stage.end, stage.path)] * bool(stage.path)
+                frames += [(stage.start.with_vertices(end), (end,)) for end in stage.path]
                 mesh = stage.start.mesh
             for made, (curve, path) in enumerate(frames, now.iterates + 1):
                 run.charged -= 1
