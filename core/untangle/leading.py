@@ -1,5 +1,6 @@
 """Strand moves of a rope: springs lead strands up, or down, over others, and back to the table."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -11,11 +12,11 @@ from .drawing import PlaneDrawing
 from .rope import ElasticRope, Springs
 from .ways import Way
 
-PACE, HOLD = 0.9, 30.0  # how far springs run ahead, in faces, and their stiffness
+HOLD = 30.0  # stiffness of springs
 
 
 class Lead:
-    """A strand that is led: its vertices, the way along which they lie, and the way to which they are led."""
+    """A strand that is led: its vertices, where they lie, the way to which they are led, and what that costs."""
 
     def __init__(self, rope: ElasticRope, drawing: PlaneDrawing, move: Move, way: Way) -> None:
         self.move, mesh = move, rope.mesh
@@ -23,97 +24,103 @@ class Lead:
         part = mesh.slices[mesh.component[int(start)]]
         self.begin, self.size = part.start, part.stop - part.start
         end += self.size * (end < start)
-        # vertices between those that are held
-        held = np.flatnonzero(rope.held[part])
-        before, after = held[held <= start - part.start], held[held >= (end - part.start) % self.size]
-        self.least = int(start) - (int(start) - part.start - int(before[-1]) - 1 if len(before) else self.size)
-        self.most = int(end) + (int(after[0]) - int(end - part.start) % self.size if len(after) else self.size)
-        inner = np.arange(int(start) + 1, int(np.ceil(end)))
+        inner = np.arange(int(start) + 1, math.ceil(end))
+        self.vertices = self._wrapped(inner)
         self.first, self.count = int(start) + 1, len(inner)
-        self.vertices = part.start + (inner - part.start) % self.size
-        self.old = rope.seen[self.vertices]
-        if self.count < 3:
+        if not self.count:
             return
+        # rope may slide in from as far as the next vertices that are held
+        held = np.flatnonzero(rope.held[part]) + self.begin
+        turns = (held[:, None] + self.size * np.arange(-1, 3)).ravel()
+        self.least = max(turns[turns <= start], default=self.first - self.size) + 1
+        self.most = min(turns[turns >= end], default=math.ceil(end) + self.size)
+        self.old = old = rope.seen[self.vertices]
         tips = drawing.placed(np.array(way.ends))
-        was, now = arc_lengths(np.vstack([tips[:1], self.old[:, :2], tips[1:]])), arc_lengths(way.corners)
+        was, now = arc_lengths(np.vstack([tips[:1], old[:, :2], tips[1:]])), arc_lengths(way.corners)
         self.at = was[1:-1] / was[-1]
-        new = np.column_stack([np.interp(self.at * now[-1], now, x) for x in way.corners.T])
+        self.new = new = np.column_stack([np.interp(self.at * now[-1], now, x) for x in way.corners.T])
         for _ in range(4):
             new[1:-1] = 0.25 * new[:-2] + 0.5 * new[1:-1] + 0.25 * new[2:]
-        self.new = new
-        self.far = np.linalg.norm(new - self.old[:, :2], axis=1)
-        self.cost = float(self.far.mean() * max(was[-1], now[-1]) / max(move.saved, 0.5) ** 0.7)
-        both = np.vstack([self.old[:, :2], new])
+        self.far = np.linalg.norm(new - old[:, :2], axis=1)
+        # the area that is swept for each crossing, for which many at once count less
+        self.cost = float(self.far.mean() * max(was[-1], now[-1])) / max(move.saved, 0.5) ** 0.7
+        both = np.vstack([old[:, :2], new])
         self.low, self.high = both.min(axis=0), both.max(axis=0)
 
     def lift(self, rope: ElasticRope, rest: BoolArray) -> None:
         """Set the height of the way: above all that may be below it, and more and more if the strand meets itself."""
-        up = 1.0 if self.move.strand.over else -1.0
-        here = rest & ((rope.seen[:, :2] > self.low - 0.5 * rope.face) & (rope.seen[:, :2] < self.high + 0.5 * rope.face)).all(axis=1)
-        meets = any(_meets_itself(self.old[:, :2] + b * (self.new - self.old[:, :2])) for b in (0.25, 0.5, 0.75))
-        top = (up * rope.seen[here, 2]).max(initial=0.0) + rope.thick * (5.0 + 8.0 * meets * self.at)
-        self.base, self.top = self.old[:, 2], up * np.maximum(top, up * self.old[:, 2])
+        up, x = 1.0 if self.move.strand.over else -1.0, rope.seen
+        low, high = self.low - 0.5 * rope.face, self.high + 0.5 * rope.face
+        below = rest & ((x[:, :2] > low) & (x[:, :2] < high)).all(axis=1)
+        ways = (self.old[:, :2] + over * (self.new - self.old[:, :2]) for over in (0.25, 0.5, 0.75))
+        clear = 5.0 + 8.0 * any(map(_meets_itself, ways)) * self.at
+        top = (up * x[below, 2]).max(initial=0.0) + rope.thick * clear
+        self.top = up * np.maximum(top, up * self.old[:, 2])
 
-    def springs(self, rope: ElasticRope, up: float, over: float, part: float, *, landed: bool) -> Springs:
+    def springs(self, rope: ElasticRope, up: float, over: float, hold: float, *, landed: bool) -> Springs:
         """Springs to the way at some moment; rope slides in and out at its ends, so that vertices stay evenly apart."""
-        way = np.column_stack([self.old[:, :2] + over * (self.new - self.old[:, :2]), self.base])
-        s = arc_lengths(way[:, :2])
-        ell = float(np.linalg.norm(rope.mesh.changes(rope.seen), axis=1).mean())
-        want = int(np.clip(s[-1] / (1.1 * ell), 4, 0.6 * self.size))
-        grown = int(np.clip(want - self.count, -2, 4))
-        first = max(self.first - grown // 2, self.least)
+        plane = self.old[:, :2] + over * (self.new - self.old[:, :2])
+        s, face = arc_lengths(plane), rope.face
+        ell = np.linalg.norm(rope.mesh.changes(rope.seen), axis=1).mean()
+        grown = int(np.clip(np.clip(s[-1] / (1.1 * ell), 4, 0.6 * self.size) - self.count, -2, 4))
         last = min(self.first + self.count + grown - grown // 2, self.most)
-        self.first, self.count = first, last - first
-        vertices = self.begin + (first + np.arange(self.count) - self.begin) % self.size
+        self.first = max(self.first - grown // 2, self.least)
+        self.count = last - self.first
         at = (np.arange(self.count) + 0.5) / self.count
-        b = np.clip(np.minimum(at, 1.0 - at) * s[-1] / min(0.3 * s[-1], 0.6 * rope.face), 0.0, 1.0)
-        self.bump = b * b * (3.0 - 2.0 * b)
-        x, y, base, top = (np.interp(at * s[-1], s, each) for each in (way[:, 0], way[:, 1], self.base, self.top))
+        end = np.clip(np.minimum(at, 1.0 - at) * s[-1] / min(0.3 * s[-1], 0.6 * face), 0.0, 1.0)
+        self.bump = end**2 * (3.0 - 2.0 * end)
+        x, y, base, top = (np.interp(at * s[-1], s, each) for each in (*plane.T, self.old[:, 2], self.top))
         places = np.column_stack([x, y, base + up * self.bump * (top - base)])
         t = np.gradient(places, axis=0)
         t /= np.linalg.norm(t, axis=1)[:, None] + 1e-300
         # weaker along the strand, and at its ends
-        stiffness = (part * HOLD * (0.1 + 0.9 * self.bump))[:, None, None] * (np.eye(3) - 0.9 * t[:, :, None] * t[:, None, :])
+        stiffness = (hold * HOLD * (0.1 + 0.9 * self.bump))[:, None, None] * (
+            np.eye(3) - 0.9 * t[:, :, None] * t[:, None]
+        )
         if landed:
             stiffness[:, 2] = stiffness[:, :, 2] = 0.0
-        return Springs(vertices, places, stiffness, landed)
+        return Springs(self._wrapped(self.first + np.arange(self.count)), places, stiffness, landed)
+
+    def _wrapped(self, vertices: np.ndarray) -> np.ndarray:
+        return self.begin + (vertices - self.begin) % self.size
 
 
 def lead(rope: ElasticRope, leads: Sequence[Lead]) -> bool:
-    """Lead strands all at once as far as they can go; return whether they arrive, or nearly so."""
+    """Lead strands all at once as far as they can go; return whether nothing was in the way."""
     rest = np.ones(rope.mesh.size, dtype=bool)
-    for each in leads:
-        rest[each.vertices] = False
+    rest[np.concatenate([each.vertices for each in leads])] = False
     for each in leads:
         each.lift(rope, rest)
-    face = rope.face
 
-    def springs(up: float, over: float, part: float = 1.0, landed: bool = False) -> Springs:
-        all_ = [each.springs(rope, up, over, part, landed=landed) for each in leads]
-        return Springs(*(np.concatenate([getattr(s, name) for s in all_]) for name in ("vertices", "places", "stiffness")), landed)
+    def springs(up: float, over: float, hold: float = 1.0, landed: bool = False) -> Springs:
+        each = [strand.springs(rope, up, over, hold, landed=landed) for strand in leads]
+        names = ("vertices", "places", "stiffness")
+        return Springs(*(np.concatenate([getattr(one, name) for one in each]) for name in names), landed)
 
-    def lag(now: Springs) -> float:
+    def behind(now: Springs) -> float:
+        """How far strands are behind their springs, but for their ends, in faces."""
         d = rope.seen[now.vertices] - now.places
         inner = np.concatenate([each.bump for each in leads]) > 0.5
         return float(np.sqrt(np.einsum("ki,kij,kj->k", d, now.stiffness, d) / HOLD)[inner].max(initial=0.0) / rope.face)
 
-    rise = max(np.abs(each.top - each.base).max() for each in leads)
-    far = max(each.far.max() for each in leads)
-    ups, overs = max(2, int(np.ceil(rise / (PACE * face)))), max(3, int(np.ceil(1.5 * far / (PACE * face))))
-    path = [(k / ups, 0.0) for k in range(1, ups + 1)]
-    path += [(1.0, (k / overs) ** 2 * (3.0 - 2.0 * k / overs)) for k in range(1, overs + 1)]
-    for k, moment in enumerate(path):
-        end = k == len(path) - 1
-        for _ in range(16 if end else 4):
+    pace = 0.9 * rope.face
+    ups = max(2, math.ceil(max(np.abs(each.top - each.old[:, 2]).max() for each in leads) / pace))
+    overs = max(3, math.ceil(1.5 * max(each.far.max() for each in leads) / pace))
+    moments = [(k / ups, 0.0) for k in range(1, ups + 1)]
+    moments += [(1.0, (k / overs) ** 2 * (3.0 - 2.0 * k / overs)) for k in range(1, overs + 1)]
+    free = True
+    for k, moment in enumerate(moments, 1):
+        tries, near = (16, 0.25) if k == len(moments) else (4, 0.6)
+        for _ in range(tries):
             now = springs(*moment)
-            if not rope.step(now) or lag(now) < (0.25 if end else 0.6):
+            free = rope.step(now) and free
+            if not free or behind(now) < near:
                 break
-        if lag(now) > 2.0:
+        if behind(now) > 2.0:
             break
-    arrived = lag(now) < 1.0
-    for part in (1.0, 1.0, 0.7, 0.4, 0.2, 0.05):
-        rope.step(springs(1.0, 1.0, part, True))
-    return arrived
+    for hold in (1.0, 1.0, 0.7, 0.4, 0.2, 0.05):
+        rope.step(springs(1.0, 1.0, hold, landed=True))
+    return free
 
 
 def _meets_itself(points: FloatArray) -> bool:

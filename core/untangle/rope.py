@@ -2,8 +2,8 @@
 
 Its energy is that of its tension, of its bending, of its weight, z², a barrier at its diameter, and a repulsion *in the
 plane* between strands that do not cross near there, which keeps its diagram and opens the faces of that.  A step goes
-to the minimum of a convex quadratic model and, as far as that is proved, there.  The width of a face is the unit of
-length, the tension that of forces.
+to the minimum of a convex quadratic model, as far as that is proved.  Lengths are measured by the width of a face, and
+forces by the largest tension.
 """
 
 from collections.abc import Sequence
@@ -17,12 +17,15 @@ from scipy.spatial import cKDTree
 
 from ..base.deadline import check_time
 from ..base.types import BoolArray, FloatArray, IntArray
-from ..collision import free_motion, rope_motion
-from ..curve import Curve, Mesh
+from ..collision import is_free, is_rope
+from ..curve import Curve
+from ..curve.distances import arc_distance_of_pairs, arc_distance_of_vertices
 from ..curve.obstacle import Obstacle
 from ..energies.edge_pairs import EdgePairs
 from ..energies.rope import closest
 from ..knots.diagrams.projection import plane_crossings
+
+SHARP = 0.3  # cosine of the sharpest turn at a vertex, if there are no sharper ones
 
 
 class ViewCount(NamedTuple):
@@ -56,6 +59,31 @@ class Springs:
     landed: bool  # whether these vertices lie on the table, like all others
 
 
+class _Model:
+    """Forces on n vertices, less their springs, drags and stiffnesses: a quadratic function of displacements."""
+
+    def __init__(self, n: int) -> None:
+        self.force: FloatArray = np.zeros((n, 3))  # the derivative
+        self.form: FloatArray = np.zeros((n, 3, 3))  # the second one, or what is as good: blocks on the diagonal
+        self._blocks: list[tuple[IntArray, IntArray, FloatArray]] = []  # and elsewhere
+
+    def couple(self, corners: Sequence[tuple[IntArray, FloatArray]], first: FloatArray, second: FloatArray) -> None:
+        """Add a function of Σ c x over some vertices x, each a pair of indices and factors c, by its derivatives."""
+        for a, by_a in corners:
+            _add(self.force, a, by_a[:, None] * first)
+            self._blocks += [(a, b, (by_a * by_b)[:, None, None] * second) for b, by_b in corners]
+
+    def minimum(self, more: sp.csc_array) -> FloatArray:
+        """The displacements of least energy with one more form, sparse (3n, 3n); shape (n, 3)."""
+        own = np.arange(len(self.form))
+        a, b, values = map(np.concatenate, zip(*self._blocks, (own, own, self.form), strict=True))
+        rows, columns = 3 * a[:, None, None] + np.arange(3)[:, None], 3 * b[:, None, None] + np.arange(3)
+        places = [np.broadcast_to(each, values.shape).ravel() for each in (rows, columns)]
+        form = sp.coo_array((values.ravel(), places), shape=more.shape).tocsc() + more
+        factors = splu(form, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}, diag_pivot_thresh=0.0)
+        return -np.asarray(factors.solve(self.force.ravel())).reshape(-1, 3)
+
+
 class ElasticRope:
     """A curve's vertices in the user's doubles, bit for bit those that are proved, and as seen in a frame.
 
@@ -67,23 +95,23 @@ class ElasticRope:
         self, curve: Curve, frame: FloatArray, held: BoolArray, obstacles: Sequence[Obstacle], radius: FloatArray | None
     ) -> None:
         self.mesh, self.frame, self.held, self.obstacles, self.radius = curve.mesh, frame, held, obstacles, radius
-        self.length, self.free = curve.length, not held.any() and not obstacles
         self.vertices, self._start = curve.vertices, curve
         self.path: list[FloatArray] = []  # the vertices after each step so far
-        places = curve.vertices[held] if held.any() else curve.vertices
-        self.origin = places.mean(axis=0)
-        self.seen = (self.vertices - self.origin) @ frame
-        self.thick, self.face, self.speed, self.pull = 0.0, 1.0, 0.0, 0.0
+        self._length = curve.length if not held.any() and not obstacles else None  # that it keeps
+        self._origin = (curve.vertices[held] if held.any() else curve.vertices).mean(axis=0)
+        self.seen = (self.vertices - self._origin) @ frame
+        self.thick, self.face, self.speed, self._pull = 0.0, 1.0, 0.0, 0.0
         inner = self.mesh.inner
-        rows = np.tile(np.arange(len(inner)), 3)
-        columns = np.concatenate([inner, self.mesh.anticycle[inner], self.mesh.cycle[inner]])
         entries = np.repeat([-2.0, 1.0, 1.0], len(inner))
-        second = sp.coo_array((entries, (rows, columns)), shape=(len(inner), self.mesh.size)).tocsr()
-        self._bends = (second.T @ second).tocsr()
-        self._bends_by_coordinate = sp.kron(self._bends, sp.eye_array(3), format="csc")
+        places = (
+            np.tile(np.arange(len(inner)), 3),
+            np.concatenate([inner, self.mesh.anticycle[inner], self.mesh.cycle[inner]]),
+        )
+        self._second = sp.coo_array((entries, places), shape=(len(inner), self.mesh.size)).tocsr()  # differences
 
     @property
     def curve(self) -> Curve:
+        """The curve as it is."""
         return Curve(self.vertices, self.mesh)
 
     def take(self, crossings: int, moves: int) -> Stage:
@@ -92,172 +120,162 @@ class ElasticRope:
         self.path, self._start = [], self.curve
         return stage
 
-    def mark(self) -> tuple[FloatArray, FloatArray, FloatArray, float, int]:
-        return self.vertices, self.seen, self.frame, self.thick, len(self.path)
+    def mark(self) -> tuple[FloatArray, FloatArray, float, int]:
+        """What `rewind` needs."""
+        return self.vertices, self.seen, self.thick, len(self.path)
 
-    def rewind(self, mark: tuple[FloatArray, FloatArray, FloatArray, float, int]) -> None:
-        self.vertices, self.seen, self.frame, self.thick, count = mark
+    def rewind(self, mark: tuple[FloatArray, FloatArray, float, int]) -> None:
+        """Forget all motions since a mark."""
+        self.vertices, self.seen, self.thick, count = mark
         del self.path[count:]
 
-    def arc(self, position: FloatArray, around: FloatArray, i: IntArray, j: IntArray, component: IntArray) -> FloatArray:
-        """Distances along the curve; infinite between components."""
-        ahead = np.abs(position[i] - position[j])
-        distance = np.minimum(ahead, around[component[i]] - ahead)
-        return np.where(component[i] == component[j], distance, np.inf)
-
     def step(self, springs: Springs | None = None, cap: float = 0.35) -> bool:
-        """Go one step, in which no vertex moves by more than a part ``cap`` of a face; return whether any is free."""
+        """Go one step, in which no vertex moves by more than a part ``cap`` of a face; return whether it is free."""
         check_time()
-        mesh, x, face, n, r = self.mesh, self.seen, self.face, self.mesh.size, self.thick
-        tails, heads, eye = mesh.tails, mesh.heads, np.eye(3)
-        edge = mesh.changes(x)
-        ell = np.linalg.norm(edge, axis=1)
-        along = edge / ell[:, None]
-        around = np.add.reduceat(ell, mesh.edge_offsets[:-1])
-        mean = (around / mesh.edge_counts)[mesh.edge_component]
-        ring = np.where(mesh.closed, around, np.inf)
-        unit = float(ell.mean()) / face**2
-        force, form = np.zeros_like(x), np.zeros((n, 3, 3))  # the derivative, and blocks of its model's on the diagonal
-        blocks: list[tuple[IntArray, IntArray, FloatArray]] = []
-
-        # tension towards the length that so many crossings need, and edges of equal lengths
-        crossings = plane_crossings(mesh, x).edges
-        if springs is None:  # what is not led is to stay where ways have been planned
-            need = face * max(8.0, 1.8 * crossings.shape[1])
-            self.pull = 0.06 * float(np.clip((ell.sum() / need - 1.0) / 0.15, -0.2, 1.0))
-        goal = (1.0 - self.pull) * mean
-        pulls = ((ell - goal) / (0.06 * mean))[:, None] * along
-        force += mesh.scatter(-pulls, pulls)
-        both = along[:, :, None] * along[:, None, :]
-        stiff = (both + np.maximum(0.0, 1.0 - goal / ell)[:, None, None] * (eye - both)) / (0.06 * mean)[:, None, None]
-        blocks += [(tails, tails, stiff), (heads, heads, stiff), (tails, heads, -stiff), (heads, tails, -stiff)]
-        bending = (0.35 * face) ** 2 / float(ell.mean()) ** 3
-        force += bending * (self._bends @ x)
-
-        # weight, and drag
-        lying = np.ones(n, dtype=bool)
-        if springs is not None and not springs.landed:
-            lying[springs.vertices] = False
-        force[:, 2] += 1.5 * unit * lying * x[:, 2]
-        form[:, 2, 2] += 1.5 * unit * lying
-        drag = unit * np.where(lying, 1.0 if springs is None else 3.0 if springs.landed else 20.0, 1.0)
-        tangent = both[mesh.outgoing]
-        form += drag[:, None, None] * (eye - tangent) + 0.1 * unit * tangent
-
-        # repulsion in the plane
-        i, j = cKDTree(x[:, :2]).query_pairs(face, output_type="ndarray").T
-        position = np.zeros(n)
-        position[heads] = np.cumsum(ell)
-        position[mesh.offsets[:-1]] = np.concatenate([[0.0], np.cumsum(around)[:-1]])
-        far = self.arc(position, ring, i, j, mesh.component) > 1.6 * face
-        i, j = (each[far & lying[i] & lying[j]] for each in (i, j))
-        reach = int(0.5 * face / float(ell.mean()))
-        near = self._neighbours(crossings, np.arange(-reach - 1, reach + 3))
-        crossed = np.sort(near[0][:, :, None] * n + near[1][:, None, :], axis=None)
-        crossed = np.concatenate([crossed, np.sort(near[1][:, :, None] * n + near[0][:, None, :], axis=None)])
-        apart = ~np.isin(i * n + j, crossed)
-        i, j = i[apart], j[apart]
-        v = x[i] - x[j]
-        v[:, 2] = 0.0
-        d = np.linalg.norm(v, axis=1) + 1e-12 * face
-        q = v / d[:, None]
-        first, second = _barrier(np.maximum(d / face, 0.04))
-        push = (1.5 * unit * float(ell.mean()) * first)[:, None] * q
-        shape = (3.0 * unit * float(ell.mean()) / face * second)[:, None, None] * q[:, :, None] * q[:, None, :]
-        _add(force, i, push)
-        _add(force, j, -push)
-        _add(form, i, shape)
-        _add(form, j, shape)
-
-        # the barrier at its diameter
-        e, f = cKDTree(x[tails] + 0.5 * edge).query_pairs(
-            max(4.0 * r, 2.05 * r + 2.0 * cap * face) + ell.max(), output_type="ndarray"
-        ).T
-        middle = position[tails] + 0.5 * ell
-        far = self.arc(middle, ring, e, f, mesh.edge_component) > 1.5 * np.pi * r + 0.5 * (ell[e] + ell[f])
-        e, f = e[far], f[far]
-        chord, s, t = closest(EdgePairs.of(mesh, x, e, f))
-        d = np.linalg.norm(chord, axis=1)
-        close = d < 4.0 * r
-        i, j, s, t, d, chord = e[close], f[close], s[close], t[close], d[close], chord[close]
-        first, second = _barrier(np.maximum(0.5 * d / max(r, 1e-300) - 1.0, 1e-3))
-        weight, q = 0.2 * ell[i] * ell[j] / max(r, 1e-300), chord / d[:, None]
-        first, second = weight * first / (2.0 * r), weight * second / (2.0 * r) ** 2
-        square = q[:, :, None] * q[:, None, :]
-        corners = (tails[i], 0.5 - s), (heads[i], 0.5 + s), (tails[j], t - 0.5), (heads[j], -0.5 - t)
-        for a, by_a in corners:
-            _add(force, a, (first * by_a)[:, None] * q)
-            blocks += [(a, b, (second * by_a * by_b)[:, None, None] * square) for b, by_b in corners]
-
+        here, face, r = Curve(self.seen, self.mesh), self.face, self.thick
+        mean, model = float(here.edge_lengths.mean()), _Model(self.mesh.size)
+        cosine = self._cosines(here)
+        # bending, for which corners of more than 60 degrees are stiffer
+        stiffness = (0.35 * face) ** 2 / mean**3 * (1.0 + 30.0 * np.maximum(0.5 - cosine, 0.0))
+        bends = self._second.T @ sp.diags_array(stiffness) @ self._second
+        model.force += bends @ here.vertices
+        crossings = plane_crossings(self.mesh, here.vertices).edges
+        lying = np.ones(self.mesh.size, dtype=bool)
         if springs is not None:
-            k = springs.vertices
-            force[k] += unit * np.einsum("kij,kj->ki", springs.stiffness, x[k] - springs.places)
-            form[k] += unit * springs.stiffness
-        force[self.held] = 0.0
-        form[self.held] += 1e9 * unit * eye
-        blocks.append((np.arange(n), np.arange(n), form))
-        a, b, values = (np.concatenate(each) for each in zip(*blocks, strict=True))
-        rows, columns = np.broadcast_arrays(3 * a[:, None, None] + np.arange(3)[:, None], 3 * b[:, None, None] + np.arange(3))
-        matrix = sp.coo_array((values.ravel(), (rows.ravel(), columns.ravel())), shape=(3 * n, 3 * n)).tocsc()
-        symmetric = {"SymmetricMode": True}
-        factors = splu(
-            matrix + bending * self._bends_by_coordinate,
-            permc_spec="MMD_AT_PLUS_A", options=symmetric, diag_pivot_thresh=0.0,
-        )
-        move = -factors.solve(force.ravel()).reshape(-1, 3)
+            k, scale = springs.vertices, mean / face**2
+            lying[k] = springs.landed
+            model.force[k] += scale * np.einsum("kij,kj->ki", springs.stiffness, here.vertices[k] - springs.places)
+            model.form[k] += scale * springs.stiffness
+        self._add_tension(model, here, crossings.shape[1], lying, springs)
+        self._add_repulsion(model, here, crossings, lying)
+        e, f = self._strands(here, max(4.0 * r, 2.05 * r + 2.0 * cap * face), r)
+        self._add_barrier(model, here, e, f)
+        model.force[self.held] = 0.0
+        model.form[self.held] += 1e9 * mean / face**2 * np.eye(3)
+        move = model.minimum(sp.kron(bends, sp.eye_array(3), format="csc"))
         move[self.held] = 0.0
         self.speed = float(np.linalg.norm(move, axis=1).max())
+        if self.speed == 0.0:
+            return False
         move *= min(1.0, cap * face / self.speed)
-
-        # as far as that is proved, and strands keep apart
-        gap = lambda y: float(np.linalg.norm(closest(EdgePairs.of(mesh, y, e, f))[0], axis=1).min(initial=np.inf))
-        floor = min(2.05 * r, 0.97 * gap(x))
-        for _ in range(12):
-            if gap(x + move) > floor and self.go(x + move):
+        floor, sharp = min(2.05 * r, 0.97 * self._gap(here.vertices, e, f)), min(SHARP, cosine.min(initial=1.0))
+        for _ in range(10):
+            seen = here.vertices + move
+            smooth = self._cosines(Curve(seen, self.mesh)).min(initial=1.0) >= sharp
+            if smooth and self._gap(seen, e, f) > floor and self._go(seen):
                 return True
             move *= 0.6
         return False
 
-    def go(self, seen: FloatArray) -> bool:
-        """Go straight to places in the frame, shape (n, 3), if that is proved; unless something holds the curve, it is
-        scaled to keep its length."""
+    def rise(self, height: float = 0.5) -> None:
+        """Become so high, as a part of the size, that views from the side show other diagrams."""
+        size = np.ptp(self.seen, axis=0)
+        most, now = height * size.max(), max(size[2], 1e-3 * size.max())
+        while now < most:
+            now, before = min(now + 0.7 * self.face, most), now
+            if not self._go(self.seen * [1.0, 1.0, now / before]):
+                break
+
+    def thicken(self, most: float) -> None:
+        """Make the rope by itself as thick as there is room for, but not much at once."""
+        room = 0.45 * self._gap(self.seen, *self._strands(Curve(self.seen, self.mesh), 3.0 * most, most))
+        self.thick = max(self.thick, min(most, room, 1.15 * self.thick))
+
+    def _add_tension(
+        self, model: _Model, here: Curve, crossings: int, lying: BoolArray, springs: Springs | None
+    ) -> None:
+        """Tension towards the length that so many crossings need and edges of equal lengths, weight, and drag."""
+        mesh, ell, face = self.mesh, here.edge_lengths, self.face
+        means = (np.add.reduceat(ell, mesh.edge_offsets[:-1]) / mesh.edge_counts)[mesh.edge_component]
+        unit, along, eye = float(ell.mean()) / face**2, here.edge_vectors / ell[:, None], np.eye(3)
+        if springs is None:  # what is not led is to stay where ways have been planned
+            need = face * max(8.0, 1.8 * crossings)
+            self._pull = 0.06 * float(np.clip((ell.sum() / need - 1.0) / 0.15, -0.2, 1.0))
+        goal = (1.0 - self._pull) * means
+        both = along[:, :, None] * along[:, None, :]
+        stiffness = both + np.maximum(0.0, 1.0 - goal / ell)[:, None, None] * (eye - both)
+        one, soft = np.ones(mesh.edges), 0.06 * means
+        ends = (mesh.tails, -one), (mesh.heads, one)
+        model.couple(ends, ((ell - goal) / soft)[:, None] * along, stiffness / soft[:, None, None])
+        model.force[:, 2] += 1.5 * unit * lying * here.vertices[:, 2]
+        model.form[:, 2, 2] += 1.5 * unit * lying
+        drag = 1.0 if springs is None else 3.0 if springs.landed else 20.0
+        tangent = both[mesh.outgoing]
+        across = unit * np.where(lying, drag, 1.0)
+        model.form += across[:, None, None] * (eye - tangent) + 0.1 * unit * tangent
+
+    def _add_repulsion(self, model: _Model, here: Curve, crossings: IntArray, lying: BoolArray) -> None:
+        """Repulsion in the plane between vertices within a face that are not near one crossing, nor along the curve."""
+        mesh, x, face, n = self.mesh, here.vertices, self.face, self.mesh.size
+        mean = float(here.edge_lengths.mean())
+        i, j = cKDTree(x[:, :2]).query_pairs(face, output_type="ndarray").T
+        far = arc_distance_of_vertices(here, i, j) > 1.6 * face
+        i, j = (each[far & lying[i] & lying[j]] for each in (i, j))
+        reach, tails = int(0.5 * face / mean), mesh.tails[crossings]
+        start = mesh.offsets[mesh.component[tails]][:, :, None]
+        size = np.array(mesh.component_sizes)[mesh.component[tails]][:, :, None]
+        a, b = start + (tails[:, :, None] - start + np.arange(-reach - 1, reach + 3)) % size
+        near_one = [(u[:, :, None] * n + v[:, None, :]).ravel() for u, v in ((a, b), (b, a))]
+        apart = ~np.isin(i * n + j, np.concatenate(near_one))
+        i, j = i[apart], j[apart]
+        v = (x[i] - x[j]) * [1.0, 1.0, 0.0]
+        d = np.linalg.norm(v, axis=1) + 1e-12 * face
+        q, weight = v / d[:, None], 1.5 * (mean / face) ** 2
+        first, second = _barrier(np.maximum(d / face, 0.04))
+        force, form = (
+            (weight * first)[:, None] * q,
+            (2.0 * weight / face * second)[:, None, None] * q[:, :, None] * q[:, None],
+        )
+        for vertices, sign in ((i, 1.0), (j, -1.0)):
+            _add(model.force, vertices, sign * force)
+            _add(model.form, vertices, form)
+
+    def _add_barrier(self, model: _Model, here: Curve, e: IntArray, f: IntArray) -> None:
+        """The barrier at the rope's diameter, between edges that are near each other."""
+        r, ell = max(self.thick, 1e-12 * self.face), here.edge_lengths
+        chord, s, t = closest(EdgePairs.of(self.mesh, here.vertices, e, f))
+        d = np.linalg.norm(chord, axis=1)
+        e, f, chord, s, t, d = (each[d < 4.0 * r] for each in (e, f, chord, s, t, d))
+        q, weight = chord / d[:, None], 0.2 * ell[e] * ell[f] / r
+        first, second = _barrier(np.maximum(0.5 * d / r - 1.0, 1e-3))
+        (a, b), (u, v) = ((self.mesh.tails[each], self.mesh.heads[each]) for each in (e, f))
+        corners = (a, 0.5 - s), (b, 0.5 + s), (u, t - 0.5), (v, -0.5 - t)
+        form = (0.25 * weight * second / r**2)[:, None, None] * q[:, :, None] * q[:, None]
+        model.couple(corners, (0.5 * weight * first / r)[:, None] * q, form)
+
+    def _strands(self, here: Curve, reach: float, radius: float) -> tuple[IntArray, IntArray]:
+        """Pairs of edges whose middles are so near that they may be within reach, but that are far along the curve."""
+        ell = here.edge_lengths
+        e, f = cKDTree(here.midpoints).query_pairs(reach + ell.max(), output_type="ndarray").T
+        far = arc_distance_of_pairs(here, e, f, 0.5) > 1.5 * np.pi * radius + 0.5 * (ell[e] + ell[f])
+        return e[far], f[far]
+
+    def _cosines(self, here: Curve) -> FloatArray:
+        """Cosines of the angles by which the curve turns at its inner vertices."""
+        along, mesh = here.edge_vectors / here.edge_lengths[:, None], self.mesh
+        return np.einsum("ij,ij->i", along[mesh.incoming[mesh.inner]], along[mesh.outgoing[mesh.inner]])
+
+    def _gap(self, seen: FloatArray, e: IntArray, f: IntArray) -> float:
+        """The smallest distance between pairs of edges."""
+        chord, _, _ = closest(EdgePairs.of(self.mesh, seen, e, f))
+        return float(np.linalg.norm(chord, axis=1).min(initial=np.inf))
+
+    def _go(self, seen: FloatArray) -> bool:
+        """Go straight to places in the frame, shape (n, 3), scaled to keep the length, if that is proved."""
+        seen = np.where(self.held[:, None], self.seen, seen)
         end = seen
-        if self.free:
-            edges = np.linalg.norm(self.mesh.changes(seen), axis=1).sum()
-            end = self.length / edges * (seen - seen.mean(axis=0) * [1.0, 1.0, 0.0])
-        end = end @ self.frame.T + self.origin
+        if self._length is not None:
+            length = np.linalg.norm(self.mesh.changes(seen), axis=1).sum()
+            end = self._length / length * (seen - seen.mean(axis=0) * [1.0, 1.0, 0.0])
+        end = end @ self.frame.T + self._origin
         end[self.held] = self.vertices[self.held]
-        if not self.proves(end):
+        legs = self.mesh, self.vertices, end
+        kept = self.radius is None or is_rope(*legs, self.radius, self.obstacles)
+        if not kept or (self.radius is None and not is_free(*legs, self.obstacles)):
             return False
         self.vertices, self.seen = end, seen
         self.path.append(end)
         return True
-
-    def proves(self, end: FloatArray) -> bool:
-        """Whether the straight way to vertices, shape (n, 3), is proved free, and that of a rope if it is one."""
-        if self.radius is None:
-            return free_motion(self.mesh, self.vertices, end, self.obstacles, exhaustive=False).proved
-        return rope_motion(self.mesh, self.vertices, end, self.radius, self.obstacles).proved
-
-    def thicken(self, most: float) -> None:
-        """Make the rope by itself as thick as there is room for."""
-        here = Curve(self.seen, self.mesh)
-        ell = here.edge_lengths
-        e, f = cKDTree(here.midpoints).query_pairs(3.0 * most + ell.max(), output_type="ndarray").T
-        around = np.add.reduceat(ell, self.mesh.edge_offsets[:-1])
-        ring = np.where(self.mesh.closed, around, np.inf)
-        middle = np.cumsum(ell) - 0.5 * ell
-        far = self.arc(middle, ring, e, f, self.mesh.edge_component) > 1.5 * np.pi * most + 0.5 * (ell[e] + ell[f])
-        chord, _, _ = closest(EdgePairs.of(self.mesh, self.seen, e[far], f[far]))
-        room = 0.45 * float(np.linalg.norm(chord, axis=1).min(initial=np.inf))
-        self.thick = max(self.thick, min(most, room, 1.15 * self.thick or np.inf))
-
-    def _neighbours(self, edges: IntArray, offsets: IntArray) -> list[IntArray]:
-        """For edges, the vertices at some offsets from their tails along the curve; each (k, offsets)."""
-        tails = self.mesh.tails[edges]
-        start = self.mesh.offsets[self.mesh.component[tails]][:, :, None]
-        size = np.array(self.mesh.component_sizes)[self.mesh.component[tails]][:, :, None]
-        return list(start + (tails[:, :, None] - start + offsets) % size)
 
 
 def _add(total: FloatArray, index: IntArray, values: FloatArray) -> None:

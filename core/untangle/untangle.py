@@ -9,7 +9,6 @@ from collections.abc import Generator, Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.spatial import ConvexHull
 
 from ..base.deadline import check_time
 from ..base.messages import Message
@@ -55,11 +54,6 @@ class Untangled(NamedTuple):
     moves: int = 0
 
 
-def shows_least(diagram: Diagram) -> bool:
-    """Whether no diagram has fewer crossings than a simplified one: true for sums of alternating ones."""
-    return all(is_least(factor) for piece in diagram.without_pins.pieces() for factor in factors(piece))
-
-
 def untangled(
     curve: Curve,
     pins: IntArray = NOWHERE,
@@ -91,32 +85,37 @@ def untangled(
     rng, moves, few = np.random.default_rng(seed), 0, 0
     reached: int | None = None
     held: BoolArray = holds(curve.mesh, np.concatenate([pins, curve.mesh.ends.ravel()]))
-    frame, blocked = np.eye(3), False
+    rope: ElasticRope | None = None
+    blocked = False
     try:
         for _ in range(6):  # from different views, as long as moves lead to fewer crossings
-            found = _best_view(curve, frame, held, rng, reached)
+            found = _best_view(curve, held, rng, reached)
             if found is None:
                 break
+            if rope is not None:
+                yield rope.take(found[1].diagram.crossings, moves)
             frame, drawing = found
             crossings = drawing.diagram.crossings
             if reached is None:
                 few = math.floor(share * (crossings - outlook(drawing.diagram, rng)))
-                fine = _refined(curve, 8 * crossings + 40, radius)
+                fine = _refined(curve, 6 * crossings + 60, radius)
                 held = holds(fine.mesh, Pins(np.flatnonzero(held), curve.vertices[held]).on(fine).vertices)
                 curve = fine
             rope = ElasticRope(curve, frame, held, obstacles, radius)
             _lay_down(rope, crossings)
             drawing = draw(rope, rng)
             yield rope.take(drawing.diagram.crossings, moves)
-            drawing, moves, blocked = yield from _make_moves(rope, drawing, moves, rng, few)
-            curve, reached = rope.curve, drawing.diagram.crossings
+            drawing, moves, shut = yield from _make_moves(rope, drawing, moves, rng, few)
+            reached, blocked = drawing.diagram.crossings, blocked or shut
             left = simplified(drawing.diagram)
             if left.crossings == reached and shows_least(left):
                 told = Message("{count} crossings are left, as few as can be", count=reached)
                 return Untangled(reached, True, told if reached else Message("no crossing is left"), moves)
-            if reached <= left.crossings + few:
+            if few and reached <= left.crossings + few:
                 told = Message("{count} crossings are left to the flow", count=reached)
                 return Untangled(reached, False, told, moves)
+            rope.rise()
+            curve = rope.curve
     except UnclearError as error:
         return Untangled(reached, False, error.reason, moves)
     why = "{count} crossings are left, as no move of a strand is known that saves any"
@@ -142,19 +141,18 @@ def _make_moves(
             break
         before, count, tried = rope.mark(), drawing.diagram.crossings, tried + 1
         led = [(tried, set(each.vertices.tolist())) for each in leads]
-        arrived = lead(rope, leads)
+        free = lead(rope, leads)
         _settle(rope)
         after = draw(rope, rng)
         seen, low = after.diagram.crossings, lowest.diagram.crossings
         if seen >= count and (seen > low + max(4, low // 8) or outlook(after.diagram, rng) > best):
             rope.rewind(before)
-            tabu, vain, blocked = tabu + led, vain + 1, not arrived
+            tabu, vain, blocked = tabu + led, vain + 1, blocked or not free
             continue
         drawing, made = after, made + len(leads)
         if seen < low:
             lowest, moves, made, vain, blocked = drawing, moves + made, 0, 0, False
             best = min(best, outlook(drawing.diagram, rng))
-            rope.thicken(FAT * rope.face)
             yield rope.take(seen, moves)
             mark = rope.mark()
         else:
@@ -211,7 +209,9 @@ def _pieces(diagram: Diagram) -> Iterator[Strand]:
 def _lay_down(rope: ElasticRope, crossings: int) -> None:
     """Let a rope lie down flat, and become as thick as is good for leading strands."""
     thick = 0.0 if rope.radius is None else 1.05 * float(rope.radius.max())
-    rope.face = max(WIDE * math.sqrt(ConvexHull(rope.seen[:, :2]).volume / max(crossings, 3)), thick / FAT)
+    size = float(np.ptp(rope.seen, axis=0).max())
+    area = 10.0 * math.sqrt(np.linalg.det(np.cov(rope.seen[:, :2].T)).clip(0.0))  # that of an ellipse, or nearly so
+    rope.face = max(WIDE * math.sqrt(area / max(crossings, 3)), thick / FAT, 0.02 * size)
     rope.thick = max(0.45 * minimal_gap(rope.curve)[0], thick)
     for k in range(40):
         if not rope.step():
@@ -226,6 +226,7 @@ def _settle(rope: ElasticRope) -> None:
     for k in range(20):
         if not rope.step() or (k >= 3 and rope.speed < 0.08 * rope.face):
             break
+        rope.thicken(FAT * rope.face)
 
 
 def _refined(curve: Curve, vertices: int, radius: FloatArray | None) -> Curve:
@@ -233,7 +234,9 @@ def _refined(curve: Curve, vertices: int, radius: FloatArray | None) -> Curve:
     if len(curve) >= vertices:
         return curve
     fine = refine(curve, vertices)
-    sound = survives_rounding(fine) if radius is None else is_rope(fine.mesh, fine.vertices, fine.vertices, radius)
+    sound = (
+        survives_rounding(fine) if radius is None else is_rope(fine.mesh, fine.vertices, fine.vertices, 1.2 * radius)
+    )
     return fine if sound else curve
 
 
@@ -280,12 +283,12 @@ def draw(rope: ElasticRope, rng: np.random.Generator) -> PlaneDrawing:
 
 
 def _best_view(
-    curve: Curve, here: FloatArray, held: BoolArray, rng: np.random.Generator, reached: int | None
+    curve: Curve, held: BoolArray, rng: np.random.Generator, reached: int | None
 ) -> tuple[FloatArray, PlaneDrawing] | None:
     """The frame from which moves lead to the fewest crossings, and what is seen; None if not to fewer than now."""
-    frames = _frames(curve, rng, VIEWS)
-    if reached is not None:  # as if it were three times as high as it is
-        frames = [here @ rotation(each) for each in rng.normal(size=(VIEWS, 3, 3)) * [1.0, 1.0, 3.0]]
+    frames = (
+        _frames(curve, rng, VIEWS) if reached is None else [rotation(each) for each in rng.normal(size=(VIEWS, 3, 3))]
+    )
     views = _draw_clear(curve.mesh, curve.vertices, frames, held)
     best, least = None, math.inf if reached is None else reached
     for frame, drawing in sorted(views, key=lambda each: each[1].diagram.crossings):

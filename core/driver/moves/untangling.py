@@ -1,9 +1,10 @@
 """Strand moves where the flow makes no more headway: what a diagram shows as tangled comes apart without any flow."""
 
 import time
+from collections import deque
 from collections.abc import Generator, Hashable, Iterable, Iterator
-from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -13,12 +14,11 @@ from ...base.messages import Message
 from ...base.types import FloatArray, IntArray
 from ...collision import check_gap
 from ...collision.motion import walk
-from ...curve import Curve, refine
+from ...curve import Curve
 from ...curve.pins import arcs, holds
 from ...descent import Leg, Point, Step
 from ...descent.line_searches import on_target
 from ...descent.step import attempt
-from ...descent.task import check_refined
 from ...io.trajectory import Iterate, StrandMoves
 from ...knots.diagrams import QuickInvariants, quick_invariants
 from ...untangle import Stage, untangled, worth
@@ -42,15 +42,15 @@ class Untangling(Move):
     # crossings that must go from a curve with pins: lengths between them, which moves change, come back step by step
     many: int = 20
     room: int = 50  # iterations to be left: with fewer the flow might end higher
-    often: int = 25  # iterations in which the flow makes no headway unless it lowers the energy
-    fall: float = 0.03  # by this part
+    often: ClassVar[int] = 25  # iterations in which the flow makes no headway unless it lowers the energy
+    fall: ClassVar[float] = 0.05  # by this part
 
     remarks: list[Message] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self._given, self._stuck_at = len(self.run.iterate.curve), np.inf  # vertices; energy where strands moved last
         self._in_vain: Message | None = None
-        self._looked = 0, np.inf  # when the flow's headway was last looked at: iterate, energy
+        self._energies: deque[float] = deque(maxlen=self.often + 1)  # since the flow's headway was last judged
         self._shares = iter((0.35, 0.15))  # of the crossings that can go, which are left to the flow each time
 
     def started(self) -> Change | None:
@@ -67,11 +67,12 @@ class Untangling(Move):
         return Change(iterates=self._untangled())
 
     def stepped(self, step: Step) -> Change | None:
-        index, energy = self.run.iterate.index, self.run.iterate.energy
-        if index < self._looked[0] + self.often:
+        energies = self._energies
+        energies.append(self.run.iterate.energy)
+        if len(energies) <= self.often or energies[-1] < (1.0 - self.fall) * energies[0]:
             return None
-        slow, self._looked = energy > (1.0 - self.fall) * self._looked[1], (index, energy)
-        return self._where_stuck() if slow else None
+        energies.clear()
+        return self._where_stuck()
 
     def ended(self, outcome: Outcome) -> Change | None:
         return self._where_stuck() if outcome.may_be_left else None
@@ -109,7 +110,7 @@ class Untangling(Move):
         self.remarks.append(Message("strand moves: {reason}", reason=reason))
 
     def _untangled(self) -> Iterator[Iterate]:
-        """Yield the motions, then the curve on a mesh for the flow, and motions that restore its lengths."""
+        """Yield the motions, then the curve with targets for the flow, and motions that restore its lengths."""
         run, first, lengths = self.run, self.run.iterate, _Lengths(self.run)
         self._stuck_at, self._in_vain = first.energy, None
         try:
@@ -124,12 +125,8 @@ class Untangling(Move):
             self._tell(Message("none are made: {reason}", reason=reason))
             return
         self._tell(reason)
-        coarse, point = run.iterate.curve, run.point
-        with suppress(MobiusFlowError, np.linalg.LinAlgError):  # it stays where the other cannot be computed with
-            fine = refine(coarse, max(len(coarse), len(first.curve)))
-            check_refined(coarse, fine, run.problem.obstacles)
-            pins = run.problem.constraints.pins.on(fine).vertices
-            point = lengths.point(fine, target_lengths(fine, pins, run.problem.obstacles, run.options))
+        curve, pins = run.iterate.curve, np.array(run.iterate.pins, dtype=np.intp)
+        point = lengths.point(curve, target_lengths(curve, pins, run.problem.obstacles, run.options))
         run.restart()
         run.charged -= 1
         if run.strand_moves:

@@ -53,7 +53,7 @@ def test_famous_unknots_lose_all_crossings(name: str) -> None:
 @pytest.mark.parametrize("case", family([("5_2", 5), ("m7_4", 7), ("L6a4", 6), ("3_1#m4_1", 7), ("3_1#3_1", 6)], 2))
 def test_scrambled_knots_and_links_come_to_their_crossings(case: tuple[str, int]) -> None:
     name, crossings = case
-    curve = scramble(knot(name, 100), 1, moves=3000)
+    curve = scramble(knot(name, 100), 1, moves=800)
     end, found = run(curve)
     assert (found.crossings, found.least) == (crossings, True)
     assert str(knot_type(end)) == str(knot_type(curve))
@@ -61,13 +61,13 @@ def test_scrambled_knots_and_links_come_to_their_crossings(case: tuple[str, int]
 
 
 def test_a_knot_of_which_no_least_diagram_is_known_says_so() -> None:
-    _, found = run(scramble(knot("8_19", 100), 1, moves=3000))
+    _, found = run(scramble(knot("8_19", 60), 1, moves=800))
     assert (found.crossings, found.least) == (8, False)
     assert "no move of a strand is known" in found.reason
 
 
 def test_pins_stay_and_strands_end_at_them() -> None:
-    curve, pins = scramble(knot("5_2", 60), 1, moves=2000), [0, 20, 40]
+    curve, pins = scramble(knot("5_2", 60), 1, moves=800), [0, 20, 40]
     end, found = run(curve, pins)
     assert found.crossings == 5
     places = set(map(tuple, end.vertices.tolist()))
@@ -75,7 +75,7 @@ def test_pins_stay_and_strands_end_at_them() -> None:
 
 
 def test_arcs_come_apart_and_keep_their_ends() -> None:
-    closed = scramble(knot("3_1", 60), 1, moves=2000).vertices
+    closed = scramble(knot("3_1", 60), 1, moves=800).vertices
     curve = Curve(closed[:-1], Mesh((59,), (False,)))
     end, found = run(curve)
     assert found.crossings == 0
