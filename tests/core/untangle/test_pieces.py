@@ -77,7 +77,7 @@ def test_a_rope_at_rest_keeps_its_length_its_type_and_what_is_held() -> None:
     rope = laid("5_2")
     assert rope.curve.length == pytest.approx(knot("5_2", 120).length)
     assert jones(simplified(drawing(rope).diagram)) == jones(simplified(drawing(laid("5_2", 120)).diagram))
-    assert np.ptp(rope.seen[:, 2]) < 0.7 * np.ptp(knot("5_2", 120).vertices[:, 2])
+    assert np.ptp(rope.seen[:, 2]) < 0.8 * np.ptp(knot("5_2", 120).vertices[:, 2])
     rope = laid("5_2", held=(3, 40))
     np.testing.assert_array_equal(rope.vertices[[3, 40]], knot("5_2", 120).vertices[[3, 40]])
 
@@ -104,7 +104,7 @@ def test_a_rope_stays_one_of_its_radius() -> None:
     assert thickness(rope.curve) > 0.99 * radius
 
 
-@pytest.mark.parametrize("name", ["goeritz", "thistlethwaite"])
+@pytest.mark.parametrize("name", ["goeritz", "culprit"])
 def test_a_move_in_space_leads_to_the_diagram_that_was_planned(name: str) -> None:
     rope = laid(name, 160)
     seen = drawing(rope)

@@ -43,7 +43,7 @@ def ended(work: Generator[Stage, None, Untangled], stages: list[Stage]) -> Untan
             return end.value
 
 
-@pytest.mark.parametrize("name", family(["culprit", "goeritz", "thistlethwaite", "ochiai-1", "d28", "ochiai-4"], 3))
+@pytest.mark.parametrize("name", family(["culprit", "goeritz", "thistlethwaite", "ochiai-1", "d28"], 3))
 def test_famous_unknots_lose_all_crossings(name: str) -> None:
     end, found = run(knot(name))
     assert (found.crossings, found.least) == (0, True)
