@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..base.types import BoolArray, FloatArray
+from ..base.types import BoolArray, FloatArray, IntArray
 from ..curve.refine import arc_lengths
 from ..knots.diagrams.rerouting import Move
 from .drawing import PlaneDrawing
@@ -81,8 +81,8 @@ class Lead:
             stiffness[:, 2] = stiffness[:, :, 2] = 0.0
         return Springs(self._wrapped(self.first + np.arange(self.count)), places, stiffness, landed)
 
-    def _wrapped(self, vertices: np.ndarray) -> np.ndarray:
-        return self.begin + (vertices - self.begin) % self.size
+    def _wrapped(self, vertices: IntArray) -> IntArray:
+        return np.asarray(self.begin + (vertices - self.begin) % self.size)
 
 
 def lead(rope: ElasticRope, leads: Sequence[Lead]) -> bool:
@@ -94,8 +94,11 @@ def lead(rope: ElasticRope, leads: Sequence[Lead]) -> bool:
 
     def springs(up: float, over: float, hold: float = 1.0, landed: bool = False) -> Springs:
         each = [strand.springs(rope, up, over, hold, landed=landed) for strand in leads]
-        names = ("vertices", "places", "stiffness")
-        return Springs(*(np.concatenate([getattr(one, name) for one in each]) for name in names), landed)
+        vertices, places, stiffness = (
+            np.concatenate(parts)
+            for parts in zip(*((one.vertices, one.places, one.stiffness) for one in each), strict=True)
+        )
+        return Springs(vertices, places, stiffness, landed)
 
     def behind(now: Springs) -> float:
         """How far strands are behind their springs, but for their ends, in faces."""

@@ -253,7 +253,7 @@ class ElasticRope:
     def _cosines(self, here: Curve) -> FloatArray:
         """Cosines of the angles by which the curve turns at its inner vertices."""
         along, mesh = here.edge_vectors / here.edge_lengths[:, None], self.mesh
-        return np.einsum("ij,ij->i", along[mesh.incoming[mesh.inner]], along[mesh.outgoing[mesh.inner]])
+        return np.asarray(np.einsum("ij,ij->i", along[mesh.incoming[mesh.inner]], along[mesh.outgoing[mesh.inner]]))
 
     def _gap(self, seen: FloatArray, e: IntArray, f: IntArray) -> float:
         """The smallest distance between pairs of edges."""
@@ -289,4 +289,5 @@ def _barrier(z: FloatArray) -> tuple[FloatArray, FloatArray]:
     """First and second derivative of −(1 − z)² log z; 0 from z = 1 on."""
     z = np.minimum(z, 1.0)
     y = 1.0 - z
-    return 2.0 * y * np.log(z) - y**2 / z, -2.0 * np.log(z) + 4.0 * y / z + y**2 / z**2
+    first, second = 2.0 * y * np.log(z) - y**2 / z, 4.0 * y / z + y**2 / z**2 - 2.0 * np.log(z)
+    return np.asarray(first), np.asarray(second)
