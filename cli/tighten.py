@@ -32,7 +32,7 @@ with their forces, relative to the tension.
 
 def add_tighten(parser: argparse.ArgumentParser) -> None:
     parser.description, parser.epilog = "Pull a knot or link tight: the shortest rope of its thickness.", _EPILOG
-    curves.add_input(parser, "closed polygons")
+    curves.add_input(parser, "polygons, closed or open")
     text = "vertices in the end, or up to twice as many (default: 400)"
     parser.add_argument("--vertices", metavar="N", type=int, default=400, help=text)
     text = "starts on few vertices, stirred at random but for the first, of which the shortest goes on (default: 1)"

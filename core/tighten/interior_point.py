@@ -22,6 +22,7 @@ from scipy.sparse.linalg import splu
 from ..base.deadline import check_time
 from ..base.types import FloatArray
 from ..curve import Curve
+from ..curve.pins import holds
 from ..energies.edge_pairs import EdgePairs
 from .contacts import Contacts
 
@@ -36,7 +37,7 @@ class InteriorPoint:
     """The rope reached so far, of radius 1, and the forces z at its contacts.
 
     ``proved`` tells of vertices whether the straight motion there is proved that of a rope.  ``gap`` is Σ z c relative
-    to the length, ``residual`` |∇f − Σ z ∇c| relative to |∇f|; both are 0 at the shortest rope.
+    to the length, ``residual`` |∇f − Σ z ∇c| relative to |∇f|; both are 0 at the shortest rope.  Ends of arcs are held.
     """
 
     curve: Curve
@@ -50,6 +51,7 @@ class InteriorPoint:
         self.contacts = Contacts.near(self.curve, self.margin)
         self.forces = self.mu / self.contacts.values(self.curve.vertices)
         self._listed, self._delta = self.curve.vertices, 0.0
+        self._free = ~holds(self.curve.mesh, self.curve.mesh.ends.ravel())
 
     def run(self, gap: float, exact: bool, most: int = 400) -> Iterator[float]:
         """Yield the share of Newton's step that was taken, until the gap is small.
@@ -60,7 +62,7 @@ class InteriorPoint:
         for _ in range(most):
             check_time()
             share, decrement = self.step()
-            lengths.append(self.curve.length)
+            lengths.append(self.excess)
             promised = decrement / (self.mu * len(self.forces))
             still = len(lengths) > PATIENCE and lengths[-1] > (1.0 - STILL * self.gap) * lengths[-1 - PATIENCE]
             rests = self.residual <= 10.0 * gap if exact else still or promised < 0.1 * CENTRED
@@ -71,6 +73,12 @@ class InteriorPoint:
                 least = 0.5 * gap * self.curve.length / len(self.forces)
                 self.mu = min(self.mu, max(0.2 * self.mu, least))
                 lengths = lengths[-1:] if self.mu > least else lengths
+
+    @property
+    def excess(self) -> float:
+        """The length, of arcs beyond the distance of their ends."""
+        first, last = (self.curve.vertices[ends] for ends in self.curve.mesh.ends.T)
+        return self.curve.length - float(np.linalg.norm(last - first, axis=1).sum())
 
     def step(self) -> tuple[float, float]:
         """Take a step; the share of Newton's that is taken, and by how much the barrier function was to fall."""
@@ -86,7 +94,8 @@ class InteriorPoint:
         weight = np.sqrt(mesh.edge_counts / squares)
         self._elastic = mesh.difference.T @ sp.diags_array(weight[mesh.edge_component]) @ mesh.difference
         slope = self._elastic @ x
-        self.residual = float(np.linalg.norm(slope - contacts.sum_of(first, z)) / np.linalg.norm(slope))
+        residual = (slope - contacts.sum_of(first, z))[self._free]
+        self.residual = float(np.linalg.norm(residual) / np.linalg.norm(slope))
         self.gap = float(z @ c) / self.curve.length
         right = contacts.sum_of(first, mu / c) - slope
         solve = self._factorised(contacts.hessian(x, first, z, k))
@@ -154,12 +163,21 @@ class InteriorPoint:
     def _factorised(self, hessian: sp.csr_array) -> Callable[[FloatArray], FloatArray]:
         """Solve with Newton's matrix, with the least δ, up to a factor, that makes it definite."""
         elastic = sp.kron(self._elastic, sp.eye_array(3), format="csr")
+        free = np.flatnonzero(np.repeat(self._free, 3))
         ridge = 1e-6 * elastic.diagonal().mean() * sp.eye_array(elastic.shape[0], format="csr")  # holds it in its place
         while True:
-            matrix = sp.csc_array(hessian + (1.0 + self._delta) * elastic + (1.0 + 1e4 * self._delta) * ridge)
+            matrix = sp.csr_array(hessian + (1.0 + self._delta) * elastic + (1.0 + 1e4 * self._delta) * ridge)
+            matrix = sp.csc_array(matrix[free][:, free])
             # pivots on the diagonal have the signs of the eigenvalues
             options = {"SymmetricMode": True}
             factor = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
             if (factor.perm_r == factor.perm_c).all() and (factor.U.diagonal() > 0.0).all():
-                return lambda right: np.asarray(factor.solve(right.ravel()).reshape(-1, 3))
+                break
             self._delta = max(4.0 * self._delta, 1e-4)
+
+        def solved(right: FloatArray) -> FloatArray:
+            found = np.zeros_like(right)
+            found[self._free] = factor.solve(right[self._free].ravel()).reshape(-1, 3)
+            return found
+
+        return solved

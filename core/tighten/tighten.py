@@ -21,7 +21,7 @@ from ..base.threads import BLAS
 from ..base.types import FloatArray
 from ..collision import is_rope, thickness
 from ..collision.motion import walk
-from ..curve import Curve, check_closed
+from ..curve import Curve
 from ..curve.refine import onto_chords, subdivide
 from ..descent.task import Task, check_refined
 from ..driver import Outcome, Relaxation, RelaxOptions, Result, Status, finish, relax
@@ -95,7 +95,10 @@ def tighten(
     random, and the one that is shortest on few vertices goes on.  ``energy`` of iterates is length over radius,
     ``gradient_norm`` the residual.  The result's outcome is a `Tightened`, unless it was cut short.
 
-    Raises CurveError if the curve is not closed, not in space, touches itself or is too thin for a rope; OptionError if
+    Open ropes are pulled by their ends, which go straight ahead as rope comes out of the knot.  The start must have
+    long ends: nothing keeps strands from slipping over them.
+
+    Raises CurveError if the curve is not in space, touches itself or is too thin for a rope; OptionError if
     there are pins or obstacles, or numbers are out of range.
     """
     task = Task.of(curve)
@@ -108,10 +111,11 @@ def tightening(task: Task, options: TightenOptions) -> Relaxation:
     began = time.perf_counter()
     if task.pins or task.obstacles:
         raise OptionError("a knot is pulled tight in free space; leave pins and obstacles out")
-    check_closed(task.curve, "the shortest ropes")
     if task.curve.dimension != 3:
         raise CurveError(f"the curve has dimension {task.curve.dimension}; only curves in space are pulled tight")
-    coarse = options.vertices >> int(math.log2(options.vertices / COARSE))
+    # open ropes stay as long as they are, so that edges do not become shorter
+    few = COARSE if task.curve.mesh.all_closed else 2 * COARSE
+    coarse = options.vertices >> max(0, int(math.log2(options.vertices / few)))
     start = task.refined(max(len(task.curve), coarse))
     thick = rope_radius(start, RelaxOptions(radius="keep"))
     if thick is None:
@@ -125,10 +129,11 @@ def tightening(task: Task, options: TightenOptions) -> Relaxation:
 def _tightened(start: Task, unit: float, coarse: int, wanted: TightenOptions) -> Relaxation:
     rng, size = np.random.default_rng(wanted.seed), len(start.curve)
     loosely = RelaxOptions(mesh="fixed", untangle="never", tolerance=1e-2, max_iterations=500)
-    flow = relax(start, replace(loosely, radius=unit, vertices=size))
+    ends = tuple(start.curve.mesh.ends.ravel().tolist())
+    flow = relax(replace(start, pins=ends), replace(loosely, radius=unit, vertices=size))
     rope = _Rope(next(flow), unit)
     yield rope.last
-    if not rope.is_tight:
+    if not rope.is_tight and start.curve.mesh.all_closed:  # strands could slip over ends
         for iterate in flow:
             yield from rope.follow(iterate.path, iterate.gradient_norm, iterate.step_size)
     yield from rope.thinned(coarse)
@@ -162,6 +167,8 @@ def _tightened(start: Task, unit: float, coarse: int, wanted: TightenOptions) ->
         status, said = Status.STALLED, Message("stalled: forces are not in equilibrium: {told}", told=told)
     pressing = tuple(Strut(*each) for each in struts if each[2] > 1e-4)
     outcome = Tightened(status, (said,), ropelength=ropelength, gap=gap, residual=residual, struts=pressing)
+    if not rope.curve.mesh.all_closed:
+        return outcome.adding("{excess:.5g} radii of rope are in the knot", excess=point.excess)
     if (point.curve.component_lengths < 2.01 * math.pi).all():
         return outcome.adding("circles of the rope's radius are left, as of unknots")
     return outcome
@@ -172,7 +179,7 @@ class _Rope:
 
     def __init__(self, last: Iterate, unit: float) -> None:
         radius = (unit * (1.0 - ROOM),) * len(last.curve.mesh.component_sizes)
-        self.last = replace(last, radius=radius, energy=last.curve.length / unit)
+        self.last = replace(last, pins=(), radius=radius, energy=last.curve.length / unit)
         self.unit, self.center = unit, last.curve.vertices.mean(axis=0)
         self.point: InteriorPoint | None = None
 
@@ -217,7 +224,7 @@ class _Rope:
         while len(self.curve) > count:
             # evenly, and no neighbours
             mesh, every = self.curve.mesh, max(2.0, len(self.curve) / (len(self.curve) - count))
-            gone = [np.arange(part.start, part.stop - 1, every).astype(np.intp) for part in mesh.slices]
+            gone = [np.arange(part.start + 1, part.stop - 1, every).astype(np.intp) for part in mesh.slices]
             moved = self.curve.with_vertices(onto_chords(self.curve, np.concatenate(gone)))
             rest = [
                 np.delete(points, k - part.start, axis=0)
@@ -226,7 +233,7 @@ class _Rope:
             if min(map(len, rest)) < 16 or not self.proves(moved.vertices):
                 return
             yield from self.follow([moved.vertices])
-            yield from self.remeshed(Curve.from_components(rest))
+            yield from self.remeshed(Curve.from_components(rest, self.curve.mesh.closed))
 
     def stirred(self, rng: np.random.Generator) -> Iterator[Iterate]:
         """The rope after random motions."""
@@ -243,6 +250,8 @@ class _Rope:
 
     def shrunk(self) -> Iterator[Iterate]:
         """The curve as small as its thickness allows, and a little larger than its rope needs."""
+        if not self.curve.mesh.all_closed:
+            return
         start, wanted = self.curve.vertices, 1.001 * self.unit / thickness(self.curve)
         steps = max(1, math.ceil(math.log(wanted) / math.log(SHRINK)))
         for k in range(1, steps + 1):
@@ -252,7 +261,9 @@ class _Rope:
         """Twice as many vertices on a smoother curve, larger if the rope needs room; nothing if that is blocked."""
         before, finer = self.last, subdivide(self.curve, np.full(self.curve.mesh.edges, 2))
         check_refined(self.curve, finer, ())
-        moved = finer.with_vertices(finer.vertices + 0.5 * finer.edge_vectors)
+        onward = finer.mesh.at_tails(0.5 * finer.edge_vectors)
+        onward[finer.mesh.ends] = 0.0
+        moved = finer.with_vertices(finer.vertices + onward)
         assert self.point is not None, "it has been pulled"
         larger = max(1.0, (1.0 + 0.5 * self.point.gap) * self.unit / thickness(moved))
         halved = [*self.remeshed(finer)]
@@ -275,4 +286,16 @@ class _Rope:
         self.point = point = InteriorPoint(curve, mu, lambda vertices: self.proves(placed(vertices)), margin)
         for share in point.run(GAP if exact else 0.01, exact):
             if share > 0.0:
-                yield from self.follow([placed(point.curve.vertices)], point.residual, share)
+                path = [placed(point.curve.vertices)]
+                longer = curve.component_lengths - point.curve.component_lengths
+                if not curve.mesh.all_closed and longer.min() > 0.0:
+                    # what rope has come out of the knot leads ends on, straight ahead
+                    ahead = point.curve.vertices.copy()
+                    for first, last in curve.mesh.ends:
+                        for end, inner in ((first, first + 1), (last, last - 1)):
+                            edge = ahead[end] - ahead[inner]
+                            ahead[end] += 0.5 * longer[curve.mesh.component[end]] * edge / np.linalg.norm(edge)
+                    if is_rope(curve.mesh, path[0], placed(ahead), np.array(self.last.radius)):
+                        path.append(placed(ahead))
+                        point.curve = point.curve.with_vertices(ahead)
+                yield from self.follow(path, point.residual, share)

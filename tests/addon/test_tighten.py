@@ -5,7 +5,6 @@ import pytest
 from blender_scenes import add_curve
 from mobius_flow import Relaxation
 from mobius_flow.addon.scripting import begin
-from mobius_flow.core import MobiusFlowError
 from mobius_flow.core.collision import thickness
 from mobius_flow.core.knots import knot
 
@@ -34,9 +33,3 @@ def test_a_live_run_tells_the_ropelength(operator):
     operator.until(lambda: operator.run.state.over)
     assert "ropelength 32.76" in operator.run.message
     assert operator.run.report.certified
-
-
-def test_open_curves_are_refused():
-    obj = add_curve([[[0, 0, 0], [1, 0, 0], [1, 1, 1]]], "Open", cyclic=False)
-    with pytest.raises(MobiusFlowError, match="open"):
-        Relaxation(obj).tighten()

@@ -39,9 +39,3 @@ def test_a_trefoil_is_written_with_report_and_proof(trefoil, tmp_path, run):
 )
 def test_bad_input_is_one_line(trefoil, tmp_path, refused, words, said):
     assert said in refused("tighten", trefoil, tmp_path / "o.txt", *words)
-
-
-def test_open_curves_are_refused_with_their_file(tmp_path, refused):
-    path = tmp_path / "open.txt"
-    path.write_text("# open\n0 0 0\n1 0 0\n1 1 1\n", encoding="utf-8")
-    assert "open.txt" in refused("tighten", path, tmp_path / "o.txt")
