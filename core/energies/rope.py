@@ -5,8 +5,8 @@
 where φ = 0 from z = 1 on.  The first sum is over pairs of edges at distance d that are more than half a circle of the
 radius apart along the curve; between ropes of two radii 2r is their sum.  The second is over both ends of every edge,
 with the bending radius ϱ = ℓ/(2 tan(θ/2)) at the corner of angle θ there (Rawdon, Experimental Mathematics 12, 2003).
-The barrier begins at c = 3r and b = 2r.  φ is that of incremental potential contact (Li et al., ACM Trans. Graphics 39,
-2020).
+The barrier begins at c = 3r, less than half a circle is long, as else straight pieces would feel it, and b = 2r.  φ is
+that of incremental potential contact (Li et al., ACM Trans. Graphics 39, 2020).
 """
 
 from dataclasses import dataclass, field, replace
