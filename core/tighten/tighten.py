@@ -146,7 +146,7 @@ def _tightened(start: Task, unit: float, coarse: int, wanted: TightenOptions) ->
         for k in range(wanted.starts):
             trial = _Rope(rope.last, unit)
             trials.append((trial, [*(trial.stirred(rng) if k else ()), *trial.shrunk(), *trial.pulled(done)]))
-        rope, way = min(trials, key=lambda each: each[0].curve.length)
+        rope, way = min(trials, key=lambda each: each[0].promise)
         yield from way
     while len(rope.curve) < wanted.vertices:
         before = len(rope.curve)
@@ -194,6 +194,11 @@ class _Rope:
         strands = slice(touching.strands)
         return len(np.unique([touching.i[strands], touching.j[strands]])) > 0.5 * len(self.curve)
 
+    @property
+    def promise(self) -> float:
+        """About how short the rope becomes."""
+        return self.curve.length * (1.0 - self.point.gap) if self.point else np.inf
+
     def proves(self, vertices: FloatArray) -> bool:
         return is_rope(self.curve.mesh, self.curve.vertices, vertices, np.array(self.last.radius))
 
@@ -224,7 +229,11 @@ class _Rope:
         while len(self.curve) > count:
             # evenly, and no neighbours
             mesh, every = self.curve.mesh, max(2.0, len(self.curve) / (len(self.curve) - count))
-            gone = [np.arange(part.start + 1, part.stop - 1, every).astype(np.intp) for part in mesh.slices]
+            firsts = mesh.offsets[:-1] + ~np.asarray(mesh.closed)  # ends stay
+            gone = [
+                np.arange(first, part.stop - 1, every).astype(np.intp)
+                for first, part in zip(firsts, mesh.slices, strict=True)
+            ]
             moved = self.curve.with_vertices(onto_chords(self.curve, np.concatenate(gone)))
             rest = [
                 np.delete(points, k - part.start, axis=0)
