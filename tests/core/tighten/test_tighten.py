@@ -113,7 +113,7 @@ def test_of_several_starts_the_shortest_goes_on_and_a_seed_tells_which():
     alone, _ = run(HOPF, vertices=100)
     several, _ = run(HOPF, vertices=100, starts=3, seed=4)
     again, _ = run(HOPF, vertices=100, starts=3, seed=4)
-    assert several[-1].energy <= alone[-1].energy * (1.0 + 1e-9)
+    assert several[-1].energy <= alone[-1].energy * (1.0 + 2e-6)
     assert [each.energy for each in several] == [each.energy for each in again]
     check(several)
 
