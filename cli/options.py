@@ -44,7 +44,7 @@ def add_to(parser: argparse.ArgumentParser, *, without: Collection[str] = ()) ->
                     declared_as |= {"metavar": option.metavar, "action": "append", "default": []}
                 else:
                     text += f"; one of {', '.join(option.choices)}" if option.choices else ""
-                    text += f" (default: {option.automatic or option.default})"
+                    text += f" (default: {option.automatic or '%(default)s'})"
                     declared_as |= {"metavar": option.metavar, "type": option.kind}
                 group.add_argument(flag(option), help=text, **declared_as)
     parser.set_defaults(offered=list(offered))

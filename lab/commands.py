@@ -92,7 +92,7 @@ def add_batch(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     relax_options.add_to(parser)
     relax_options.add_task(parser)
-    parser.set_defaults(run=campaign)
+    parser.set_defaults(run=campaign, radius="none")  # of minima alone, which come sooner without a rope
 
 
 def add_atlas(parser: argparse.ArgumentParser) -> None:

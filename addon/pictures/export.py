@@ -19,7 +19,7 @@ from ...core.collision import is_free
 from ...core.keys.key_options import Output
 from ...core.keys.motion import Key, Keys, Playing, check_dimension, recorded
 from ...core.keys.placement import Measure, Origin
-from ...core.keys.tube import rounded, tube_radii
+from ...core.keys.tube import rope_radii, rounded, tube_radii
 from .looks import DEFAULT, LOOKS
 
 ONCE = Playing()
@@ -99,11 +99,12 @@ def _played(
     timing = playing.timing
     keys, mesh = motion.keys(is_free, timing.length, timing), motion.start.mesh
     frames = timing.frames(motion.course(keys))
-    if not in_place:
+    radii = rope_radii(mesh, keys)
+    if radii is None and not in_place:
         mesh, keys = rounded(mesh, keys, is_free)
     scene = rendering.empty_scene()
     set_up(scene)
-    compose(scene, keys, frames, mesh, playing, origin if in_place else None)
+    compose(scene, keys, frames, mesh, playing, origin if in_place else None, radii=radii)
     scene.frame_start, scene.frame_end = timing.scene_range(frames)
     return scene, keys.certified
 
@@ -116,10 +117,12 @@ def compose(
     playing: Playing,
     origin: Origin | None = None,
     cut_out: bool = False,
+    radii: FloatArray | None = None,
 ) -> None:
     """Put a keyed curve on a look's stage, by default near the scene's origin, and fit the scene's frames to it.
 
-    ``cut_out``: it is seen down the third axis, and nothing of the floor is in the picture but shadows.
+    ``radii``: of its tube, (keys, n), by default where there is room; ``cut_out``: it is seen down the third axis, and
+    nothing of the floor is in the picture but shadows.
     """
     import bpy
 
@@ -129,8 +132,9 @@ def compose(
     from .materials import bundled, colour_components
 
     points, look = [key.points for key in keys.keys], playing.look or DEFAULT
-    radii = tube_radii(mesh, [each.astype(np.float64) for each in points], frames)
-    radii = np.full_like(radii, radii.min()) if playing.constant_radius else radii
+    if radii is None:
+        radii = tube_radii(mesh, [each.astype(np.float64) for each in points], frames)
+        radii = np.full_like(radii, radii.min()) if playing.constant_radius else radii
     data = new_curve_data("Curve", mesh)
     data.bevel_depth, data.bevel_resolution = float(radii.max()), 5
     data.use_fill_caps = True  # at the ends of arcs

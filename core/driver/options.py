@@ -131,10 +131,11 @@ class RelaxOptions:
         metavar="B",
     )
     radius: str | float | tuple[float, ...] = option(
-        "none",
+        "keep",
         "Radius",
         "radius of the rope that the curve stays, one or one for each component; keep: nine tenths of the thickness at "
-        "the start, less only where that leads to a lower minimum",
+        "the start, less only where that leads to a lower minimum, and none for methods that penalise lengths and the "
+        "method paper",
         choices=RADII,
         objects=("a number above 0, or one for each component", _are_radii),
         read=_radius,
@@ -303,10 +304,12 @@ class RelaxOptions:
 
     @property
     def resolved(self) -> "RelaxOptions":
-        """The same with what "auto" means to the method ``paper``: what runs read, and reports tell."""
+        """The same with what defaults mean to the method: what runs read, and reports tell."""
         meant: dict[str, Any] = {}
         if self.method == "paper":
             meant = {name: value for name, value in AS_IN_THE_PAPER.items() if getattr(self, name) == "auto"}
+        if self.radius == "keep" and (self.method == "paper" or not METHODS[self.method].geometry.prescribes):
+            meant["radius"] = "none"
         return replace(self, **meant) if meant else self
 
     @property

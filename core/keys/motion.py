@@ -44,6 +44,7 @@ class Key:
     points: Frame
     kind: Kind = Kind.ADDED
     size: Similarity = field(default_factory=Similarity)  # by which it is shown, in the world
+    radius: float = 0.0  # of the rope that the curve is all along, as shown, in the common space; 0 if it is none
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,6 +121,7 @@ class Recording:
         self._link, self._first, self._measure, self._in_points = link, first, measure, in_points
         self._first_size = size or Similarity()
         self.last: Iterate | None = None
+        self._radius = np.inf  # of the thinnest rope that the curve has been
         self.natural = [0]  # numbers of iterates that are shown in their own size, which changes evenly in between
         self._shapes: list[_Shape] = []
         self._passed: list[_Passed] = []
@@ -175,6 +177,7 @@ class Recording:
         for time, frame, way in zip(times, frames, ways, strict=True):
             key = Key(time, frame, kind if time == index else Kind.ADDED)
             self._shapes.append(_Shape(key, len(self._meshes) - 1, way))
+        self._radius = min(self._radius, min(iterate.radius or (0.0,)) / self._link.placements[0].stretch)
         step = iterate.step_size if index and kind is not Kind.MOVE else 0.0
         self._passed.append(_Passed(len(self._shapes) - 1, curve, like, step, iterate.energy))
         self._mesh, self.last = Mesh(tuple(map(len, self._markers)), curve.mesh.closed), iterate
@@ -245,7 +248,8 @@ class Recording:
                 return []
             points = (0.5 * (start.points.astype(np.float64) + end.points.astype(np.float64))).astype(np.float32)
             time = 0.5 * (start.time + end.time)
-            middle = Key(time, points, size=Similarity() if self._in_points else self._size(time, points))
+            size, radius = Similarity() if self._in_points else self._size(time, points), 0.5 * (start.radius + end.radius)
+            middle = Key(time, points, size=size, radius=radius)
             first = along(start, middle, depth - 1)
             second = first and along(middle, end, depth - 1)
             return first + second if second else []
@@ -359,6 +363,7 @@ class Recording:
 
     def _stored(self, key: Key) -> Key:
         """A key as it is stored: where nothing but points can be keyed, they are those shown."""
+        key = replace(key, radius=self._radius * key.size.factor)
         if not self._in_points or key.size.is_identity:
             return key
         return replace(key, points=self._shown(key.points, key.size).astype(np.float32), size=Similarity())

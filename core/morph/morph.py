@@ -52,7 +52,7 @@ def morph(
     or do not go together.
     """
     task, wanted = Task.of(a), options or RelaxOptions()
-    if wanted.radius != "none":
+    if not isinstance(wanted.radius, str):
         raise OptionError("radius is kept by relaxations, but not by morphs; leave it out")
     return finish(morphing((task, Task.of(b)), wanted, NAMES), task, callback)
 
@@ -88,7 +88,7 @@ def moving(tasks: Sequence[Task], options: RelaxOptions, names: Sequence[str]) -
         if (a.vertices[a.mesh.ends] != b.vertices[b.mesh.ends]).any():
             places = f"open components begin or end in other places in {one} than in {other}"
             raise CurveError(f"{places}; move their ends together")
-    alone = replace(options, time_limit=None, balance=False, hops=0)
+    alone = replace(options, time_limit=None, balance=False, hops=0, radius="none")
     ways = [_Way(*each, tasks[0], alone) for each in zip(names, tasks, strict=True)]
     work = BLAS.bounding(_number(_chain(ways, alone, options.hops)))
     if options.time_limit is None:

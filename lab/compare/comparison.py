@@ -18,7 +18,8 @@ from ...core.driver.run import iterates
 from ...core.driver.solver import Solver
 from ...core.solve.metrics import METRICS
 
-LEFT_OUT = ("mesh", "grow", "untangle", "symmetry", "hops", "stability", "escape_saddles", "balance", "time_limit")
+LEFT_OUT = ("mesh", "grow", "untangle", "radius", "symmetry", "hops")
+LEFT_OUT += ("stability", "escape_saddles", "balance", "time_limit")
 """Options of `relax` that a comparison has not: steps of methods are compared as they are, on one mesh."""
 
 
@@ -93,9 +94,9 @@ def compare(
     if not len(methods):
         raise OptionError(f"there are no methods to compare; {choice('', METHODS)}")
     given = {name: value for name in LEFT_OUT if (value := getattr(options, name)) != getattr(RelaxOptions, name)}
-    if excess := [f"{name}={value!r}" for name, value in given.items() if value not in ("fixed", "never")]:
+    if excess := [f"{name}={value!r}" for name, value in given.items() if value not in ("fixed", "never", "none")]:
         raise OptionError(f"{excess[0]} has no part in a comparison of methods, step by step on one mesh; leave it out")
-    options = replace(options, mesh="fixed", untangle="never")
+    options = replace(options, mesh="fixed", untangle="never", radius="none")
     if options.edge_lengths == "auto":
         options = replace(options, edge_lengths="keep")
     each = variants(methods, options)

@@ -31,6 +31,10 @@ class GiveWay(Move):
     def started(self) -> None:
         self._energies.clear()
 
+    def __post_init__(self) -> None:
+        begins, keeps = self.run.iterate.index == 0, self.run.options.radius == "keep"
+        self._sharp = begins and keeps and self.run.problem.certifiable and self.run.problem.radius is None
+
     def stepped(self, step: Step) -> Change | None:
         self._energies.append(self.run.point.energy)
         steps, part = self.later if self._start else self.first
@@ -58,10 +62,8 @@ class GiveWay(Move):
 
     def summarised(self, outcome: Outcome) -> Outcome:
         now = self.run.problem.radius
-        if now is None and self.run.options.radius == "keep":
-            return outcome.adding(
-                "the curve is no rope at the start: a corner is too sharp, or it has too many dimensions"
-            )
+        if self._sharp:
+            return outcome.adding("the curve is no rope, as a corner is too sharp at the start")
         if not self._start or now is None:
             return outcome
         told = "the rope gave way from radius {start:.3g} to {end:.3g}, as it was in its own way"

@@ -85,6 +85,14 @@ def test_what_passes_evenly():
     assert (np.diff(drifting) > 0).all()
 
 
+def test_nothing_jumps():
+    """In no frame more than two and a half times the median, though the energy hardly falls on most of the way."""
+    distance = np.concatenate([np.linspace(0.0, 1.0, 100), np.linspace(1.1, 5.0, 20)])
+    jumping = Course(np.arange(120.0), distance, distance, np.minimum(distance, 1.0), 0.0 * distance)
+    moved = np.diff(np.interp(np.linspace(0.0, 1.0, 200), jumping.share(Pace.EVEN), distance))
+    assert moved.max() < 2.5 * np.median(moved)
+
+
 ITERATE = Pace.ITERATE
 RESTS = {"start_frame": 11, "length": 100, "hold_start": 5, "hold_end": 8}
 FRAMES = [  # of a timing the first and the last frame of the motion, and of the scene

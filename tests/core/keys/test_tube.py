@@ -1,13 +1,17 @@
 """Tubes: as thick as there is room, smooth in films, and proved."""
 
+from dataclasses import replace
+from itertools import pairwise
+
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, Mesh, Obstacle
+from mobius_flow.core import Curve, Mesh, Obstacle, minimize
 from mobius_flow.core.collision import is_free
 from mobius_flow.core.curve.distances import nearest_strands
-from mobius_flow.core.keys.motion import Key, Keys
-from mobius_flow.core.keys.tube import free_radius, radius_beside, rounded, strand_gap, thickest_radius, tube_radii
-from mobius_flow.core.knots import smooth_knot
+from mobius_flow.core.keys.motion import Key, Keys, recorded
+from mobius_flow.core.keys.placement import Measure
+from mobius_flow.core.keys.tube import free_radius, radius_beside, rope_radii, rounded, strand_gap, thickest_radius, tube_radii
+from mobius_flow.core.knots import knot, smooth_knot
 from shapes import lattice_knot, regular_polygon
 
 RING = regular_polygon(60).vertices
@@ -153,3 +157,23 @@ def test_tubes_are_not_much_thicker_elsewhere_where_many_strands_are_close():
     curve = Curve.from_components([3.0 * RING, *stack])
     (radii,) = radii_of([curve], [0])
     assert radii[:60].max() <= 2.2 * np.quantile(radii[60:], 0.5) < thickest_radius(curve)
+
+
+@pytest.mark.parametrize("measure", [Measure.LENGTH, Measure.RADIUS])
+def test_a_rope_is_drawn_as_it_is_and_has_room_from_key_to_key(measure):
+    """Also where the mesh changes on the way, so that keys have points on edges."""
+    iterates = []
+    minimize(knot("8_3"), callback=iterates.append)
+    motion, _ = recorded(iterates, measure)
+    keys = motion.keys(is_free, 40)
+    radii = rope_radii(motion.start.mesh, keys)
+    lengths = [Curve(key.points.astype(float), motion.start.mesh).length for key in keys.keys]
+    np.testing.assert_allclose(radii / radii[0], np.outer(lengths, np.ones(motion.start.mesh.size)) / lengths[0], rtol=1e-4)
+    assert 0.79 * iterates[-1].radius[0] < radii[0, 0] * iterates[0].curve.length / lengths[0] < iterates[-1].radius[0]
+    for (a, one), (b, other) in pairwise(zip(keys.keys, radii[:, 0], strict=True)):
+        for t in (0.0, 0.5):
+            curve = Curve((1.0 - t) * a.points + t * b.points.astype(float), motion.start.mesh)
+            gap = nearest_strands(curve, np.pi, 2.0 * max(one, other))
+            assert gap >= 2.0 * min(one, other)
+    threads = Keys(tuple(replace(key, radius=0.0) for key in keys.keys), 0)
+    assert rope_radii(motion.start.mesh, threads) is None
