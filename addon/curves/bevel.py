@@ -13,7 +13,7 @@ import numpy as np
 from ...core import Curve, Obstacle
 from ...core.keys.tube import free_radius, radius_beside, thickest_radius
 from . import bake
-from .recorded import Recorded, in_world
+from .recorded import Recorded, drawn_radius, in_world
 from .splines import radii, stretch
 
 _FITTED = "mobius_flow_tube"  # custom property of curve data: depths that were fitted
@@ -39,6 +39,16 @@ def is_constant(data: bpy.types.Curve) -> bool:
 def fitting_radius(curve: Curve, obstacles: Sequence[Obstacle] = ()) -> float:
     """The largest radius that is free of contact, but not so large that the tube no longer looks like a curve."""
     return radius_beside(curve, free_radius(curve, thickest_radius(curve)), obstacles)
+
+
+def own_radii(objects: Sequence[bpy.types.Object]) -> tuple[float, ...]:
+    """Radius of the artist's bevel around each spline, in the world; empty if there is none around some of them."""
+    own = [
+        0.0 if is_fitted(obj.data) else drawn_radius(obj) * float(radii(spline).max())
+        for obj in objects
+        for spline in obj.data.splines
+    ]
+    return tuple(own) if min(own) > 0.0 else ()
 
 
 def fit(data: bpy.types.Curve, radius: float, constant: bool | None = None) -> None:

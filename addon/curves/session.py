@@ -16,7 +16,7 @@ import numpy as np
 
 from ...core import Curve, Hand, Iterate, Obstacle, Outcome, RelaxOptions, Status, Task, WithOutcome
 from ...core.base import CurveError, FloatArray, Message, MobiusFlowError, OptionError, Place, Sentence
-from ...core.collision import is_free
+from ...core.collision import is_free, is_rope
 from ...core.driver.words import in_blenders_words, named, spline_names
 from ...core.keys.key_options import Course, KeyOptions, Output
 from ...core.keys.motion import Key, Keys, Kind, Proof, Recording
@@ -134,6 +134,11 @@ class Session:
                 key_options.check_place()
             if obstacles and options.balance:
                 raise OptionError(Message("Balance does not go with what is avoided; leave it out, or avoid nothing"))
+            # a bevel of the artist's is the rope, unless it meets itself from the start, or is to be fitted
+            own = () if continues or goals or ropes or key_options.any_bevel else bevel.own_radii(objects)
+            if own and options.resolved.radius == "keep" and options.untangle != "always":
+                ends = self.curve.mesh, self.curve.vertices, self.curve.vertices, np.array(own), obstacles
+                options = replace(options, radius=own) if is_rope(*ends) else options
             self.options, self.job, first, size = options, ropes or options, None, None
             if continues:  # the keys that are there have as many points as the curves have now
                 self.options = self.job = replace(options, vertices=len(self.curve), mesh="fixed", untangle="never")
@@ -144,6 +149,7 @@ class Session:
             raise
         # what of the size stays constant, or changes evenly between goals
         stays = pins or obstacles or self.options.grow != 1.0
+        stays = stays or not (isinstance(self.options.radius, str) or self._shape_keys)  # points alone are scaled
         # a taper may leave no radii at points, which make up for the size
         stays = stays or any(o.data.taper_object and o.data.taper_radius_mode == "OVERRIDE" for o in objects)
         measure = key_options.keep_size or (Measure.LENGTH if stays else Measure.RADIUS)

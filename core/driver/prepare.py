@@ -8,6 +8,7 @@ import numpy as np
 from ..base import CurveError, FloatArray, IntArray, Message, OptionError
 from ..collision import is_free, is_rope, minimal_gap, rope_motion, survives_rounding, thickness
 from ..curve import TAUT, Curve, Mesh, Obstacle, arcs, at_edges, check_closed, free_edges, spans
+from ..curve.measures import bending_radii
 from ..curve.refine import Resolution, graded_spacing, normalised, refined_alike
 from ..curve.symmetry import TOLERANCE, Symmetry, SymmetryGroup, symmetries
 from ..descent import METHODS, Problem, Task
@@ -98,7 +99,12 @@ def rope_radius(task: Task, options: RelaxOptions) -> FloatArray | None:
             Message(thin, radius=float(radius.max()), contact=found.contact.message, thickness=thickness(curve)),
             at_edges(curve, found.contact.edges),
         )
-    radius = np.full(components, 0.9 * thickness(curve))
+    bends, parts = bending_radii(curve), list[FloatArray]()
+    for part, piece in zip(curve.components, curve.mesh.slices, strict=True):  # without vertices on edges
+        corners = bends[piece] < 1e9 * curve.length
+        corners[[0, -1]] |= not curve.mesh.closed[len(parts)]
+        parts.append(part[corners] if corners.sum() > 2 else part)
+    radius = np.full(components, 0.9 * thickness(Curve.from_components(parts, curve.mesh.closed)))
     for _ in range(40):  # less, where obstacles are nearer than strands
         if not np.isfinite(radius).all() or radius.max() <= 1e-9 * curve.length:
             return None

@@ -6,8 +6,12 @@ import pytest
 from blender_scenes import add_curve, add_hopf_link, add_trefoil, in_world, stored
 from mobius_flow.addon.curves import bevel
 from mobius_flow.addon.curves.splines import key_points
+from mobius_flow.addon.curves.recorded import BakedKeys
 from mobius_flow.core import Curve
+from mobius_flow.core.collision import thickness
+from mobius_flow.core.curve.distances import nearest_strands
 from mobius_flow.core.keys.tube import free_radius, thickest_radius
+from mobius_flow.core.knots import knot
 from shapes import hopf_link, torus_trefoil
 
 SHORT = {"max_iterations": 4, "timing": "ITERATE"}
@@ -54,6 +58,19 @@ def test_ones_own_is_not_changed(bevelled, keyframes):
     assert drawn(obj.data) == before
     blocks = obj.data.shape_keys.key_blocks if obj.data.shape_keys else []
     assert all(point.radius == 1 for block in blocks for point in block.data)
+
+
+@pytest.mark.parametrize(("share", "kept"), [(0.95, True), (1.2, False)])
+def test_ones_own_never_meets_itself(share, kept):
+    """At all keys the curve has room for the bevel, unless it had none to begin with."""
+    curve = knot("goeritz")
+    obj = add_curve([curve.vertices])
+    obj.data.bevel_depth = depth = share * thickness(curve)
+    assert bpy.ops.curve.mobius_flow_relax() == {"FINISHED"}
+    frames = BakedKeys([obj]).frames
+    nearest = min(nearest_strands(Curve(each.astype(float)), 1.6) for each in frames)
+    assert (nearest >= (1.0 - 1e-5) * 2.0 * depth) is kept
+    assert nearest >= 1.7 * thickness(curve)
 
 
 @pytest.mark.parametrize("depth", [0.0, 0.125])
