@@ -134,8 +134,7 @@ class RelaxOptions:
         "keep",
         "Radius",
         "radius of the rope that the curve stays, one or one for each component; keep: nine tenths of the thickness at "
-        "the start, less only where that leads to a lower minimum, and none for methods that penalise lengths and the "
-        "method paper",
+        "the start, less only where that leads to a lower minimum; none for penalty methods and paper",
         choices=RADII,
         objects=("a number above 0, or one for each component", _are_radii),
         read=_radius,
