@@ -42,7 +42,7 @@ def start(name: str, number: int, seed: int) -> tuple[str, Curve]:
 
 def hopped(curve: Curve, seed: int) -> Curve:
     """A curve after one of the motions that hops begin with."""
-    options = RelaxOptions()
+    options = RelaxOptions(radius="none")
     point = Run(start_problem(curve, options), curve, options).point
     steps = MOTIONS[seed // 2 % len(MOTIONS)](point, np.random.default_rng(seed))
     path = [leg.end.placed for step in steps for leg in step.legs]

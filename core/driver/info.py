@@ -131,7 +131,7 @@ def info(curve: Curve) -> Info:
     writhe, crossings = writhe_and_crossings(curve) if in_space and few else (None, None)
     kind, rest, smooth, symmetry = knot_type(curve), None, None, None
     if len(curve) <= REST_UP_TO:
-        point = start_problem(curve, RelaxOptions(edge_lengths="keep")).at_curve(curve)
+        point = start_problem(curve, RelaxOptions(edge_lengths="keep", radius="none")).at_curve(curve)
         bound = gradient_bound(RelaxOptions(), curve.mesh, point.energy)
         index = stability(point).index if point.gradient_norm <= bound else None
         rest = Rest(point.energy, point.gradient_norm, bound, index)

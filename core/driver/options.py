@@ -134,7 +134,7 @@ class RelaxOptions:
         "keep",
         "Radius",
         "radius of the rope that the curve stays, one or one for each component; keep: nine tenths of the thickness at "
-        "the start, less only where that leads to a lower minimum; none for penalty methods and paper",
+        "the start, less only where that leads to a lower minimum; none for what grows, penalty methods and paper",
         choices=RADII,
         objects=("a number above 0, or one for each component", _are_radii),
         read=_radius,
@@ -307,7 +307,8 @@ class RelaxOptions:
         meant: dict[str, Any] = {}
         if self.method == "paper":
             meant = {name: value for name, value in AS_IN_THE_PAPER.items() if getattr(self, name) == "auto"}
-        if self.radius == "keep" and (self.method == "paper" or not METHODS[self.method].geometry.prescribes):
+        other = self.method == "paper" or not METHODS[self.method].geometry.prescribes or self.grow != 1.0
+        if self.radius == "keep" and other:
             meant["radius"] = "none"
         return replace(self, **meant) if meant else self
 

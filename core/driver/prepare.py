@@ -104,9 +104,11 @@ def rope_radius(task: Task, options: RelaxOptions) -> FloatArray | None:
         corners = bends[piece] < 1e9 * curve.length
         corners[[0, -1]] |= not curve.mesh.closed[len(parts)]
         parts.append(part[corners] if corners.sum() > 2 else part)
-    radius = np.full(components, 0.9 * thickness(Curve.from_components(parts, curve.mesh.closed)))
+    # no rope can be knotted or linked that is thicker for its length than the Hopf link's; circles could not move
+    thickest = min(thickness(Curve.from_components(parts, curve.mesh.closed)), curve.length / (8.0 * np.pi))
+    radius = np.full(components, 0.9 * thickest)
     for _ in range(40):  # less, where obstacles are nearer than strands
-        if not np.isfinite(radius).all() or radius.max() <= 1e-9 * curve.length:
+        if radius.max() <= 1e-9 * curve.length:
             return None
         if is_rope(curve.mesh, curve.vertices, curve.vertices, radius, task.obstacles):
             return radius

@@ -248,7 +248,10 @@ class Recording:
                 return []
             points = (0.5 * (start.points.astype(np.float64) + end.points.astype(np.float64))).astype(np.float32)
             time = 0.5 * (start.time + end.time)
-            size, radius = Similarity() if self._in_points else self._size(time, points), 0.5 * (start.radius + end.radius)
+            size, radius = (
+                Similarity() if self._in_points else self._size(time, points),
+                0.5 * (start.radius + end.radius),
+            )
             middle = Key(time, points, size=size, radius=radius)
             first = along(start, middle, depth - 1)
             second = first and along(middle, end, depth - 1)

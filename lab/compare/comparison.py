@@ -18,8 +18,8 @@ from ...core.driver.run import iterates
 from ...core.driver.solver import Solver
 from ...core.solve.metrics import METRICS
 
-LEFT_OUT = ("mesh", "grow", "untangle", "radius", "symmetry", "hops")
-LEFT_OUT += ("stability", "escape_saddles", "balance", "time_limit")
+_BEYOND = ("stability", "escape_saddles", "balance", "time_limit")
+LEFT_OUT = ("mesh", "grow", "untangle", "radius", "symmetry", "hops", *_BEYOND)
 """Options of `relax` that a comparison has not: steps of methods are compared as they are, on one mesh."""
 
 

@@ -5,11 +5,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ...base.arguments import number
-from ...descent import NoStep, Step
+from ...descent import NoStep, Point, Step
 from ...energies.components import energy_scale
 from ...energies.rope import Rope
 from ..outcome import Outcome
-from ..run import Change, Move
+from ..run import Change, Move, gradient_bound
 
 
 @dataclass(eq=False)
@@ -28,12 +28,17 @@ class GiveWay(Move):
     _start: float = field(default=0.0, init=False)  # radius before it gave way, if it did
     _energies: list[float] = field(default_factory=list, init=False)  # on this mesh
 
-    def started(self) -> None:
-        self._energies.clear()
-
     def __post_init__(self) -> None:
         begins, keeps = self.run.iterate.index == 0, self.run.options.radius == "keep"
         self._sharp = begins and keeps and self.run.problem.certifiable and self.run.problem.radius is None
+
+    def started(self) -> Change | None:
+        """Nothing is in the way of a curve that is at rest by itself."""
+        self._energies.clear()
+        point = self.run.point
+        own = self._released()
+        at_rest = gradient_bound(self.run.options, point.problem.mesh, own.energy)
+        return Change(point=own) if own is not point and own.gradient_norm <= at_rest else None
 
     def stepped(self, step: Step) -> Change | None:
         self._energies.append(self.run.point.energy)
@@ -43,7 +48,9 @@ class GiveWay(Move):
         return self._where_in_the_way((self._energies[-1 - steps] - self._energies[-1]) / part)
 
     def converged(self, outcome: Outcome) -> Change | None:
-        return self._where_in_the_way(0.0)
+        """Give way, or let go: the barrier is over, and the proof stays, so that the curve is at rest by itself."""
+        own = self._released()
+        return self._where_in_the_way(0.0) or (Change(point=own) if own is not self.run.point else None)
 
     def _where_in_the_way(self, least: float) -> Change | None:
         """A thinner rope, if it promises more than that, and enough."""
@@ -69,10 +76,17 @@ class GiveWay(Move):
         told = "the rope gave way from radius {start:.3g} to {end:.3g}, as it was in its own way"
         return outcome.adding(told, start=self._start, end=float(now.max()))
 
+    def _released(self) -> Point:
+        """The point without the barrier of a rope that may give way."""
+        point = self.run.point
+        free = point.problem.objective.having(Rope, None)
+        return point if self._rope is None else point.changing(objective=free)
+
     @property
     def _rope(self) -> Rope | None:
         """The barrier of a rope that may give way."""
-        return self.run.problem.objective.rope if self.run.options.radius == "keep" else None
+        held = self.run.options.radius != "keep" or self.run.problem.objective.pull is not None
+        return None if held else self.run.problem.objective.rope  # what a hand does is no reason
 
     def _thinner(self) -> Change:
         point = self.run.point

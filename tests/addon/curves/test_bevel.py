@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from blender_scenes import add_curve, add_hopf_link, add_trefoil, in_world, stored
 from mobius_flow.addon.curves import bevel
-from mobius_flow.addon.curves.splines import key_points
 from mobius_flow.addon.curves.recorded import BakedKeys
+from mobius_flow.addon.curves.splines import key_points
 from mobius_flow.core import Curve
 from mobius_flow.core.collision import thickness
 from mobius_flow.core.curve.distances import nearest_strands
@@ -66,7 +66,7 @@ def test_ones_own_never_meets_itself(share, kept):
     curve = knot("goeritz")
     obj = add_curve([curve.vertices])
     obj.data.bevel_depth = depth = share * thickness(curve)
-    assert bpy.ops.curve.mobius_flow_relax() == {"FINISHED"}
+    assert bpy.ops.curve.mobius_flow_relax(radius="keep") == {"FINISHED"}
     frames = BakedKeys([obj]).frames
     nearest = min(nearest_strands(Curve(each.astype(float)), 1.6) for each in frames)
     assert (nearest >= (1.0 - 1e-5) * 2.0 * depth) is kept

@@ -15,6 +15,7 @@ from mobius_flow.core.driver.relax import begin
 from mobius_flow.core.energies.rope import Rope
 from mobius_flow.core.knots import knot, overhand, torus_knot
 
+GROWN = 0.9 * thickness(torus_knot(2, 3, 60))  # what grows has a radius only if it is asked for
 WALL = Obstacle([[-9.0, -9, 0], [9, -9, 0], [0, 18, 0]], [[0, 1, 2]])
 
 
@@ -42,7 +43,10 @@ def kept(task: Task, **options: object) -> float:
         (Task(curve=overhand(60), pins=(0, 59), pin_tangents=True), {}),
         (Task(curve=knot("4_1", 80), obstacles=(WALL,)), {"max_iterations": 10}),
         (Task(curve=knot("5_2", 300)), {"solver": "hierarchical", "max_iterations": 12}),
-        (Task(curve=torus_knot(2, 3, 60)), {"grow": 1.2, "mesh": "fixed", "vertices": 60, "max_iterations": 25}),
+        (
+            Task(curve=torus_knot(2, 3, 60)),
+            {"radius": GROWN, "grow": 1.2, "mesh": "fixed", "vertices": 60, "max_iterations": 25},
+        ),
     ],
     ids=["unknot", "link", "arc", "obstacle", "hierarchical", "growth"],
 )
@@ -53,12 +57,12 @@ def test_nine_tenths_of_the_thickness_are_kept(task: Task, options: dict[str, ob
         pins=task.pins,
         pin_tangents=task.pin_tangents,
     )
-    assert kept(task, radius="keep", **options) >= 0.89
+    assert kept(task, **options) >= 0.89
 
 
 def test_without_a_rope_it_gets_thinner() -> None:
     iterates = []
-    minimize(knot("goeritz"), RelaxOptions(), callback=lambda each: iterates.append(each.curve))
+    minimize(knot("goeritz"), RelaxOptions(radius="none"), callback=lambda each: iterates.append(each.curve))
     assert min(map(thickness, iterates)) < 0.6 * thickness(iterates[0])
 
 
@@ -157,7 +161,16 @@ def test_strands_of_a_rope_move_as_its_radius_allows() -> None:
 
 def test_morphs_keep_no_radius_yet() -> None:
     with pytest.raises(OptionError, match="not by morphs"):
-        morph(knot("3_1"), knot("3_1"), RelaxOptions(radius="keep"))
+        morph(knot("3_1"), knot("3_1"), RelaxOptions(radius=0.1))
+
+
+def test_a_curve_at_rest_by_itself_stays() -> None:
+    """Though it is a rope that is hardly thinner than its own thickness."""
+    rest = minimize(knot("4_1", 60), RelaxOptions(radius="none", vertices=60, mesh="fixed")).curve
+    again = minimize(rest, RelaxOptions(vertices=60, mesh="fixed"))
+    assert again.outcome.converged
+    assert again.iterations == 0
+    assert again.last.radius == (0.9 * thickness(rest),)
 
 
 def test_a_rope_gives_way_only_where_it_acts() -> None:

@@ -5,12 +5,20 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, Mesh, Obstacle, minimize
+from mobius_flow.core import Curve, Mesh, Obstacle, RelaxOptions, minimize
 from mobius_flow.core.collision import is_free
 from mobius_flow.core.curve.distances import nearest_strands
 from mobius_flow.core.keys.motion import Key, Keys, recorded
 from mobius_flow.core.keys.placement import Measure
-from mobius_flow.core.keys.tube import free_radius, radius_beside, rope_radii, rounded, strand_gap, thickest_radius, tube_radii
+from mobius_flow.core.keys.tube import (
+    free_radius,
+    radius_beside,
+    rope_radii,
+    rounded,
+    strand_gap,
+    thickest_radius,
+    tube_radii,
+)
 from mobius_flow.core.knots import knot, smooth_knot
 from shapes import lattice_knot, regular_polygon
 
@@ -163,12 +171,14 @@ def test_tubes_are_not_much_thicker_elsewhere_where_many_strands_are_close():
 def test_a_rope_is_drawn_as_it_is_and_has_room_from_key_to_key(measure):
     """Also where the mesh changes on the way, so that keys have points on edges."""
     iterates = []
-    minimize(knot("8_3"), callback=iterates.append)
+    minimize(knot("8_3"), RelaxOptions(radius="keep"), iterates.append)
     motion, _ = recorded(iterates, measure)
     keys = motion.keys(is_free, 40)
     radii = rope_radii(motion.start.mesh, keys)
     lengths = [Curve(key.points.astype(float), motion.start.mesh).length for key in keys.keys]
-    np.testing.assert_allclose(radii / radii[0], np.outer(lengths, np.ones(motion.start.mesh.size)) / lengths[0], rtol=1e-4)
+    np.testing.assert_allclose(
+        radii / radii[0], np.outer(lengths, np.ones(motion.start.mesh.size)) / lengths[0], rtol=1e-4
+    )
     assert 0.79 * iterates[-1].radius[0] < radii[0, 0] * iterates[0].curve.length / lengths[0] < iterates[-1].radius[0]
     for (a, one), (b, other) in pairwise(zip(keys.keys, radii[:, 0], strict=True)):
         for t in (0.0, 0.5):
