@@ -134,7 +134,7 @@ def compose(
     points, look = [key.points for key in keys.keys], playing.look or DEFAULT
     if radii is None:
         radii = tube_radii(mesh, [each.astype(np.float64) for each in points], frames)
-        radii = np.full_like(radii, radii.min()) if playing.constant_radius else radii
+    radii = np.full_like(radii, radii.min()) if playing.constant_radius else radii
     data = new_curve_data("Curve", mesh)
     data.bevel_depth, data.bevel_resolution = float(radii.max()), 5
     data.use_fill_caps = True  # at the ends of arcs
