@@ -39,7 +39,7 @@ def test_names_come_from_the_registries():
 
 def test_what_auto_means_to_a_method_goes_with_the_method() -> None:
     paper = RelaxOptions(method="paper", untangle="auto")
-    meant = {"barrier": "off", "solver": "dense", "mesh": "fixed", "untangle": "never"}
+    meant = {"barrier": "off", "solver": "dense", "mesh": "fixed", "untangle": "never", "radius": "none"}
     assert vars(paper.resolved) == vars(RelaxOptions()) | {"method": "paper"} | meant
     assert replace(paper, method="lbfgs") == RelaxOptions() == RelaxOptions().resolved
     assert replace(paper, barrier="on").resolved.barrier == "on"

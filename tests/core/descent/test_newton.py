@@ -16,7 +16,7 @@ from mobius_flow.core.solve.saddle.indefinite import FactorisedHessian
 from shapes import lattice_knot, torus_trefoil
 
 EXACT = [name for name in POINTS if name != "hierarchical"]
-FIXED = RelaxOptions(vertices=80, mesh="fixed")
+FIXED = RelaxOptions(radius="none", vertices=80, mesh="fixed")
 
 
 @pytest.mark.parametrize("name", EXACT)

@@ -35,7 +35,7 @@ from solids import plate
 from tasks import check, proved, wanted
 
 VERTICES = 90
-OPTIONS = RelaxOptions(mesh="fixed", vertices=VERTICES, hops=1, seed=1)
+OPTIONS = RelaxOptions(radius="none", mesh="fixed", vertices=VERTICES, hops=1, seed=1)
 SADDLE = torus_knot(3, 4, VERTICES)  # in its most symmetric position, where plain descent ends though it is no minimum
 Recorded = tuple[list[Iterate], Result]
 

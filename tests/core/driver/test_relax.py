@@ -20,7 +20,7 @@ from mobius_flow.core.solve.metrics import MoebiusMetric
 from shapes import hopf_link, lattice_knot, regular_polygon, torus_trefoil
 from torus_energies import torus_knot_minimum
 
-SHORT = RelaxOptions(max_iterations=5)
+SHORT = RelaxOptions(radius="none", max_iterations=5)
 t = 2 * np.pi * np.arange(80) / 80
 FLOWER = (1 + 0.5 * np.cos(3 * t))[:, None] * np.stack([np.cos(t), np.sin(t)], axis=1)
 FOUR = np.stack([np.cos(t), np.sin(t), 0.4 * np.cos(2 * t), 0.4 * np.sin(3 * t)], axis=1)
