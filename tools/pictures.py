@@ -6,11 +6,9 @@
     morph    one famous unknot on its way to another
     cables   strands that run through each other, and six moments on their way to ropes that keep clear
     world    what curves in the world do, before and after a relaxation: world-*.png
+    untangle the README's moving picture: another famous unknot, a rope on its way to the circle
 
-The moving picture is a film, as ffmpeg makes it smaller; speed.png is drawn by benchmarks/speed.py.
-
-    mobius-flow relax examples/tangle.obj untangle.mp4
-    ffmpeg -i untangle.mp4 -vf fps=15,scale=480:-1 -c:v libwebp -loop 0 -quality 55 docs/pictures/untangle.webp
+speed.png is drawn by benchmarks/speed.py.
 """
 
 import sys
@@ -23,12 +21,23 @@ import bpy
 import mobius_flow
 import numpy as np
 from matplotlib.figure import Figure
-from mobius_flow.addon.pictures.export import write_picture
+from mobius_flow.addon.pictures.export import compose, write_picture
 from mobius_flow.addon.pictures.looks import LOOKS
+<<<<<<< HEAD
 from mobius_flow.addon.pictures.materials import bundled, colour_components
 from mobius_flow.addon.pictures.rendering import use_cycles
 from mobius_flow.addon.pictures.stage import Stage, build
 from mobius_flow.core import Curve, Iterate, RelaxOptions, Task, minimize, morph, read_obstacle, separate
+=======
+from mobius_flow.addon.pictures.materials import colour_components
+from mobius_flow.addon.pictures.rendering import empty_scene, render_still, use_cycles, use_workbench
+from mobius_flow.addon.pictures.stage import Stage, build, sky
+from mobius_flow.core import Curve, Iterate, RelaxOptions, Task, minimize, morph, read_curve, read_obstacle, relax
+from mobius_flow.core.collision import is_free
+from mobius_flow.core.keys.motion import Playing, recorded
+from mobius_flow.core.keys.placement import Measure
+from mobius_flow.core.keys.tube import rope_radii
+>>>>>>> 6a20e6a3 (The README's moving picture is drawn by a script, as a rope)
 from mobius_flow.core.knots import knot, overhand
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from PIL import Image
@@ -179,6 +188,32 @@ def world() -> None:
     before_and_after("growth", small, vertices=60, mesh="finer", grow=12.0, max_iterations=90)
 
 
+def untangle() -> None:
+    """Every second frame of the film, which repeats; the first one is the still for those who see no motion."""
+    motion, _ = recorded([*relax(read_curve(ROOT / "examples" / "tangle.obj"))], Measure.RADIUS)
+    playing = Playing().timed(motion)
+    keys, mesh = motion.keys(is_free, playing.timing.length, playing.timing), motion.start.mesh
+    frames = playing.timing.frames(motion.course(keys))
+    scene = empty_scene()
+    use_workbench(scene, 480, 360)
+    compose(scene, keys, frames, mesh, playing, radii=rope_radii(mesh, keys))
+    first, last = playing.timing.scene_range(frames)
+    with tempfile.TemporaryDirectory() as room:
+        paths = [Path(room, f"{frame}.png") for frame in range(first, last + 1, 2)]
+        for path in paths:
+            scene.frame_set(int(path.stem))
+            render_still(scene, path)
+        still, *others = (Image.open(path).convert("RGB") for path in paths)
+        shown = {"save_all": True, "append_images": others, "duration": 1000 // 12, "loop": 0}
+        still.save(TARGET / "untangle.webp", quality=60, method=6, **shown)
+
+
 if __name__ == "__main__":
+<<<<<<< HEAD
     for wanted in sys.argv[1:] or ("knots", "cables", "looks", "morph", "world"):
         {"knots": knots, "cables": cables, "looks": looks, "morph": unknots, "world": world}[wanted]()
+=======
+    drawn = {"knots": knots, "looks": looks, "morph": unknots, "world": world, "untangle": untangle}
+    for wanted in sys.argv[1:] or drawn:
+        drawn[wanted]()
+>>>>>>> 6a20e6a3 (The README's moving picture is drawn by a script, as a rope)

@@ -136,7 +136,7 @@ class Session:
                 raise OptionError(Message("Balance does not go with what is avoided; leave it out, or avoid nothing"))
             # a bevel of the artist's is the rope, unless it meets itself from the start, or is to be fitted
             own = () if continues or goals or ropes or key_options.any_bevel else bevel.own_radii(objects)
-            if own and options.resolved.radius == "keep" and options.untangle != "always":
+            if own and options.resolved.radius == "keep":
                 ends = self.curve.mesh, self.curve.vertices, self.curve.vertices, np.array(own), obstacles
                 options = replace(options, radius=own) if is_rope(*ends) else options
             self.options, self.job, first, size = options, ropes or options, None, None
