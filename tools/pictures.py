@@ -23,21 +23,25 @@ import numpy as np
 from matplotlib.figure import Figure
 from mobius_flow.addon.pictures.export import compose, write_picture
 from mobius_flow.addon.pictures.looks import LOOKS
-<<<<<<< HEAD
 from mobius_flow.addon.pictures.materials import bundled, colour_components
-from mobius_flow.addon.pictures.rendering import use_cycles
-from mobius_flow.addon.pictures.stage import Stage, build
-from mobius_flow.core import Curve, Iterate, RelaxOptions, Task, minimize, morph, read_obstacle, separate
-=======
-from mobius_flow.addon.pictures.materials import colour_components
 from mobius_flow.addon.pictures.rendering import empty_scene, render_still, use_cycles, use_workbench
-from mobius_flow.addon.pictures.stage import Stage, build, sky
-from mobius_flow.core import Curve, Iterate, RelaxOptions, Task, minimize, morph, read_curve, read_obstacle, relax
+from mobius_flow.addon.pictures.stage import Stage, build
+from mobius_flow.core import (
+    Curve,
+    Iterate,
+    RelaxOptions,
+    Task,
+    minimize,
+    morph,
+    read_curve,
+    read_obstacle,
+    relax,
+    separate,
+)
 from mobius_flow.core.collision import is_free
 from mobius_flow.core.keys.motion import Playing, recorded
 from mobius_flow.core.keys.placement import Measure
 from mobius_flow.core.keys.tube import rope_radii
->>>>>>> 6a20e6a3 (The README's moving picture is drawn by a script, as a rope)
 from mobius_flow.core.knots import knot, overhand
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from PIL import Image
@@ -209,11 +213,6 @@ def untangle() -> None:
 
 
 if __name__ == "__main__":
-<<<<<<< HEAD
-    for wanted in sys.argv[1:] or ("knots", "cables", "looks", "morph", "world"):
-        {"knots": knots, "cables": cables, "looks": looks, "morph": unknots, "world": world}[wanted]()
-=======
-    drawn = {"knots": knots, "looks": looks, "morph": unknots, "world": world, "untangle": untangle}
+    drawn = {"knots": knots, "cables": cables, "looks": looks, "morph": unknots, "world": world, "untangle": untangle}
     for wanted in sys.argv[1:] or drawn:
         drawn[wanted]()
->>>>>>> 6a20e6a3 (The README's moving picture is drawn by a script, as a rope)
