@@ -41,6 +41,8 @@ class GiveWay(Move):
         return Change(point=own) if own is not point and own.gradient_norm <= at_rest else None
 
     def stepped(self, step: Step) -> Change | None:
+        if self._has_let_go and step.limited_by is not None:
+            return self._thinner()
         self._energies.append(self.run.point.energy)
         steps, part = self.later if self._start else self.first
         if len(self._energies) <= steps or len(self._energies) % self.every:
@@ -65,7 +67,8 @@ class GiveWay(Move):
 
     def stuck(self, found: NoStep) -> Change | None:
         rope = self._rope  # which may have nothing to do with it
-        return None if rope is None or not rope.value(self.run.point.curve) else self._thinner()
+        in_the_way = found.limited_by if rope is None else rope.value(self.run.point.curve)
+        return self._thinner() if in_the_way and (rope is not None or self._has_let_go) else None
 
     def summarised(self, outcome: Outcome) -> Outcome:
         now = self.run.problem.radius
@@ -85,8 +88,18 @@ class GiveWay(Move):
     @property
     def _rope(self) -> Rope | None:
         """The barrier of a rope that may give way."""
-        held = self.run.options.radius != "keep" or self.run.problem.objective.pull is not None
-        return None if held else self.run.problem.objective.rope  # what a hand does is no reason
+        return self.run.problem.objective.rope if self._may else None
+
+    @property
+    def _has_let_go(self) -> bool:
+        """Whether the curve is proved to be a rope, but no barrier is left."""
+        problem = self.run.problem
+        return self._may and problem.radius is not None and problem.objective.rope is None
+
+    @property
+    def _may(self) -> bool:
+        """Whether the rope may give way: what a hand does is no reason."""
+        return self.run.options.radius == "keep" and self.run.problem.objective.pull is None
 
     def _thinner(self) -> Change:
         point = self.run.point
