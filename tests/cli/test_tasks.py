@@ -48,7 +48,7 @@ def test_obstacles_are_avoided_reported_and_verified(run):
     assert report()["options"]["avoid"] == ["ceiling.obj", "floor.obj", "ring.txt"]
     status, told, _ = run("verify", "t.npz")
     assert status == 0
-    assert told.strip().endswith("in 1 stage, nor with 3 obstacles")
+    assert "in 1 stage, nor with 3 obstacles; a rope of radius" in told
     verdict = json.loads(run("verify", "t.npz", "--json")[1])
     assert (verdict["obstacles"], verdict["obstacle"]) == (3, None)
 

@@ -24,7 +24,7 @@ def alone(curve, method, stages=(), **options):
 def test_steps_are_compared_on_one_mesh(monkeypatch):
     """Also of curves that `relax` would begin with fewer vertices, or untangle."""
     change(monkeypatch, CoarseStart, min_vertices=100)
-    options = RelaxOptions(vertices=600, max_iterations=40)
+    options = RelaxOptions(radius="none", vertices=600, max_iterations=40)
     (history,) = compare(torus_trefoil(600), ["cg"], options, 60.0)
     fixed = minimize(torus_trefoil(600), replace(options, method="cg", mesh="fixed", edge_lengths="keep"))
     assert (history.energy, history.status) == (fixed.energies, fixed.status.value)
@@ -34,14 +34,16 @@ def test_steps_are_compared_on_one_mesh(monkeypatch):
 def test_methods_are_compared_as_they_are():
     """L-BFGS alone, without the Newton steps that it ends with elsewhere."""
     history = alone(torus_trefoil(60), "lbfgs", tolerance=1e-4)
-    usual = minimize(torus_trefoil(60), RelaxOptions(vertices=60, mesh="fixed", edge_lengths="keep"))
+    usual = minimize(torus_trefoil(60), RelaxOptions(radius="none", vertices=60, mesh="fixed", edge_lengths="keep"))
     assert history.status == "converged"
     assert history.gradient_norm[-1] > 1e3 * usual.last.gradient_norm
 
 
 def test_tasks_are_compared_with_their_pins():
     pins = {"pins": (3, 20, 41), "pin_tangents": True}
-    task, options = wanted(torus_trefoil(60), **pins, vertices=100, max_iterations=4, edge_lengths="keep")
+    task, options = wanted(
+        torus_trefoil(60), **pins, vertices=100, max_iterations=4, edge_lengths="keep", radius="none"
+    )
     (history,) = compare(task, ["lbfgs"], options, 60.0)
     assert history.energy == minimize(task, options).energies
 
@@ -69,7 +71,10 @@ def test_lengths_stay_and_penalties_are_left_out():
 def test_curves_of_some_iterates_are_kept():
     history = alone(torus_trefoil(60), "cg", (0, 2, 99), max_iterations=3)
     iterates = list(
-        relax(torus_trefoil(60), RelaxOptions(method="cg", vertices=60, max_iterations=3, edge_lengths="keep"))
+        relax(
+            torus_trefoil(60),
+            RelaxOptions(radius="none", method="cg", vertices=60, max_iterations=3, edge_lengths="keep"),
+        )
     )
     assert list(history.stages) == [0, 2, 3]
     for k, curve in history.stages.items():
