@@ -140,15 +140,16 @@ def _near(
             u, v, w, back = u[there], v[there], w[there], back[pair]
             ends = [(i[pair], np.where(back, u, 1.0 - u)), (i[pair], np.where(back, 1.0, 0.0))]
             ends += [(j[pair], np.where(back, 1.0 - s, s)) for s in (v, w)]
-            parts = tuple(
+            start, end = (
                 np.concatenate([p[:, mesh.tails[edge]] + share * e[:, edge] for edge, share in ends], axis=1)
                 for p, e in zip(points, spans, strict=True)
             )
-            vertices, width = np.arange(4 * len(pair)).reshape(4, -1), 2.0 * radius[component[i[pair]]]
+            vertices: IntArray = np.arange(4 * len(pair)).reshape(4, -1)
+            width = 2.0 * radius[component[i[pair]]]
             if steps == _STEPS[-1]:
-                yield parts, vertices, np.stack([i[pair], j[pair]]), width
+                yield (start, end), vertices, np.stack([i[pair], j[pair]]), width
                 continue
-            near = np.unique(pair[march(parts[0], parts[1], vertices, np.zeros(len(pair)), 1.0, width) < 1.0])
+            near = np.unique(pair[march(start, end, vertices, np.zeros(len(pair)), 1.0, width) < 1.0])
             if not len(near):
                 break
             i, j, ways, half = i[near], j[near], ways[:, near], half[near]

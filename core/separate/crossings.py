@@ -97,9 +97,8 @@ def lead_apart(
     A = sp.csr_array((values.ravel(), (rows.ravel(), columns.ravel())), shape=(k, p.size))[:, np.repeat(~held, 3)]
     K = sp.kron(stiffness[~held][:, ~held], sp.eye_array(3))
     firm = 1e6 * float(stiffness.diagonal().max())
-    u = np.zeros(p.size)
-    u[np.repeat(~held, 3)] = spsolve((K + firm * A.T @ A).tocsc(), firm * A.T @ goal)
-    u = u.reshape(-1, 3)
+    u = np.zeros_like(p)
+    u[~held] = spsolve((K + firm * A.T @ A).tocsc(), firm * A.T @ goal).reshape(-1, 3)
     others = contacts(curve, radius, curve.edge_lengths, 0.1, obstacles)
     apart = others.value * np.where(others.edges[:, 1] < 0, 1.0, 2.0) * float(radius.min())
     room = float(apart[apart > meets].min(initial=0.1 * scale))
