@@ -107,10 +107,11 @@ def rope_radius(task: Task, options: RelaxOptions) -> FloatArray | None:
     # no rope can be knotted or linked that is thicker for its length than the Hopf link's; circles could not move
     thickest = min(thickness(Curve.from_components(parts, curve.mesh.closed)), curve.length / (8.0 * np.pi))
     radius = np.full(components, 0.9 * thickest)
-    for _ in range(40):  # less, where obstacles are nearer than strands
+    for _ in range(40):  # less, where obstacles are nearer than strands, or the barrier has no room at a sharp corner
         if radius.max() <= 1e-9 * curve.length:
             return None
-        if is_rope(curve.mesh, curve.vertices, curve.vertices, radius, task.obstacles):
+        holds = is_rope(curve.mesh, curve.vertices, curve.vertices, radius, task.obstacles)
+        if holds and np.isfinite(Rope(radius).value(curve)):
             return radius
         radius *= 0.8
     return None

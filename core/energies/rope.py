@@ -2,11 +2,12 @@
 
     E = w Σ (ℓ_I ℓ_J / r²) φ((d_IJ − 2r)/(c − 2r)) + w Σ (ℓ_I / 2r) φ((ϱ − r)/(b − r)),   φ(z) = −(1 − z)² log z,
 
-where φ = 0 from z = 1 on.  The first sum is over pairs of edges at distance d that are more than half a circle of the
-radius apart along the curve; between ropes of two radii 2r is their sum.  The second is over both ends of every edge,
-with the bending radius ϱ = ℓ/(2 tan(θ/2)) at the corner of angle θ there (Rawdon, Experimental Mathematics 12, 2003).
-The barrier begins at c = 3r, less than half a circle is long, as else straight pieces would feel it, and b = 2r.  φ is
-that of incremental potential contact (Li et al., ACM Trans. Graphics 39, 2020).
+where φ = 0 from z = 1 on. The first sum is over pairs of edges at distance d that are more than half a circle of the
+radius apart along the curve, with arcs of the radius for corners; between ropes of two radii 2r is their sum. The
+second is over both ends of every edge, with the bending radius ϱ = ℓ/(2 tan(θ/2)) at the corner of angle θ there
+(Rawdon, Experimental Mathematics 12, 2003). The barrier begins at c = 3r, less than half a circle is long, as else
+straight pieces would feel it, and b = 2r. φ is that of incremental potential contact (Li et al., ACM Trans. Graphics
+39, 2020).
 """
 
 from dataclasses import dataclass, field, replace
@@ -103,8 +104,11 @@ class Rope:
             seen, component = self._seen(curve), mesh.edge_component
             cut = 2.0 * self.reach * float(self.radius.max()) + float(curve.edge_lengths.max())
             i, j = cKDTree(curve.midpoints).query_pairs(cut + 4.0 * margin, output_type="ndarray").T
-            ell = seen.edge_lengths
-            position, around = np.cumsum(ell) - 0.5 * ell, np.add.reduceat(ell, mesh.edge_offsets[:-1])
+            ell, tails = seen.edge_lengths, mesh.tails
+            # at each edge's tail an arc of the radius is shorter than the corner, of angle θ = 2 arctan t
+            tangent = 0.5 * np.minimum(ell[mesh.incoming], ell[mesh.outgoing]) / np.maximum(bending_radii(seen), 1e-300)
+            saved = 2.0 * r * (tangent - np.arctan(tangent))[tails]
+            position, around = np.cumsum(ell - saved) - 0.5 * ell, np.add.reduceat(ell - saved, mesh.edge_offsets[:-1])
             arc = np.abs(position[i] - position[j])
             arc = np.minimum(arc, np.where(mesh.closed, around, np.inf)[component[i]] - arc)
             far = (component[i] != component[j]) | (arc > np.pi * r[i] + 0.5 * (ell[i] + ell[j]))

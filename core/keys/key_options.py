@@ -72,10 +72,10 @@ class Course(NamedTuple):
         share = np.average([self._share(part) for part in parts], axis=0, weights=[0.6, 0.35, 0.05])
         # then nothing is more than twice as fast as half of the film
         time, way = np.diff(share), np.diff(self._share(self.distance))
-        for _ in range(4):
+        for _ in range(4 if len(time) else 0):
             speed = way / np.maximum(time, 1e-12)
             order = np.argsort(speed)
-            median = speed[order][np.searchsorted(np.cumsum(time[order]), 0.5 * time.sum())] if len(time) else 1.0
+            median = float(np.interp(0.5 * time.sum(), np.cumsum(time[order]), speed[order]))
             time = np.maximum(time, way / (2.0 * median)) if median > 0.0 else time
         return self._share(np.concatenate([[0.0], np.cumsum(time)]))
 

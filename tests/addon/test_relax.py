@@ -98,7 +98,8 @@ def test_a_link_keeps_its_splines_and_everything_else():
     data.bevel_depth, data.bevel_resolution, data.resolution_u = 0.125, 3, 5
     start = stored(data).astype(np.float64)
     relax(vertices=60, **BOTTOM)
-    result = minimize(Curve.from_components([start[:24], start[24:]]), RelaxOptions(vertices=60, **BOTTOM)).curve
+    wanted = RelaxOptions(vertices=60, radius=(0.125, 0.125), **BOTTOM)
+    result = minimize(Curve.from_components([start[:24], start[24:]]), wanted).curve
     np.testing.assert_array_equal(stored(obj.data), result.vertices.astype(np.float32))
     data = obj.data
     assert [len(spline.points) for spline in data.splines] == [*result.mesh.component_sizes]
@@ -162,7 +163,7 @@ def add_unbalanced(n):
 def test_grab_ends_balanced_unless_something_is_in_the_way(capfd):
     """A knot that was pulled hard would stay small on a large ring."""
     obj = add_unbalanced(60)
-    assert bpy.ops.curve.mobius_flow_grab(vertices=60) == {"FINISHED"}
+    assert bpy.ops.curve.mobius_flow_grab(vertices=60, radius="none") == {"FINISHED"}
     assert "balanced: bending reduced" in capfd.readouterr().out
     bpy.ops.curve.mobius_flow_clear()
     pins.pin(obj.data.splines[0], np.arange(60) == 7)

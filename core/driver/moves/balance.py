@@ -108,6 +108,8 @@ class Balance(Move):
     def way(self, point: Point) -> tuple[Step, ...]:
         """Proved steps to the reachable Möbius image of least bending, in its own problem; empty if none pays."""
         images = MoebiusImages(point.curve, point.problem.constraints.lengths)
+        # a rope that only keeps its thickness is over: what bends less has strands that are nearer
+        own = point.problem.as_rope(None) if self.run.options.radius == "keep" else point.problem
         # also less than the identity's image: a decrease by smoothing alone is no gain, as the flow would undo it
         still = images.at(np.eye(point.curve.dimension + 1)[0])
         enough = (1.0 - self.gain) * min(bending(point.curve), bending(still))
@@ -122,7 +124,7 @@ class Balance(Move):
             for part in image.mesh.slices:
                 lengths[part] *= image.edge_lengths[part].sum() / lengths[part].sum()
             blocks = tuple(block.on(image) for block in constraints.blocks)
-            problem = replace(point.problem, constraints=replace(constraints, lengths=lengths, blocks=blocks))
+            problem = replace(own, constraints=replace(constraints, lengths=lengths, blocks=blocks))
             for end in (q, -q):  # the same map, with the pole coming from either side
                 if way := self._way(point, images, end, problem):
                     return way

@@ -128,6 +128,15 @@ def test_edges_of_a_rope_are_split_as_its_bending_radii_bear(name: str) -> None:
             assert least >= (1 - 1e-9) * rope.min()
 
 
+def test_sharp_corners_leave_a_thinner_rope_or_none() -> None:
+    """Near a corner of 120° strands come nearer than two radii, as far along as half a circle is long."""
+    triangle = Curve([[0.0, 0, 0], [1, 0, 0], [0.5, 0.75**0.5, 0]])
+    result = minimize(triangle, RelaxOptions(max_iterations=3))
+    assert result.certified
+    assert result.last.radius is not None
+    assert np.isfinite(result.energies).all()
+
+
 def test_a_given_radius_does_not_give_way() -> None:
     start = knot("8_10", 100)
     radius = 0.95 * thickness(start)
