@@ -12,12 +12,26 @@ from .objective import Objective, Weighted
 from .pull import Bending
 from .quadrature import Rule
 
-_SUMS = (MoebiusEnergy(), VERTEX_ENERGY, EDGE_ENERGY, moebius_kpoint(2), moebius_kpoint(3), TANGENT_POINT_ENERGY)
-ENERGIES: Mapping[str, Energy] = {energy.name: energy for energy in _SUMS}
+ENERGIES: Mapping[str, Energy] = {
+    energy.name: energy
+    for energy in (
+        MoebiusEnergy(),
+        VERTEX_ENERGY,
+        EDGE_ENERGY,
+        moebius_kpoint(2),
+        moebius_kpoint(3),
+        TANGENT_POINT_ENERGY,
+    )
+}
 """Every energy that users can choose, by name; the first is the default."""
 
+_TERMS: list[Term] = [
+    Bending(),
+]
 TERMS: Mapping[str, Term] = Table(
-    "mobius_flow.terms", lambda it: isinstance(it, Term) and not isinstance(it, type), {Bending.name: Bending()}
+    "mobius_flow.terms",
+    lambda it: isinstance(it, Term) and not isinstance(it, type),
+    {term.name: term for term in _TERMS},
 )
 """What users can add to an energy, by name; packages join by entry points in ``mobius_flow.terms``."""
 

@@ -7,7 +7,14 @@ from .local import H1Metric, H2Metric, L2Metric, WithoutRule
 from .moebius import FractionalMetric, MoebiusMetric
 
 METRICS: Mapping[str, Metric] = {
-    metric.name: metric for metric in (L2Metric(), H1Metric(), FractionalMetric(), H2Metric(), MoebiusMetric())
+    metric.name: metric
+    for metric in (
+        L2Metric(),
+        H1Metric(),
+        FractionalMetric(),
+        H2Metric(),
+        MoebiusMetric(),
+    )
 }
 """Every metric that users can choose, by name."""
 
