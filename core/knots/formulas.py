@@ -12,6 +12,7 @@ from ..curve import Curve, Mesh, cubic_spline, evenly, nearest_strands
 from ..curve.tube import normals, turned
 from .diagrams import linking_numbers
 from .inscribed import arc_steps, inscribed
+from .ropes import ROPES
 
 
 @checked
@@ -84,8 +85,8 @@ def freedman(vertices: int | None = None) -> Curve:
     return inscribed(Curve(np.concatenate([middle + across, last, (middle - across)[::-1], first])), vertices)
 
 
-FORMULAS: Mapping[str, Callable[[int | None], Curve]] = {"overhand": overhand, "freedman": freedman}
-"""Curves from formulas that have names."""
+FORMULAS: Mapping[str, Callable[[int | None], Curve]] = {"overhand": overhand, "freedman": freedman, **ROPES}
+"""Curves from formulas and splines that have names."""
 
 
 MAX_STRANDS, MAX_TURNS = 12, 100

@@ -74,6 +74,7 @@ _PLAT = re.compile(r"plat\((?P<numbers>[^()#]*)(?P<end>\)?)")
 _NUMBER = re.compile(r"[+-]?\d{1,18}", re.ASCII)
 _FORMS = "write T(p,q) or braid(1,-2,...)"
 _HARD = {name.replace("-", ""): name for name in HARD_UNKNOTS}
+_BY_ITSELF = {name.replace("-", ""): make for name, make in FORMULAS.items()}
 _TABLE = {name.lower(): name for name in KNOTS}
 _WORDS = {**ALIASES, **ROLFSEN}
 
@@ -95,7 +96,7 @@ def knot(name: str, vertices: int | None = None) -> Curve:
     ``figure-eight``), those of larger tables (``K11n34``, ``L10a100``) where spherogram is installed, torus knots
     ``T(2,5)`` or ``torus(2,5)``, braids ``braid(1,-2,1,-2)``, ``{1,-2,1,-2}`` or ``BR[3,{1,-2,1,-2}]``, mirror images
     ``m3_1``, and connected sums ``3_1#m3_1``; also, by themselves, plats of braids ``plat(2,2,-1,2)``, the diagrams of
-    :data:`HARD_UNKNOTS` (``goeritz``), the curves of :data:`FORMULAS` (``overhand``, ``freedman``), and codes of
+    :data:`HARD_UNKNOTS` (``goeritz``), the curves of :data:`FORMULAS` (``overhand``, ``bowline``), and codes of
     diagrams (``DT: [4 6 2]``, ``PD[X[1,5,2,4],...]``, ``Gauss: 1 -2 3 -1 2 -3``, and lists in brackets as SnapPy and
     KnotInfo have them).
 
@@ -117,8 +118,8 @@ def knot(name: str, vertices: int | None = None) -> Curve:
     if is_code(name) and "#" not in name:
         return coded_knot(name, vertices)
     by_itself = re.sub(r"[\s_-]", "", _plain(name))
-    if by_itself in FORMULAS:
-        return FORMULAS[by_itself](vertices)
+    if by_itself in _BY_ITSELF:
+        return _BY_ITSELF[by_itself](vertices)
     if by_itself in _HARD:
         return diagram_knot(HARD_UNKNOTS[_HARD[by_itself]], vertices)
     return braid_closure(braid_word(name), vertices)

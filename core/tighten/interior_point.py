@@ -76,9 +76,11 @@ class InteriorPoint:
 
     @property
     def excess(self) -> float:
-        """The length, of arcs beyond the distance of their ends."""
-        first, last = (self.curve.vertices[ends] for ends in self.curve.mesh.ends.T)
-        return self.curve.length - float(np.linalg.norm(last - first, axis=1).sum())
+        """The length, less how far out ends are in their own directions: of straight ropes nothing is left."""
+        x, (first, last) = self.curve.vertices, self.curve.mesh.ends.T
+        ends, inner = np.append(first, last), np.append(first + 1, last - 1)
+        outward = (x[ends] - x[inner]) / np.linalg.norm(x[ends] - x[inner], axis=1)[:, None]
+        return self.curve.length - float(np.sum(outward * x[ends]))
 
     def step(self) -> tuple[float, float]:
         """Take a step; the share of Newton's that is taken, and by how much the barrier function was to fall."""

@@ -162,7 +162,7 @@ def test_rational_knots_and_others_are_plats(name: str) -> None:
 
 def test_listed_names_are_names() -> None:
     names = knot_names()
-    assert {"3_1", "L5a1", "figure-eight", "haken"} < set(names)
+    assert {"3_1", "L5a1", "figure-eight", "haken", "sheet-bend"} < set(names)
     no_words = {*HARD_UNKNOTS, *FORMULAS, "0_1", "unknot", "circle"}
     assert all(name in no_words or braid_word(name) for name in names)
 
