@@ -128,6 +128,27 @@ def test_an_overhand_knot_is_pulled_by_its_ends():
     assert iterates[-1].curve.length == pytest.approx(loose.length, rel=1e-6)  # no rope is lost
 
 
+@pytest.mark.parametrize(("name", "held"), [("open-figure-eight", 27.4), ("open-granny", 30.2)])
+def test_rope_knots_are_pulled_tight_by_their_ends(name, held):
+    loose = knot(name)
+    iterates, outcome = run(loose, vertices=200)
+    assert outcome.converged, outcome.message
+    check(iterates)
+    last = iterates[-1].curve
+    assert last.component_lengths == pytest.approx(loose.component_lengths, rel=3e-3)  # no rope is lost
+    outermost = np.ptp(last.vertices[:, 0]) - np.ptp(loose.vertices[:, 0])
+    assert outermost > 10.0 * iterates[-1].radius[0]
+    assert held < float(outcome.message.split(" radii")[0].split()[-1]) < 1.03 * held  # of 400 vertices
+
+
+@pytest.mark.parametrize("shift", [0.0, 7.0])
+def test_of_a_bend_the_rope_counts_that_its_ends_could_give(shift):
+    """Of two bights whose ends reach out by nine: what is left of the length is between the legs, twice two."""
+    bight = np.array([[-9.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0], [-9.0, -1.0, 0.0]])
+    bend = Curve.from_components([bight + shift, bight * [-1.0, 1.0, 1.0] + [0.0, 0.0, 5.0] + shift], (False, False))
+    assert InteriorPoint(bend, 1.0, lambda vertices: True).excess == pytest.approx(4.0)
+
+
 def test_a_rope_without_a_knot_becomes_straight():
     t = np.linspace(0.0, 3.0, 40)[:, None]
     iterates, outcome = run(Curve(t * [1, 0, 0] + 0.2 * np.sin(t) * [0, 1, 0], Mesh((40,), (False,))), vertices=200)
