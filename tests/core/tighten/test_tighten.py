@@ -143,10 +143,10 @@ def test_rope_knots_are_pulled_tight_by_their_ends(name, held):
 
 @pytest.mark.parametrize("shift", [0.0, 7.0])
 def test_of_a_bend_the_rope_counts_that_its_ends_could_give(shift):
-    """Of two bights whose ends reach out by nine: what is left of the length is between the legs, twice two."""
-    bight = np.array([[-9.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0], [-9.0, -1.0, 0.0]])
+    """Of two bights whose ends reach out by nine: what is left of the length is between the legs, twice six."""
+    bight = np.array([[-9.0, 3.0, 0.0], [0.0, 3.0, 0.0], [0.0, -3.0, 0.0], [-9.0, -3.0, 0.0]])
     bend = Curve.from_components([bight + shift, bight * [-1.0, 1.0, 1.0] + [0.0, 0.0, 5.0] + shift], (False, False))
-    assert InteriorPoint(bend, 1.0, lambda vertices: True).excess == pytest.approx(4.0)
+    assert InteriorPoint(bend, 1.0, lambda vertices: True).excess == pytest.approx(12.0)
 
 
 def test_a_rope_without_a_knot_becomes_straight():
