@@ -65,12 +65,13 @@ def _weighted(text: str) -> tuple[tuple[str, float]]:
         raise OptionError(f"{text!r:.40} is not NAME=WEIGHT, such as bending=0.1") from None
 
 
-def _radius(text: str) -> str | tuple[float, ...]:
+def _radius(text: str) -> str | float | tuple[float, ...]:
     """A word, or numbers with commas between."""
     if text in RADII:
         return text
     try:
-        return tuple(map(float, text.split(",")))
+        radii = tuple(map(float, text.split(",")))
+        return radii if len(radii) > 1 else radii[0]
     except ValueError:
         raise OptionError(
             f"radius is {text!r:.40}; give keep, none, or a number such as 0.1, or several: 0.1,0.2"

@@ -1,12 +1,12 @@
 """From a task and options to the start, and the problem that is solved; what is not the program's own is tried."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base import CurveError, FloatArray, IntArray, Message, OptionError
-from ..collision import is_free, is_rope, minimal_gap, rope_motion, survives_rounding, thickness
+from ..base import CurveError, FloatArray, IntArray, Message, OptionError, Place
+from ..collision import is_free, is_rope, minimal_gap, rope_motion, survives_rounding, thickness, written
 from ..curve import TAUT, Curve, Mesh, Obstacle, arcs, at_edges, check_closed, free_edges, spans
 from ..curve.measures import bending_radii
 from ..curve.refine import Resolution, graded_spacing, normalised, refined_alike
@@ -88,16 +88,20 @@ def rope_radius(task: Task, options: RelaxOptions) -> FloatArray | None:
             raise OptionError(f"radius has {len(given)} numbers; give one, or {components}, one for each component")
         radius = np.broadcast_to(given, components).astype(np.float64)
         found = rope_motion(curve.mesh, curve.vertices, curve.vertices, radius, task.obstacles)
-        if found.proved:
+        if found.proved and _has_room(curve, radius):
             return radius
-        assert found.contact is not None
+        sharpest = int(bending_radii(curve).argmin())
+        place = at_edges(curve, found.contact.edges).position if found.contact else tuple(curve.vertices[sharpest])
+        kept = rope_radius(task, replace(options, radius="keep"))
         thin = (
-            "the curve is no rope of radius {radius:.4g}: {contact} are too near to each other, or the curve bends too "
-            "sharply between them; its thickness is {thickness:.4g}, so give a smaller radius, or more room"
+            "the curve is no rope of radius {radius:.4g}: strands are too near to each other, or it bends too sharply, "
+            "near {place}; it is one of radius {kept:.4g}, so give a smaller radius, or more room"
         )
         raise CurveError(
-            Message(thin, radius=float(radius.max()), contact=found.contact.message, thickness=thickness(curve)),
-            at_edges(curve, found.contact.edges),
+            Message(
+                thin, radius=radius.max(), place=written(np.array(place)), kept=0.0 if kept is None else kept.min()
+            ),
+            Place((), place),  # vertices of the refined curve mean nothing to the user
         )
     bends, parts = bending_radii(curve), list[FloatArray]()
     for part, piece in zip(curve.components, curve.mesh.slices, strict=True):  # without vertices on edges
@@ -110,11 +114,15 @@ def rope_radius(task: Task, options: RelaxOptions) -> FloatArray | None:
     for _ in range(40):  # less, where obstacles are nearer than strands, or the barrier has no room at a sharp corner
         if radius.max() <= 1e-9 * curve.length:
             return None
-        holds = is_rope(curve.mesh, curve.vertices, curve.vertices, radius, task.obstacles)
-        if holds and np.isfinite(Rope(radius).value(curve)):
+        if is_rope(curve.mesh, curve.vertices, curve.vertices, radius, task.obstacles) and _has_room(curve, radius):
             return radius
         radius *= 0.8
     return None
+
+
+def _has_room(curve: Curve, radius: FloatArray) -> bool:
+    """Whether the barrier is finite: beside a lone sharp corner it asks for more than the proof, which rounds it."""
+    return bool(np.isfinite(Rope(radius).frozen_at(curve).value(curve)))
 
 
 def target_lengths(start: Curve, pins: IntArray, obstacles: Sequence[Obstacle], options: RelaxOptions) -> FloatArray:

@@ -94,7 +94,7 @@ class TimeLeft:
         bound = gradient_bound(self._options, iterate.curve.mesh, iterate.energy)
         self._vertices, self._index = len(iterate.curve), iterate.index
         self._times.append(self._clock())
-        self.distances.append(math.log(max(iterate.gradient_norm, bound) / bound))
+        self.distances.append(math.log(max(iterate.gradient_norm / bound, 1.0)) if bound else 0.0)
 
     @property
     def seconds(self) -> float | None:

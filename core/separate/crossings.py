@@ -103,10 +103,10 @@ def lead_apart(
     apart = others.value * np.where(others.edges[:, 1] < 0, 1.0, 2.0) * float(radius.min())
     room = float(apart[apart > meets].min(initial=0.1 * scale))
     places = np.einsum("kc,kcm->km", shares[:, :2], p[ends[:, :2]])[met]
-    places = np.where(np.abs(places) <= rounding, 0.0, places)
     _, first, number = np.unique(passes[i][met] * mesh.edges + passes[j][met], return_index=True, return_inverse=True)
     lower, upper = (mesh.edge_component[each[met][first]].tolist() for each in (i, j))
-    middles = [tuple(places[number == k].mean(axis=0).tolist()) for k in range(len(first))]
-    crossings = [Crossing(*each) for each in zip(upper, lower, middles, strict=True)]
+    middles = np.array([places[number == k].mean(axis=0) for k in range(len(first))]).reshape(-1, 3)
+    middles = np.where(np.abs(middles) <= rounding, 0.0, middles)
+    crossings = [Crossing(*each) for each in zip(upper, lower, map(tuple, middles.tolist()), strict=True)]
     furthest = max(float(np.linalg.norm(u, axis=1).max()), 1e-300)
     return p + 0.4 * room / furthest * u, crossings

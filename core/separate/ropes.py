@@ -116,12 +116,15 @@ class Ropes:
             across = across * (np.eye(3) - tau[:, :, None] * tau[:, None])
             g = g + (along.T @ tension).reshape(n, 3)
             H = H + INEXTENSIBLE * along.T @ along + spread.T @ sp.block_diag([*across], format="csr") @ spread
-        factor = splu(
-            H[self.free][:, self.free].tocsc(),
-            permc_spec="MMD_AT_PLUS_A",
-            diag_pivot_thresh=0.0,
-            options={"SymmetricMode": True},
-        )
+        try:
+            factor = splu(
+                H[self.free][:, self.free].tocsc(),
+                permc_spec="MMD_AT_PLUS_A",
+                diag_pivot_thresh=0.0,
+                options={"SymmetricMode": True},
+            )
+        except RuntimeError:  # singular to working precision: the barrier has outgrown all else
+            return None, 0.0, 0.0
         flat = np.zeros(3 * n)
         flat[self.free] = -factor.solve(g.ravel()[self.free])
         move, decrement = flat.reshape(n, 3), -float(g.ravel() @ flat)

@@ -39,7 +39,8 @@ class SeparateOptions:
     def __post_init__(self) -> None:
         radii = np.ravel(self.radius)
         if radii.dtype.kind not in "iuf" or not (len(radii) and np.isfinite(radii).all() and (radii > 0.0).all()):
-            raise OptionError(f"radius is {self.radius!r:.60}; it must be a number above 0, or one for each component")
+            told = ", ".join(map(str, radii))
+            raise OptionError(f"radius is {told:.60}; it must be a number above 0, or one for each component")
         object.__setattr__(self, "radius", tuple(map(float, radii)))
         if self.over is not None:
             check_known("over", self.over, tuple(AXES))

@@ -111,7 +111,7 @@ class InteriorPoint:
             falls = value <= now - 1e-4 * share * decrement + 1e-13 * abs(now) and bool((values > 0.02 * c).all())
             return (there, value, values) if falls and self._is_inside(there) and self.proved(there) else None
 
-        now, longest = self._barrier(x)[0], LONGEST / float(np.linalg.norm(dx, axis=1).max())
+        now, longest = self._barrier(x)[0], LONGEST / max(float(np.linalg.norm(dx, axis=1).max()), 1e-12)
         share = min(1.0, longest)
         # walls are curved: the way bends so that constraints change as they would along a straight one
         missed = c + share * contacts.along(first, dx) - contacts.values(x + share * dx)

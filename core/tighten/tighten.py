@@ -120,7 +120,14 @@ def tightening(task: Task, options: TightenOptions) -> Relaxation:
     thick = rope_radius(start, RelaxOptions(radius="keep"))
     if thick is None:
         raise CurveError("the curve is no rope: a corner is too sharp, or strands are too near; smooth or relax it")
-    work = BLAS.bounding(_tightened(start, float(thick.min()), coarse, options))
+    unit, away = float(thick.min()), float(np.abs(start.curve.vertices.mean(axis=0)).max())
+    if away > 1e3 * unit:  # of such coordinates too few digits are left for strands that touch
+        raise CurveError(
+            f"the curve is {away:.3g} from the origin, too far for ropes of radius {unit:.3g}; move it there"
+        )
+    if not start.curve.mesh.all_closed:  # which are not scaled until they fit
+        unit = min(unit, 0.9 * thickness(start.curve))
+    work = BLAS.bounding(_tightened(start, unit, coarse, options))
     if options.time_limit is None:
         return work
     return within(TimeLimit(options.time_limit, used=time.perf_counter() - began), work)
@@ -168,6 +175,8 @@ def _tightened(start: Task, unit: float, coarse: int, wanted: TightenOptions) ->
     pressing = tuple(Strut(*each) for each in struts if each[2] > 1e-4)
     outcome = Tightened(status, (said,), ropelength=ropelength, gap=gap, residual=residual, struts=pressing)
     if not rope.curve.mesh.all_closed:
+        if point.excess < 1e-3:
+            return outcome.adding("the rope is straight, as no knot was in it")
         return outcome.adding("{excess:.5g} radii of rope are in the knot", excess=point.excess)
     if (point.curve.component_lengths < 2.01 * math.pi).all():
         return outcome.adding("circles of the rope's radius are left, as of unknots")

@@ -147,8 +147,8 @@ def test_a_given_radius_does_not_give_way() -> None:
 @pytest.mark.parametrize(
     ("options", "error", "said"),
     [
-        ({"radius": 1.0}, CurveError, "no rope of radius 1: edge"),
-        ({"radius": 1e6}, CurveError, "thickness is"),
+        ({"radius": 1.0}, CurveError, r"no rope of radius 1: strands .*, near \("),
+        ({"radius": 1e6}, CurveError, "it is one of radius"),
         ({"radius": (0.1, 0.2)}, OptionError, "radius has 2 numbers; give one, or 1"),
         ({"radius": 0.1, "method": "penalty-lbfgs"}, OptionError, "radius needs lengths that stay"),
     ],
@@ -156,6 +156,24 @@ def test_a_given_radius_does_not_give_way() -> None:
 def test_what_cannot_be(options: dict[str, object], error: type[Exception], said: str) -> None:
     with pytest.raises(error, match=said):
         minimize(knot("4_1", 60), RelaxOptions(**options))  # type: ignore[arg-type]
+
+
+TRIANGLE = Curve([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]])
+
+
+def test_coarse_polygons_have_a_radius_that_is_told() -> None:
+    first = minimize(TRIANGLE, RelaxOptions(max_iterations=1)).last
+    assert np.isfinite(first.energy)
+    assert first.radius is not None
+    with pytest.raises(CurveError, match=f"it is one of radius {first.radius[0]:.4g}") as error:
+        minimize(TRIANGLE, RelaxOptions(radius=1.4 * first.radius[0]))
+    assert error.value.place is not None
+    assert not error.value.place.vertices, "the user knows none of the refined curve"
+
+
+def test_far_from_the_origin_digits_do_not_suffice_for_a_rope() -> None:
+    far = Curve(1e9 + np.round(knot("3_1", 60).vertices, 3))
+    assert minimize(far, RelaxOptions(max_iterations=1)).last.radius is None
 
 
 @pytest.mark.parametrize("radius", [0.0, -1.0, float("nan"), float("inf"), "thick", (), (0.1, 0.0)])

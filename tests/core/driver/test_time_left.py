@@ -56,3 +56,9 @@ def test_a_whole_run_is_watched():
     result = minimize(knot("3_1"), options, left.add)
     assert result.status is Status.CONVERGED
     assert left.distances[-1] == 0.0
+
+
+def test_what_starts_with_no_energy_is_no_forecast():
+    left, moves = TimeLeft(RelaxOptions()), SimpleNamespace(done=True)
+    left.add(SimpleNamespace(index=0, curve=regular_polygon(12), energy=0.0, gradient_norm=0.0, strand_moves=moves))
+    assert left.seconds is None

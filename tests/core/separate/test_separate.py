@@ -254,3 +254,18 @@ def test_the_quadratic_form_is_that_of_the_integrals():
     u, k = np.sin(np.pi * s), np.pi / 20.0
     exact = 10.0 * (1e-3 / radius**3 + 0.02 * k**2 / radius + 0.3 * radius * k**4)
     assert u @ (stiffness(curve, np.array([radius])) @ u) == pytest.approx(exact, rel=1e-3)
+
+
+def test_a_barrier_that_has_outgrown_all_else_gives_no_step(monkeypatch):
+    def singular(*_, **__):
+        raise RuntimeError("Factor is exactly singular")
+
+    monkeypatch.setitem(Ropes.step.__globals__, "splu", singular)
+    assert separate(arcs(X, Y), 1.0).status is Status.STALLED
+
+
+def test_places_of_crossings_are_free_of_rounding():
+    circle = ring(1.0, 24)
+    result = separate(Curve.from_components([circle, circle]), 0.1)
+    (crossing,) = result.outcome.crossings
+    assert all(x == 0.0 or abs(x) > 1e-12 for x in crossing.place)

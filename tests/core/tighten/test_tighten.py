@@ -188,3 +188,17 @@ def test_a_time_limit_keeps_what_was_reached():
     way = WithOutcome(tightening(Task(curve=knot("3_1")), TightenOptions(time_limit=1e-9)))
     assert len(list(way)) <= 1
     assert way.outcome.status is Status.TIME_LIMIT
+
+
+def test_open_ropes_that_are_not_knotted_become_straight():
+    t = np.linspace(-2.0, 2.0, 21)
+    wave = Curve(np.stack([t, np.sin(3 * t), 0.3 * np.cos(2 * t)], axis=1), Mesh((21,), (False,)))
+    result = tighten(wave, vertices=100)
+    assert result.status is Status.CONVERGED
+    assert "no knot" in result.message
+
+
+@pytest.mark.parametrize("away", [1e4, 1e9])
+def test_what_is_too_far_away_is_refused_at_once(away):
+    with pytest.raises(CurveError, match=r"from the origin|no rope"):
+        tighten(Curve(CIRCLE + away))
