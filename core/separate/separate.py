@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..base import BLAS, COMPONENT, CurveError, Message, OptionError, TimeLimit, check_known, checked
+from ..base.arguments import check_number
 from ..collision import check_clear, check_embedded, is_free, written
 from ..curve import Curve, Pins, at_edges, bending_radii, holds, subdivide
 from ..descent.task import Task, check_units
@@ -45,6 +46,8 @@ class SeparateOptions:
         if self.over is not None:
             check_known("over", self.over, tuple(AXES))
         check_known("lengths", self.lengths, ("free", "keep"))
+        if self.time_limit is not None:
+            check_number("time_limit", self.time_limit, 0.0, np.inf)
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ import pytest
 from bundles import bundle, least_distance
 from mobius_flow.core import Curve, MobiusFlowError, Obstacle, Status, Task, separate
 from mobius_flow.core.collision import is_rope
+from mobius_flow.core.separate import SeparateOptions
 from mobius_flow.core.separate.contacts import contacts
 from mobius_flow.core.separate.ropes import Ropes, stiffness
 from shapes import regular_polygon
@@ -269,3 +270,9 @@ def test_places_of_crossings_are_free_of_rounding():
     result = separate(Curve.from_components([circle, circle]), 0.1)
     (crossing,) = result.outcome.crossings
     assert all(x == 0.0 or abs(x) > 1e-12 for x in crossing.place)
+
+
+@pytest.mark.parametrize("seconds", [-1.0, 0.0, np.nan])
+def test_what_is_no_time(seconds):
+    with pytest.raises(MobiusFlowError, match="time_limit"):
+        SeparateOptions(radius=1.0, time_limit=seconds)
