@@ -121,7 +121,7 @@ def rope_radius(task: Task, options: RelaxOptions) -> FloatArray | None:
 
 
 def _has_room(curve: Curve, radius: FloatArray) -> bool:
-    """Whether the barrier is finite: beside a lone sharp corner it asks for more than the proof, which rounds it."""
+    """Whether the barrier is finite, with bends that the mesh allows."""
     return bool(np.isfinite(Rope(radius).frozen_at(curve).value(curve)))
 
 
