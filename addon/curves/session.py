@@ -6,7 +6,7 @@ What it knows lives here and never in the file.
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any
@@ -16,7 +16,8 @@ import numpy as np
 
 from ...core import Curve, Hand, Iterate, Obstacle, Outcome, RelaxOptions, Status, Task, WithOutcome
 from ...core.base import CurveError, FloatArray, Message, MobiusFlowError, OptionError, Place, Sentence
-from ...core.collision import is_free, is_rope
+from ...core.collision import is_free
+from ...core.driver.prepare import rope_radius
 from ...core.driver.words import in_blenders_words, named, spline_names
 from ...core.keys.key_options import Course, KeyOptions, Output
 from ...core.keys.motion import Key, Keys, Kind, Proof, Recording
@@ -122,6 +123,7 @@ class Session:
         key_options.check_room(options.max_iterations)
         self.surroundings, self._key_options, self._continues = surroundings, key_options, continues
         self.outcome: Outcome | None = None
+        self._too_thick = False  # whether a bevel of the artist's meets itself at the start
         self._last: Iterate | None = None
         self._repinned = False  # whether a hand has left pins
         self._begin(objects)
@@ -137,8 +139,11 @@ class Session:
             # a bevel of the artist's is the rope, unless it meets itself from the start, or is to be fitted
             own = () if continues or goals or ropes or key_options.any_bevel else bevel.own_radii(objects)
             if own and options.resolved.radius == "keep":
-                ends = self.curve.mesh, self.curve.vertices, self.curve.vertices, np.array(own), obstacles
-                options = replace(options, radius=own) if is_rope(*ends) else options
+                with suppress(CurveError):
+                    wanted = replace(options, radius=own)
+                    rope_radius(self.task.refined(options.vertices), wanted)
+                    options = wanted
+                self._too_thick = options.radius == "keep"
             self.options, self.job, first, size = options, ropes or options, None, None
             if continues:  # the keys that are there have as many points as the curves have now
                 self.options = self.job = replace(options, vertices=len(self.curve), mesh="fixed", untangle="never")
@@ -277,6 +282,8 @@ class Session:
             self.motion.natural = sorted({0, *self.goals.iterates, iterate.index})
 
     def end(self, outcome: Outcome) -> None:
+        if self._too_thick:
+            outcome = outcome.adding("the bevel is too thick to be kept apart from itself")
         self.outcome = replace(outcome, clauses=tuple(map(self._in_our_words, outcome.clauses)))
 
     def reworded(self, error: CurveError) -> CurveError:

@@ -233,7 +233,7 @@ def _bends(mesh: Mesh, spans: list[FloatArray], radius: FloatArray) -> tuple[flo
     which = np.flatnonzero(radius * needed * (1.0 + _SLACK) > own - _SLACK)
     if not len(which):
         return 1.0, 0, saved
-    if np.array_equal(*spans):  # halves of the time would be the same
+    if np.array_equal(spans[0], spans[1]):  # halves of the time would be the same
         return 0.0, int(which[0]), saved
     first, size, k, limit, worst = np.zeros(len(which)), 1.0, np.arange(len(which)), 1.0, int(which[0])
     tail, head = corners(before[which], which), corners(which, after[which])

@@ -61,7 +61,7 @@ def test_ones_own_is_not_changed(bevelled, keyframes):
 
 
 @pytest.mark.parametrize(("share", "kept"), [(0.95, True), (1.2, False)])
-def test_ones_own_never_meets_itself(share, kept):
+def test_ones_own_never_meets_itself(share, kept, capfd):
     """At all keys the curve has room for the bevel, unless it had none to begin with."""
     curve = knot("goeritz")
     obj = add_curve([curve.vertices])
@@ -71,6 +71,7 @@ def test_ones_own_never_meets_itself(share, kept):
     nearest = min(nearest_strands(Curve(each.astype(float)), 1.6) for each in frames)
     assert (nearest >= (1.0 - 1e-5) * 2.0 * depth) is kept
     assert nearest >= 1.7 * thickness(curve)
+    assert ("the bevel is too thick" in capfd.readouterr().out) is not kept
 
 
 @pytest.mark.parametrize("depth", [0.0, 0.125])
