@@ -47,7 +47,7 @@ def test_rows_and_folders(batch, ring, tmp_path, capsys):
         (name, name) for name in ("L2a1", "m3_1", "unknot") for _ in range(2)
     ]
     assert {(row["certified"], row["verified"]) for row in rows} == {("True", "True")}
-    assert {row["options"] for row in rows} == {'{"max_iterations": 3, "seed": 5}'}
+    assert {row["options"] for row in rows} == {'{"max_iterations": 3, "radius": "none", "seed": 5}'}
     assert {(row["proved"], row["iterations"], row["fallback_steps"]) for row in rows} == {("True", "3", "0")}
     assert all(float(row["processor_seconds"]) > 0.0 for row in rows)
     for row in rows:
