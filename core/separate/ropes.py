@@ -111,11 +111,12 @@ class Ropes:
             _, tension = self.stretches(curve)
             scale, tau = self.radius[mesh.edge_component], curve.edge_vectors / curve.edge_lengths[:, None]
             spread = sp.kron(mesh.difference, sp.eye_array(3)).tocsr()
-            along = sp.block_diag([*(tau / scale[:, None])[:, None]], format="csr") @ spread
+            along = sp.block_diag([*map(sp.coo_array, (tau / scale[:, None])[:, None])], format="csr") @ spread
             across = (np.maximum(tension, 0.0) / scale / curve.edge_lengths)[:, None, None]
             across = across * (np.eye(3) - tau[:, :, None] * tau[:, None])
+            taut = sp.block_diag([*map(sp.coo_array, across)], format="csr")
             g = g + (along.T @ tension).reshape(n, 3)
-            H = H + INEXTENSIBLE * along.T @ along + spread.T @ sp.block_diag([*across], format="csr") @ spread
+            H = H + INEXTENSIBLE * along.T @ along + spread.T @ taut @ spread
         try:
             factor = splu(
                 H[self.free][:, self.free].tocsc(),
