@@ -179,12 +179,18 @@ def _clip(x: FloatArray) -> FloatArray:
     return np.where(np.abs(x.real) < 0.5, x, np.clip(x.real, -0.5, 0.5))
 
 
+def phi(z: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """φ(z) = −(1 − z)² log z, infinite up to z = 0 and 0 from z = 1 on, and its two derivatives.
+
+    Numbers are real or after a complex step.
+    """
+    behind, beyond = z.real <= 0.0, z.real >= 1.0
+    z = np.where(behind | beyond, 1.0, z)
+    k, log = 1.0 - z, np.log(z)
+    return np.where(behind, np.inf, -k * k * log), 2.0 * k * log - k * k / z, 4.0 * k / z + (k / z) ** 2 - 2.0 * log
+
+
 def _barrier(x: Jet, wall: FloatArray, end: FloatArray, weight: FloatArray) -> Jet:
     """Weight · φ((x − wall)/(end − wall)) of k quantities; infinite at the wall and behind it."""
-    z = (x.value - wall) / (end - wall)
-    behind, beyond = z.real <= 0.0, z.real >= 1.0
-    safe = np.where(behind | beyond, 0.5, z)
-    log, k = np.log(safe), 1.0 - safe
-    value = np.where(behind, np.inf, np.where(beyond, 0.0, -k * k * log))
-    slope = np.where(behind | beyond, 0.0, 2.0 * k * log - k * k / safe)
+    value, slope, _ = phi((x.value - wall) / (end - wall))
     return x.compose(weight * value, weight * slope / (end - wall))

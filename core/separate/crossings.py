@@ -14,7 +14,7 @@ from ..collision.gap import near_edges, scaled_points, written
 from ..curve import Curve, Obstacle, arc_distance_of_pairs, at_vertices
 from ..energies.edge_pairs import CORNERS, EdgePairs
 from ..energies.rope import closest
-from .contacts import contacts
+from .clearances import clearances
 
 MEETS = 1e-3  # centre lines meet that are nearer to each other than that part of the smallest radius
 AXES = {f"{sign}{name}": float(f"{sign}1") * np.eye(3)[k] for sign in ("", "-") for k, name in enumerate("xyz")}
@@ -99,7 +99,7 @@ def lead_apart(
     firm = 1e6 * float(stiffness.diagonal().max())
     u = np.zeros_like(p)
     u[~held] = spsolve((K + firm * A.T @ A).tocsc(), firm * A.T @ goal).reshape(-1, 3)
-    others = contacts(curve, radius, curve.edge_lengths, 0.1, obstacles)
+    others = clearances(curve, radius, curve.edge_lengths, 0.1, obstacles)
     apart = others.value * np.where(others.edges[:, 1] < 0, 1.0, 2.0) * float(radius.min())
     room = float(apart[apart > meets].min(initial=0.1 * scale))
     places = np.einsum("kc,kcm->km", shares[:, :2], p[ends[:, :2]])[met]

@@ -4,21 +4,21 @@ Of all displacements u from the given curve, with R the radius of each component
 
     ½ Σ ∫ (a |u|²/R² + T |u'|² + b R² |u''|²) ds / R
 
-among those that keep clear, by Newton steps with the Gauss–Newton part of the barrier in `contacts`.  Lengths that are
-to be kept are held by an augmented Lagrangian.
+among those that keep clear, by Newton steps with the Gauss–Newton part of the barrier in `clearances`.  Lengths that
+are to be kept are held by an augmented Lagrangian.
 """
 
 from collections.abc import Sequence
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import splu
 
 from ..base import BoolArray, FloatArray, check_time
 from ..collision import is_rope, rope_motion
 from ..curve import Curve, Obstacle
 from ..io.trajectory import Iterate
-from .contacts import Contacts, contacts
+from ..solve.symmetric import factorised
+from .clearances import Clearances, clearances
 
 ANCHOR, TENSION, BENDING = 1e-3, 0.02, 0.3  # a, T and b: bends are some four radii long
 BEGINS = 1.2  # where the barrier begins, over what is needed,
@@ -53,11 +53,11 @@ class Ropes:
         self.share, self.most = 0.0, 1.0  # of the radii that are kept, and that what is held allows
         self.keep, self.pull = keep, np.zeros(given.mesh.edges)  # multipliers of lengths that are kept
 
-    def near(self, curve: Curve, within: float) -> tuple[Contacts, Contacts]:
+    def near(self, curve: Curve, within: float) -> tuple[Clearances, Clearances]:
         """What is nearer than ``within`` times what it needs: what moves, and what is held."""
-        found = contacts(curve, self.radius, self.given.edge_lengths, within, self.obstacles)
+        found = clearances(curve, self.radius, self.given.edge_lengths, within, self.obstacles)
         still = (self.held[found.vertices] | (found.first == 0.0).all(axis=2)).all(axis=1)
-        return Contacts(*(each[~still] for each in found)), Contacts(*(each[still] for each in found))
+        return Clearances(*(each[~still] for each in found)), Clearances(*(each[still] for each in found))
 
     def room(self, curve: Curve) -> float:
         """The share of the radii that there is room for, up to 1.25; what is held may allow no more than ``most``."""
@@ -87,7 +87,7 @@ class Ropes:
         if self.keep:
             self.pull = self.stretches(curve)[1]
 
-    def value(self, curve: Curve, near: Contacts, share: float, begins: float) -> float:
+    def value(self, curve: Curve, near: Clearances, share: float, begins: float) -> float:
         """What is minimised; infinite where ropes meet."""
         total = self.energy(curve) + self.weight * float(near.barrier(share, begins)[0].sum())
         if self.keep:
@@ -118,12 +118,7 @@ class Ropes:
             g = g + (along.T @ tension).reshape(n, 3)
             H = H + INEXTENSIBLE * along.T @ along + spread.T @ taut @ spread
         try:
-            factor = splu(
-                H[self.free][:, self.free].tocsc(),
-                permc_spec="MMD_AT_PLUS_A",
-                diag_pivot_thresh=0.0,
-                options={"SymmetricMode": True},
-            )
+            factor = factorised(H[self.free][:, self.free].tocsc())
         except RuntimeError:  # singular to working precision: the barrier has outgrown all else
             return None, 0.0, 0.0
         flat = np.zeros(3 * n)

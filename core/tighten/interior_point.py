@@ -17,13 +17,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import splu
 
 from ..base.deadline import check_time
 from ..base.types import FloatArray
 from ..curve import Curve
 from ..curve.pins import holds
 from ..energies.edge_pairs import EdgePairs
+from ..solve.symmetric import factorised
 from .contacts import Contacts
 
 CENTRED = 0.01  # decrease that Newton's step promises, in μ for each constraint, below which μ falls
@@ -170,9 +170,7 @@ class InteriorPoint:
         while True:
             matrix = sp.csr_array(hessian + (1.0 + self._delta) * elastic + (1.0 + 1e4 * self._delta) * ridge)
             matrix = sp.csc_array(matrix[free][:, free])
-            # pivots on the diagonal have the signs of the eigenvalues
-            options = {"SymmetricMode": True}
-            factor = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+            factor = factorised(matrix)
             if (factor.perm_r == factor.perm_c).all() and (factor.U.diagonal() > 0.0).all():
                 break
             self._delta = max(4.0 * self._delta, 1e-4)

@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import splu
 from scipy.spatial import cKDTree
 
 from ..base.deadline import check_time
@@ -22,8 +21,9 @@ from ..curve import Curve
 from ..curve.distances import arc_distance_of_pairs, arc_distance_of_vertices
 from ..curve.obstacle import Obstacle
 from ..energies.edge_pairs import EdgePairs
-from ..energies.rope import closest
+from ..energies.rope import closest, phi
 from ..knots.diagrams.projection import plane_crossings
+from ..solve.symmetric import factorised
 
 SHARP = 0.3  # cosine of the sharpest turn at a vertex, if there are no sharper ones
 
@@ -80,8 +80,7 @@ class _Model:
         rows, columns = 3 * a[:, None, None] + np.arange(3)[:, None], 3 * b[:, None, None] + np.arange(3)
         places = [np.broadcast_to(each, values.shape).ravel() for each in (rows, columns)]
         form = sp.coo_array((values.ravel(), places), shape=more.shape).tocsc() + more
-        factors = splu(form, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}, diag_pivot_thresh=0.0)
-        return -np.asarray(factors.solve(self.force.ravel())).reshape(-1, 3)
+        return -np.asarray(factorised(form).solve(self.force.ravel())).reshape(-1, 3)
 
 
 class ElasticRope:
@@ -221,7 +220,7 @@ class ElasticRope:
         v = (x[i] - x[j]) * [1.0, 1.0, 0.0]
         d = np.linalg.norm(v, axis=1) + 1e-12 * face
         q, weight = v / d[:, None], 1.5 * (mean / face) ** 2
-        first, second = _barrier(np.maximum(d / face, 0.04))
+        _, first, second = phi(np.maximum(d / face, 0.04))
         force, form = (
             (weight * first)[:, None] * q,
             (2.0 * weight / face * second)[:, None, None] * q[:, :, None] * q[:, None],
@@ -237,7 +236,7 @@ class ElasticRope:
         d = np.linalg.norm(chord, axis=1)
         e, f, chord, s, t, d = (each[d < 4.0 * r] for each in (e, f, chord, s, t, d))
         q, weight = chord / d[:, None], 0.2 * ell[e] * ell[f] / r
-        first, second = _barrier(np.maximum(0.5 * d / r - 1.0, 1e-3))
+        _, first, second = phi(np.maximum(0.5 * d / r - 1.0, 1e-3))
         (a, b), (u, v) = ((self.mesh.tails[each], self.mesh.heads[each]) for each in (e, f))
         corners = (a, 0.5 - s), (b, 0.5 + s), (u, t - 0.5), (v, -0.5 - t)
         form = (0.25 * weight * second / r**2)[:, None, None] * q[:, :, None] * q[:, None]
@@ -283,11 +282,3 @@ def _add(total: FloatArray, index: IntArray, values: FloatArray) -> None:
     width = total[0].size
     places = (index[:, None] * width + np.arange(width)).ravel()
     total += np.bincount(places, values.ravel(), total.size).reshape(total.shape)
-
-
-def _barrier(z: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """First and second derivative of −(1 − z)² log z; 0 from z = 1 on."""
-    z = np.minimum(z, 1.0)
-    y = 1.0 - z
-    first, second = 2.0 * y * np.log(z) - y**2 / z, 4.0 * y / z + y**2 / z**2 - 2.0 * np.log(z)
-    return np.asarray(first), np.asarray(second)

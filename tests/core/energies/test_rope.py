@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve
 from mobius_flow.core.collision import thickness
-from mobius_flow.core.energies.rope import Rope
+from mobius_flow.core.energies.rope import Rope, phi
 from mobius_flow.core.knots import knot, overhand
 from mobius_flow.core.knots.shapes import smooth_knot
 from shapes import regular_polygon
-from taylor import derivative_slope, hessian_slope
+from taylor import derivative_slope, hessian_slope, taylor_slope
 
 
 def tight(curve: Curve, share: float = 0.9) -> Rope:
@@ -105,3 +105,12 @@ def test_pairs_in_reach_are_found_again(step: float) -> None:
         away = rng.uniform(-1.0, 1.0, curve.vertices.shape) * step * rope.radius.max()
         moved = curve.with_vertices(curve.vertices + away)
         assert rope.value(moved) == pytest.approx(replace(rope).value(moved), rel=1e-12)
+
+
+@pytest.mark.parametrize("z", [0.02, 0.3, 0.9])
+def test_the_barrier_function_has_its_derivatives(z: float) -> None:
+    def value(t: float) -> float:
+        return float(phi(np.array(z + t))[0])
+
+    assert taylor_slope(value, [float(each) for each in phi(np.array(z))], largest=0.01) > 2.9
+    assert [list(each) for each in phi(np.array([-1.0, 0.0, 1.0, 2.0]))] == [[np.inf, np.inf, 0, 0], [0] * 4, [0] * 4]

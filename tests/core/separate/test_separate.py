@@ -6,7 +6,7 @@ from bundles import bundle, least_distance
 from mobius_flow.core import Curve, MobiusFlowError, Obstacle, Status, Task, separate
 from mobius_flow.core.collision import is_rope
 from mobius_flow.core.separate import SeparateOptions
-from mobius_flow.core.separate.contacts import contacts
+from mobius_flow.core.separate.clearances import clearances
 from mobius_flow.core.separate.ropes import Ropes, stiffness
 from shapes import regular_polygon
 from tasks import check
@@ -209,7 +209,7 @@ def test_derivatives_of_contacts_and_their_barrier(obstacles):
 
     def near(t):
         moved = curve.with_vertices(curve.vertices + t * direction)
-        return contacts(moved, radius, curve.edge_lengths, 1.5, obstacles)
+        return clearances(moved, radius, curve.edge_lengths, 1.5, obstacles)
 
     def value(t):
         return near(t).barrier(0.05, 1.4)[0].sum()
@@ -261,7 +261,7 @@ def test_a_barrier_that_has_outgrown_all_else_gives_no_step(monkeypatch):
     def singular(*_, **__):
         raise RuntimeError("Factor is exactly singular")
 
-    monkeypatch.setitem(Ropes.step.__globals__, "splu", singular)
+    monkeypatch.setitem(Ropes.step.__globals__, "factorised", singular)
     assert separate(arcs(X, Y), 1.0).status is Status.STALLED
 
 

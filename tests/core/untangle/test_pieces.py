@@ -5,6 +5,8 @@ import pytest
 from mobius_flow.core import Curve, Mesh
 from mobius_flow.core.collision import thickness
 from mobius_flow.core.curve.pins import holds
+from mobius_flow.core.energies.edge_pairs import EdgePairs
+from mobius_flow.core.energies.rope import closest, phi
 from mobius_flow.core.knots import knot, scramble
 from mobius_flow.core.knots.diagrams import is_least, jones, simplified
 from mobius_flow.core.knots.diagrams.diagram import ENDS, PIN
@@ -12,8 +14,9 @@ from mobius_flow.core.knots.diagrams.projection import rotation
 from mobius_flow.core.knots.diagrams.rerouting import Move, shortened, strands
 from mobius_flow.core.untangle.drawing import PlaneDrawing
 from mobius_flow.core.untangle.leading import Lead, lead
-from mobius_flow.core.untangle.rope import ElasticRope, Springs
+from mobius_flow.core.untangle.rope import ElasticRope, Springs, _Model
 from mobius_flow.core.untangle.ways import Plane
+from taylor import taylor_slope
 
 
 def messy(name: str, held: tuple[int, ...] = (), *, is_open: bool = False) -> PlaneDrawing:
@@ -80,6 +83,33 @@ def test_a_rope_at_rest_keeps_its_length_its_type_and_what_is_held() -> None:
     assert np.ptp(rope.seen[:, 2]) < 0.8 * np.ptp(knot("5_2", 120).vertices[:, 2])
     rope = laid("5_2", held=(3, 40))
     np.testing.assert_array_equal(rope.vertices[[3, 40]], knot("5_2", 120).vertices[[3, 40]])
+
+
+def test_forces_of_barrier_tension_and_weight_are_derivatives() -> None:
+    """Of energies whose weights are those of the rope as it is."""
+    rope = laid("5_2")
+    here, r, n = Curve(rope.seen, rope.mesh), rope.thick, rope.mesh.size
+    v = np.random.default_rng(4).normal(size=(n, 3)) * 0.1 * r
+    e, f = rope._strands(here, 4.0 * r, r)
+    ell, mean = here.edge_lengths, float(here.edge_lengths.mean())
+    barrier, tension = _Model(n), _Model(n)
+    rope._add_barrier(barrier, here, e, f)
+    rope._add_tension(tension, here, 5, np.ones(n, dtype=bool), None)
+    goal = (1.0 - rope._pull) * mean
+
+    def apart(t: float) -> float:
+        chord, _, _ = closest(EdgePairs.of(rope.mesh, here.vertices + t * v, e, f))
+        value, _, _ = phi(0.5 * np.linalg.norm(chord, axis=1) / r - 1.0)
+        return float(np.sum(0.2 * ell[e] * ell[f] / r * value))
+
+    def tense(t: float) -> float:
+        moved = Curve(here.vertices + t * v, rope.mesh)
+        weight = 0.75 * mean / rope.face**2 * np.sum(moved.vertices[:, 2] ** 2)
+        return float(np.sum((moved.edge_lengths - goal) ** 2) / (0.12 * mean) + weight)
+
+    assert apart(0.0) > 0.0
+    for energy, model in ((apart, barrier), (tense, tension)):
+        assert taylor_slope(energy, [energy(0.0), np.sum(model.force * v)]) > 1.9
 
 
 def test_springs_lead_vertices_and_no_further_than_the_rest_allows() -> None:

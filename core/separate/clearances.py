@@ -18,10 +18,10 @@ from ..base.types import BoolArray, FloatArray, IntArray
 from ..collision import BoxTree, Level, near_edges, scaled_points, squared_gaps, still_triangles
 from ..curve import Curve, Obstacle, arc_distance_of_pairs, bending_radii
 from ..energies.edge_pairs import CORNERS, EdgePairs
-from ..energies.rope import bends, closest, distance
+from ..energies.rope import bends, closest, distance, phi
 
 
-class Contacts(NamedTuple):
+class Clearances(NamedTuple):
     """k quantities in units of what is needed, x/ϱ, with their derivatives by the ends of two edges."""
 
     value: FloatArray  # (k,)
@@ -33,13 +33,8 @@ class Contacts(NamedTuple):
     def barrier(self, share: float, begins: float) -> tuple[FloatArray, FloatArray, FloatArray]:
         """w φ of each and its first two derivatives by x/ϱ; infinite from λ down."""
         width = begins - share
-        z = (self.value - share) / width
-        behind, beyond = z <= 0.0, z >= 1.0
-        z = np.where(behind | beyond, 0.5, z)
-        k, log = 1.0 - z, np.log(z)
-        jets = -k * k * log, (2.0 * k * log - k * k / z) / width, (-2.0 * log + 4.0 * k / z + (k / z) ** 2) / width**2
-        value, slope, curvature = (np.where(beyond, 0.0, self.weight * each) for each in jets)
-        return np.where(behind, np.inf, value), slope, curvature
+        value, slope, curvature = phi((self.value - share) / width)
+        return self.weight * value, self.weight * slope / width, self.weight * curvature / width**2
 
     def sum_first(self, slope: FloatArray, size: int) -> FloatArray:
         """Σ slope ∇x by the vertices; shape (size, 3)."""
@@ -56,9 +51,9 @@ class Contacts(NamedTuple):
         return sp.csc_array((blocks.ravel(), (rows.ravel(), columns.ravel())), shape=(3 * size, 3 * size))
 
 
-def contacts(
+def clearances(
     curve: Curve, radius: FloatArray, lengths: FloatArray, within: float, obstacles: Sequence[Obstacle] = ()
-) -> Contacts:
+) -> Clearances:
     """All quantities below ``within`` times what they need, for ropes of a radius for each component.
 
     Edges of one component count if they are half a circle of the radius, or of that part of it, apart along the curve:
@@ -86,15 +81,15 @@ def contacts(
         i, j, need = i[kept], j[kept], need[kept]
         ends = np.stack([mesh.tails[i], mesh.heads[i], mesh.tails[j], mesh.heads[j]], axis=1)
         by_ends = CORNERS @ jet.first[kept].reshape(-1, 3, 3) / need[:, None, None]
-        made.append(Contacts(jet.value[kept] / need, by_ends, ends, weight[kept], np.stack([i, j], axis=1)))
+        made.append(Clearances(jet.value[kept] / need, by_ends, ends, weight[kept], np.stack([i, j], axis=1)))
     if obstacles:
         made.append(_with_obstacles(curve, own, lengths, within, obstacles))
-    return Contacts(*(np.concatenate(each) for each in zip(*made, strict=True)))
+    return Clearances(*(np.concatenate(each) for each in zip(*made, strict=True)))
 
 
 def _with_obstacles(
     curve: Curve, radius: FloatArray, lengths: FloatArray, within: float, obstacles: Sequence[Obstacle]
-) -> Contacts:
+) -> Clearances:
     """The distances of edges, with radii each, from triangles."""
     mesh = curve.mesh
     reach = within * float(radius.max())
@@ -138,4 +133,4 @@ def _with_obstacles(
     first = np.stack([0.5 - s, 0.5 + s, 0.0 * s, 0.0 * s], axis=1)[:, :, None] * unit[:, None] / need[:, None, None]
     four = np.concatenate([ends[kept], ends[kept]], axis=1)
     pairs = np.stack([edge, -1 - triangle[kept]], axis=1)
-    return Contacts(d[kept] / need, first, four, lengths[edge] / need, pairs)
+    return Clearances(d[kept] / need, first, four, lengths[edge] / need, pairs)
