@@ -70,6 +70,7 @@ def test_ones_own_never_meets_itself(share, kept, capfd):
     assert bpy.ops.curve.mobius_flow_relax(radius="keep") == {"FINISHED"}
     shown = zip(BakedKeys([obj]).frames, obj.data.shape_keys.key_blocks, strict=True)
     frames = [frame for frame, block in shown if not block.name.startswith(Kind.ADDED.value)]
+    assert bevel.own_radii([obj]) == pytest.approx((depth,))
     nearest = min(nearest_strands(Curve(each.astype(float)), 1.6) for each in frames)
     assert (nearest >= (1.0 - 1e-5) * 2.0 * depth) is kept
     assert nearest >= 1.7 * thickness(curve)
@@ -94,6 +95,7 @@ def test_a_fitted_one_is_kept_fitting_also_in_a_file_that_is_opened_again(tmp_pa
     data = bpy.context.object.data
     assert bevel.is_fitted(data)
     fitted = data.bevel_depth
+    assert bevel.own_radii([bpy.context.object]) == (), "it is no rope of the artist's"
 
     def relaxed(**options):
         relax(**options)

@@ -1,19 +1,22 @@
 """Runs that keep a rope: its radius is kept, gives way where that leads on, and is refused where it cannot be."""
 
 from copy import copy
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError, Obstacle, OptionError, RelaxOptions, Task, minimize, morph
-from mobius_flow.core.collision import is_rope, thickness
+from mobius_flow.core.collision import Contact, is_rope, thickness
 from mobius_flow.core.curve.measures import bending_radii
 from mobius_flow.core.descent import NoStep, Step
 from mobius_flow.core.driver.moves.remesh import split_edges
 from mobius_flow.core.driver.moves.rope import GiveWay
 from mobius_flow.core.driver.relax import begin
+from mobius_flow.core.energies.pull import Pull
 from mobius_flow.core.energies.rope import Rope
 from mobius_flow.core.knots import knot, overhand, torus_knot
+from shapes import regular_polygon
 
 GROWN = 0.9 * thickness(torus_knot(2, 3, 60))  # what grows has a radius only if it is asked for
 WALL = Obstacle([[-9.0, -9, 0], [9, -9, 0], [0, 18, 0]], [[0, 1, 2]])
@@ -191,6 +194,24 @@ def test_morphs_keep_no_radius_yet() -> None:
         morph(knot("3_1"), knot("3_1"), RelaxOptions(radius=0.1))
 
 
+def test_no_rope_is_thicker_for_its_length_than_a_hopf_links() -> None:
+    """A circle's would fill it, so that it could not move; what grows has none."""
+    circle = regular_polygon(60)
+    radius = minimize(circle, RelaxOptions(max_iterations=0)).last.radius
+    assert radius == pytest.approx((0.9 * circle.length / (8.0 * np.pi),))
+    assert minimize(circle, RelaxOptions(grow=1.1, max_iterations=0)).last.radius is None
+
+
+def test_balancing_lets_a_rope_go_that_only_keeps_its_thickness() -> None:
+    curve = minimize(torus_knot(2, 3, 60), RelaxOptions(radius="none", vertices=60)).curve
+    away = curve.vertices - np.array([0.9, 0.4, 0.9])  # an inversion near the knot
+    uneven = Curve(3 * away / np.square(away).sum(axis=1, keepdims=True))
+    iterates = []
+    minimize(uneven, RelaxOptions(balance=True, vertices=60, mesh="fixed", max_iterations=150), iterates.append)
+    assert iterates[0].radius is not None
+    assert iterates[-1].radius is None
+
+
 def test_a_curve_at_rest_by_itself_stays() -> None:
     """Though it is a rope that is hardly thinner than its own thickness."""
     rest = minimize(knot("4_1", 60), RelaxOptions(radius="none", vertices=60, mesh="fixed")).curve
@@ -198,6 +219,24 @@ def test_a_curve_at_rest_by_itself_stays() -> None:
     assert again.outcome.converged
     assert again.iterations == 0
     assert again.last.radius == (0.9 * thickness(rest),)
+
+
+def test_a_rope_that_has_let_go_gives_way_where_its_proof_is_in_the_way_but_not_to_a_hand() -> None:
+    run = begin(Task.of(knot("3_1", 60)), RelaxOptions(radius="keep", vertices=60, mesh="fixed"))
+    step, contact, before = run.step(), Contact((0, 30)), run.point
+    assert isinstance(step, Step)
+    run.view(before.changing(objective=before.problem.objective.having(Rope, None)))
+    move = GiveWay(run)
+    assert move.stepped(replace(step, limited_by=None)) is None
+    assert move.stuck(NoStep("no step")) is None
+    for change in (move.stepped(replace(step, limited_by=contact)), move.stuck(NoStep("no step", contact))):
+        assert change is not None
+        assert change.point is not None
+        assert change.point.problem.objective.rope is not None
+        assert (change.point.problem.radius < before.problem.radius).all()  # type: ignore[operator]
+    for point in (run.point, before):
+        run.view(point.pulled(Pull.at(point.curve, 0, 0.25, 5.0)))
+        assert GiveWay(run).stuck(NoStep("no step", contact)) is None
 
 
 def test_a_rope_gives_way_only_where_it_acts() -> None:

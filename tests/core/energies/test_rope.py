@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from mobius_flow.core import Curve
-from mobius_flow.core.collision import thickness
+from mobius_flow.core.collision import is_rope, thickness
+from mobius_flow.core.curve import subdivide
 from mobius_flow.core.energies.rope import Rope, phi
 from mobius_flow.core.knots import knot, overhand
 from mobius_flow.core.knots.shapes import smooth_knot
@@ -105,6 +106,18 @@ def test_pairs_in_reach_are_found_again(step: float) -> None:
         away = rng.uniform(-1.0, 1.0, curve.vertices.shape) * step * rope.radius.max()
         moved = curve.with_vertices(curve.vertices + away)
         assert rope.value(moved) == pytest.approx(replace(rope).value(moved), rel=1e-12)
+
+
+@pytest.mark.parametrize("pieces", [10, 20, 40])
+def test_a_lone_sharp_corner_has_room_wherever_the_proof_says_so(pieces: int) -> None:
+    """Near one of 120° strands half a circle apart along the polygon come nearer than two radii."""
+    triangle = Curve([[0.0, 0, 0], [1, 0, 0], [0.5, 0.75**0.5, 0]])
+    curve, ropes = subdivide(triangle, np.full(3, pieces)), 0
+    for radius in ([0.01], [0.02], [0.05]):
+        if is_rope(curve.mesh, curve.vertices, curve.vertices, np.array(radius)):
+            assert np.isfinite(Rope(np.array(radius)).frozen_at(curve).value(curve))
+            ropes += 1
+    assert ropes
 
 
 @pytest.mark.parametrize("z", [0.02, 0.3, 0.9])

@@ -185,5 +185,8 @@ def test_a_rope_is_drawn_as_it_is_and_has_room_from_key_to_key(measure):
             curve = Curve((1.0 - t) * a.points + t * b.points.astype(float), motion.start.mesh)
             gap = nearest_strands(curve, np.pi, 2.0 * max(one, other))
             assert gap >= 2.0 * min(one, other)
+    near = [Curve.from_components([RING, RING + np.array([0.0, 0.0, d])]) for d in (1.0, 0.15)]
+    meeting = Keys(tuple(Key(float(k), each.vertices.astype(np.float32), radius=0.1) for k, each in enumerate(near)), 0)
+    assert rope_radii(near[0].mesh, meeting) is None
     threads = Keys(tuple(replace(key, radius=0.0) for key in keys.keys), 0)
     assert rope_radii(motion.start.mesh, threads) is None

@@ -59,7 +59,7 @@ def test_forces_at_rest_balance_the_tension():
     """Σ ⟨∇c, x⟩ z is the length: the forces of a rope that is pulled tight do as much work as its tension."""
     curve = HOPF.with_vertices(2.2 * HOPF.vertices)
     point = InteriorPoint(curve, 1e-3, lambda vertices: True)
-    assert sum(1 for _ in point.run(1e-6, True)) < 100
+    assert sum(1 for _ in point.run(1e-6, True)) < 50  # 39; 62 without the bend of the way
     assert point.gap <= 1e-6
     assert point.residual <= 1e-5
     x, contacts = point.curve.vertices, point.contacts
