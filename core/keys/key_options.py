@@ -70,13 +70,14 @@ class Course(NamedTuple):
         # the fall counts so that drift takes few frames, the iterates so that the last, small steps get some
         parts = _passed(self.distance, worth), self.fall, _passed(self.iterates, worth)
         share = np.average([self._share(part) for part in parts], axis=0, weights=[0.6, 0.35, 0.05])
-        # then nothing is more than twice as fast as half of the film
+        # then nothing is more than twice as fast as half of the film, or much slower than a fifth of that
         time, way = np.diff(share), np.diff(self._share(self.distance))
         for _ in range(4 if len(time) else 0):
             speed = way / np.maximum(time, 1e-12)
             order = np.argsort(speed)
             median = float(np.interp(0.5 * time.sum(), np.cumsum(time[order]), speed[order]))
-            time = np.maximum(time, way / (2.0 * median)) if median > 0.0 else time
+            if median > 0.0:
+                time = np.clip(time, way / (2.0 * median), way / (0.2 * median) + 0.2 / len(time))
         return self._share(np.concatenate([[0.0], np.cumsum(time)]))
 
     def _share(self, passed: FloatArray) -> FloatArray:

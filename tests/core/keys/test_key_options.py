@@ -93,6 +93,13 @@ def test_nothing_jumps():
     assert moved.max() < 2.5 * np.median(moved)
 
 
+def test_nothing_crawls():
+    """Though all of the energy falls in one step, which leads no further than others."""
+    distance = np.arange(101.0)
+    falling = Course(distance, distance, distance, 1e4 * (distance > 50.0), 0.0 * distance)
+    assert np.diff(falling.share(Pace.EVEN))[50] < 0.06
+
+
 ITERATE = Pace.ITERATE
 RESTS = {"start_frame": 11, "length": 100, "hold_start": 5, "hold_end": 8}
 FRAMES = [  # of a timing the first and the last frame of the motion, and of the scene
