@@ -26,20 +26,22 @@ def remember(
     course: Course,
     shown: Sequence[Similarity],
     before: bpy.types.Curve | None,
+    rope: float,
 ) -> None:
     """Record how curve data has just been keyed, the keys' sizes, and what it was before; nothing without keys.
 
-    ``before``: None if the keys follow others, the last of which is the first of them.
+    ``before``: None if the keys follow others, the last of which is the first of them; ``rope``: see `rope`.
     """
     if before is not None:
         if not animated(data):
             return
         slots = len(before.materials), len(data.materials)  # those between are goals'
-        data[_RECORD] = {"original": before, "holds": [timing.hold_start, 0], "loop": timing.loop, "slots": slots}
+        data[_RECORD] = {"rope": rope, "original": before, "holds": [timing.hold_start, 0], "loop": timing.loop, "slots": slots}
     elif count := key_count(data):
         course = Course(*np.array(data[_RECORD]["course"]).reshape(-1, count)).then(course)
         frames, shown = np.append(data[_RECORD]["frames"], frames[1:]), [*_noted(data), *shown[1:]]
     record = data[_RECORD]
+    record["rope"] = min(record.get("rope", 0.0), rope)
     if before is not None or count:  # versions that did not note them wrote shape keys as they are
         record["frames"], record["course"] = frames.tolist(), np.concatenate(course).tolist()
     elif data.shape_keys:
@@ -107,9 +109,17 @@ def update(data: bpy.types.Curve, timing: Timing | None = None) -> None:
         record["bevel_depth"], record["holds"] = data.bevel_depth, [record["holds"][0], after]
 
 
+def rope(data: bpy.types.Curve) -> float:
+    """Radius of the rope that a baked curve is proved to be at its last key, as stored, and with shape keys at all; 0
+    if it is none, or points were moved since.
+    """
+    return float(data[_RECORD].get("rope", 0.0)) if is_baked(data) and not is_edited(data) else 0.0
+
+
 def scale_bevel(data: bpy.types.Curve, factor: float) -> None:
-    """Scale the bevel; if it is the baked one, it still counts as baked."""
+    """Scale the bevel and the rope; if it is the baked bevel, it still counts as baked."""
     record, ours = data[_RECORD], data.bevel_depth == data[_RECORD]["bevel_depth"]
+    record["rope"] = factor * record.get("rope", 0.0)
     data.bevel_depth *= factor
     if ours:
         record["bevel_depth"] = data.bevel_depth

@@ -68,15 +68,19 @@ def draw(data: bpy.types.Curve, radius: float) -> None:
 def fit_tubes(objects: Sequence[bpy.types.Object], constant: bool = False) -> None:
     """Fit the bevels of curve objects that are shown together; ``constant``: as thick at all keys as where it is least.
 
-    Where all have the same number of shape keys, tubes are fitted at each of them, and otherwise at the end. Raises
-    CurveError if their splines cannot be read, or touch at a key: no tube is thin enough then.
+    Where all have the same number of shape keys, tubes are fitted at each of them, and otherwise at the end. Those that
+    were baked together are drawn as the rope that they are. Raises CurveError if their splines cannot be read, or touch
+    at a key: no tube is thin enough then.
     """
     recorded = [Recorded.of(obj) for obj in objects]
     keys = [each.keys for each in recorded]
     if len({len(shapes) for shapes in keys}) > 1:
         keys = [shapes[-1:] for shapes in keys]
     links = [in_world(objects, recorded, shapes) for shapes in zip(*keys, strict=True)]
-    fitting = np.array([fitting_radius(link) for link in links])
+    ropes = np.array([bake.rope(obj.data) * stretch(obj) for obj in objects])
+    together = ropes.min() > 0.0 and np.ptp(ropes) <= 1e-6 * ropes.min()
+    sizes = np.array([size.factor for size in bake.sizes(objects[0].data)][-len(links) :])
+    fitting = ropes.min() * sizes if together else np.array([fitting_radius(link) for link in links])
     fitting = np.full_like(fitting, fitting.min()) if constant else fitting
     for obj in objects:
         data, wanted = obj.data, fitting / stretch(obj)

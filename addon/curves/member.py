@@ -128,10 +128,11 @@ class Member:
             output = Output.SHAPE_KEYS if obj.data.shape_keys else Output.FCURVES
         yield from keyframes.writing(obj, keys, frames, output, relative, options.timing)
 
-    def keep(self, keys: Keys, frames: FloatArray, options: KeyOptions, course: Course) -> None:
+    def keep(self, keys: Keys, frames: FloatArray, options: KeyOptions, course: Course, rope: float) -> None:
         """Make what was written final: the stand-in takes over the names and the users of the original.
 
-        What was relaxed is kept by the record of the bake; without one, only undo brings it back.
+        What was relaxed is kept by the record of the bake; without one, only undo brings it back.  ``rope``: the
+        radius of the rope that is seen, as stored, in the object's units; 0 if there is none.
         """
         data, original = self.data, self._original.get()
         assert data is not None, "it was written a moment ago"
@@ -144,7 +145,7 @@ class Member:
         original.user_remap(data)
         sizes_here = [self.placement.similarity(key.size) for key in keys.keys]
         follows = self._baked and self._continues
-        bake.remember(data, options.timing, frames, course, sizes_here, None if follows else start)
+        bake.remember(data, options.timing, frames, course, sizes_here, None if follows else start, rope)
         if not original.users:
             keyframes.remove(original)
         for kind, block in keyframes.blocks(data).items():  # names that are free now

@@ -16,13 +16,13 @@ import numpy as np
 
 from ...core import Curve, Hand, Iterate, Obstacle, Outcome, RelaxOptions, Status, Task, WithOutcome
 from ...core.base import CurveError, FloatArray, Message, MobiusFlowError, OptionError, Place, Sentence
-from ...core.collision import is_free
+from ...core.collision import is_rope
 from ...core.driver.prepare import rope_radius
 from ...core.driver.words import in_blenders_words, named, spline_names
 from ...core.keys.key_options import Course, KeyOptions, Output
 from ...core.keys.motion import Key, Keys, Kind, Proof, Recording
 from ...core.keys.placement import Frame, Measure, Placement, Spot, spots
-from ...core.keys.tube import eased
+from ...core.keys.tube import eased, rope_radii
 from ...core.separate import SeparateOptions
 from ...core.tighten import TightenOptions
 from ..engine.worker import begun, in_common_space
@@ -204,7 +204,7 @@ class Session:
                 raise self.reworded(error) from error
             assert relaxation.outcome is not None, "the loop is through"
             self.end(relaxation.outcome)
-            prepared = self.prepare(partial(is_free, obstacles=self._avoided))
+            prepared = self.prepare(partial(is_rope, obstacles=self._avoided))
             if reason := self.lost():
                 raise MobiusFlowError(Message("{reason} during the relaxation; nothing was written", reason=reason))
             *_, report = self.bake(prepared)
@@ -306,8 +306,8 @@ class Session:
 
     def show(self, there: Key | None = None) -> None:
         """Show a shape, by default the last iterate with the pins that a hand left, its tube as thick as at a key."""
-        frame = self.motion.frame if there is None else there.points
-        self._move(self.motion.start, frame, self._radius(frame) if self._fits else None)
+        key = self.motion.shown if there is None else there
+        self._move(self.motion.start, key.points, self._radii(Keys((key,), 0))[0] if self._fits else None)
         if there is None:
             self._mark_pins()
 
@@ -333,7 +333,7 @@ class Session:
         """Let the points where the last iterate, which may have fewer vertices, has pins be the pinned ones."""
         if not self._repinned or (last := self.motion.last) is None:
             return
-        shown = self.link.to_common(self.motion.start.mesh, self.motion.frame)
+        shown = self.link.to_common(self.motion.start.mesh, self.motion.shown.points)
         seen = self.link.to_stored(last.curve.mesh, self.motion.size.of(last.curve.vertices))
         pins = self.link.to_common(last.curve.mesh, seen)[list(last.pins)]
         vertices, first = [int(np.linalg.norm(shown - place, axis=1).argmin()) for place in pins], 0
@@ -374,10 +374,14 @@ class Session:
         """Whether any of the objects is drawn as a tube that is to be fitted."""
         return any(member.fits(self._key_options) for member in self.members)
 
-    def _radius(self, frame: Frame) -> float:
-        """Radius of the tube, as thick as free of contact allows, in the common space."""
+    def _radii(self, keys: Keys) -> FloatArray:
+        """Radii of the tube as shown at keys, in the common space: of the rope, or as thick as fits; (keys,)."""
         mesh = self.motion.start.mesh
-        return bevel.fitting_radius(Curve(self.link.to_common(mesh, frame), mesh), self._avoided)
+        if (rope := rope_radii(mesh, keys)) is not None:
+            return rope[:, 0]
+        curves = (Curve(self.link.to_common(mesh, key.points), mesh) for key in keys.keys)
+        fitting = [bevel.fitting_radius(each, self._avoided) for each in curves]
+        return np.array([key.size.factor for key in keys.keys]) * fitting
 
     @cached_property
     def _avoided(self) -> tuple[Obstacle, ...]:
@@ -393,10 +397,10 @@ class Session:
         radii = None
         if self._fits:
             shown = slice(None) if self._shape_keys else slice(-1, None)  # without shape keys the last one only
-            factors = np.array([key.size.factor for key in keys.keys[shown]])
-            fitting = factors * [self._radius(key.points) for key in keys.keys[shown]]
-            radii = eased(fitting, frames[shown], keys.moves[shown])
-            radii = (radii.min() if options.constant_radius else radii) / factors
+            drawn = replace(keys, keys=keys.keys[shown])
+            radii = eased(self._radii(drawn), frames[shown], drawn.moves)
+            radii = radii.min() if options.constant_radius else radii
+            radii = radii / [key.size.factor for key in drawn.keys]
         return keys, frames, course, radii
 
     def bake(self, prepared: Prepared) -> Iterator[Report | None]:
@@ -413,8 +417,10 @@ class Session:
             own = None if radii is None else radii / scale
             yield from member.writing(keys.part(vertices), frames, options, own)
         self.goals.paint(objects, keys, frames, options.timing)
-        for member in self.members:
-            member.keep(keys, frames, options, course)
+        rope = rope_radii(mesh, keys)
+        seen = 0.0 if rope is None else float(rope[-1, 0]) / keys.keys[-1].size.factor
+        for member, scale in zip(self.members, self.link.scales, strict=True):
+            member.keep(keys, frames, options, course, seen / scale)
         self.goals.hide(objects)
         played = bake.scene_range(objects)
         shown = keys.keys[-1].size.factor * stretch(objects[0])

@@ -27,7 +27,7 @@ import threadpoolctl
 
 from ...core import Curve, Hand, Iterate, MobiusFlowError, Obstacle, Outcome, RelaxOptions, Task, WithOutcome, relax
 from ...core.base import FloatArray, Message
-from ...core.collision import is_free
+from ...core.collision import is_free, is_rope
 from ...core.curve import Mesh
 from ...core.driver import Relaxation
 from ...core.keys.motion import frames_of
@@ -160,9 +160,10 @@ class Worker:
         self._proved.update(proved)
         return iterate  # type: ignore[no-any-return]
 
-    def is_free(self, mesh: Mesh, start: FloatArray, end: FloatArray) -> bool:
-        """As `core.collision.is_free`, but most motions were proved by the worker already."""
-        return digest(start, end) in self._proved or bool(is_free(mesh, start, end, self._obstacles))
+    def is_rope(self, mesh: Mesh, start: FloatArray, end: FloatArray, radius: FloatArray | None = None) -> bool:
+        """As `core.collision.is_rope`, but most motions were proved free of contact by the worker already."""
+        known = radius is None and digest(start, end) in self._proved
+        return known or is_rope(mesh, start, end, radius, self._obstacles)
 
     def close(self) -> None:
         """End the process now and the thread with it; harmless to repeat."""

@@ -10,13 +10,13 @@ import time
 from collections.abc import Callable, Iterator
 from enum import Enum
 from functools import cached_property
+from typing import Any
 
 import bpy
 import numpy as np
 
 from ...core import CurveError, Iterate, MobiusFlowError, Outcome, Status
 from ...core.base import FloatArray, Message, Place
-from ...core.curve import Mesh
 from ...core.driver import TimeLeft
 from ...core.keys.motion import Proof
 from ...core.keys.placement import Spot
@@ -110,10 +110,10 @@ class KeyWriter:
         return None
 
     def _prepare(self) -> None:
-        def prove(mesh: Mesh, start: FloatArray, end: FloatArray) -> bool:
+        def prove(*motion: Any) -> bool:
             if self._abandoned:
                 raise _AbandonedError
-            return self._proof(mesh, start, end)
+            return self._proof(*motion)
 
         with contextlib.suppress(_AbandonedError):
             self._prepared = self._session.prepare(prove)
@@ -158,7 +158,7 @@ class LiveRun:
         except BaseException:
             self.session.discard()
             raise
-        self._keys = KeyWriter(self.session, self._worker.is_free)
+        self._keys = KeyWriter(self.session, self._worker.is_rope)
 
     @property
     def objects(self) -> list[bpy.types.Object]:
@@ -269,7 +269,7 @@ class LiveRun:
     def recover(self) -> None:
         """Keep what a cancelled run had reached; raises MobiusFlowError if the curves have changed since."""
         self.session.reopen()
-        self._keys = KeyWriter(self.session, self._worker.is_free)
+        self._keys = KeyWriter(self.session, self._worker.is_rope)
         self.state, self.message, self.failed, self.shown = RunState.RUNNING, "", False, None
         self.trouble, self._left = [], None
         self.keep()

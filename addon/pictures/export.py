@@ -15,7 +15,7 @@ import numpy as np
 
 from ...core import Curve, Iterate, Mesh, MobiusFlowError
 from ...core.base import FloatArray, OutputError, atomic_write, termination_raises
-from ...core.collision import is_free
+from ...core.collision import is_rope
 from ...core.keys.key_options import Output
 from ...core.keys.motion import Key, Keys, Playing, check_dimension, recorded
 from ...core.keys.placement import Measure, Origin
@@ -97,16 +97,20 @@ def _played(
     motion, origin = recorded(iterates, Measure.LENGTH if in_place else Measure.RADIUS)
     playing = playing.timed(motion)
     timing = playing.timing
-    keys, mesh = motion.keys(is_free, timing.length, timing), motion.start.mesh
+    keys = motion.keys(is_rope, timing.length, timing)
     frames = timing.frames(motion.course(keys))
-    radii = rope_radii(mesh, keys)
-    if radii is None and not in_place:
-        mesh, keys = rounded(mesh, keys, is_free)
+    mesh, keys, radii = _drawn(motion.start.mesh, keys, in_place)
     scene = rendering.empty_scene()
     set_up(scene)
     compose(scene, keys, frames, mesh, playing, origin if in_place else None, radii=radii)
     scene.frame_start, scene.frame_end = timing.scene_range(frames)
     return scene, keys.certified
+
+
+def _drawn(mesh: Mesh, keys: Keys, cornered: bool = False) -> tuple[Mesh, Keys, FloatArray | None]:
+    """Keys and radii of a tube that is the rope; where there is none it is any, around corners that are rounded."""
+    radii = rope_radii(mesh, keys)
+    return (*(rounded(mesh, keys, is_rope) if radii is None and not cornered else (mesh, keys)), radii)
 
 
 def compose(
@@ -185,7 +189,7 @@ def compose(
 def write_still(path: Target, iterates: Sequence[Iterate], look: str | None = None) -> bool:
     """Render the relaxed curve, the last iterate, to a .png; otherwise as `write_blend`."""
     motion, _ = recorded(iterates)
-    keys = motion.result(is_free)
+    keys = motion.result(is_rope)
     return _render(path, keys, motion.start.mesh, _PICTURE, look)
 
 
@@ -221,10 +225,10 @@ def _render(
     require_blender()
     from . import rendering
 
-    mesh, keys = rounded(mesh, keys, is_free)
+    mesh, keys, radii = _drawn(mesh, keys)
     scene = rendering.empty_scene()
     rendering.use_cycles(scene, LOOKS[look or DEFAULT], *size, samples)
-    compose(scene, keys, np.ones(1), mesh, Playing(look), cut_out=cut_out)
+    compose(scene, keys, np.ones(1), mesh, Playing(look), cut_out=cut_out, radii=radii)
     _make(path, lambda temporary: rendering.render_still(scene, temporary))
     return keys.certified
 

@@ -23,7 +23,7 @@ from ..base.types import BoolArray, FloatArray, IntArray
 from ..curve import Mesh
 from ..curve.obstacle import Obstacle
 from .boxes import BoxTree, Level, Test, contact_window, corners, still_triangles
-from .motion import Contact, FreeMotion, Limit
+from .motion import Contact, FreeMotion, Limit, free_motion, is_free
 from .planes import cross, march
 
 # in which the border of points half a circle apart is followed, more where they do not suffice: those up to the part
@@ -39,17 +39,19 @@ def rope_motion(
     mesh: Mesh,
     start: FloatArray,
     end: FloatArray,
-    radius: FloatArray,
+    radius: FloatArray | None,
     obstacles: Sequence[Obstacle] = (),
     halvings: int = 4,
 ) -> FreeMotion:
     """Prove as much as possible of the motion (1−t) start + t end, t ∈ [0, 1], that of a rope.
 
     ``start`` and ``end`` are the vertices at both ends, shape (n, m) with m = 2 or 3, ``radius`` has one number for
-    each component.  Where lengths change too much on the way to tell which points count, the time is halved.  Ropes are
-    free of contact: points that count are apart, and between others the curve turns by less than π, so that it cannot
-    come back.
+    each component; None is a thread, that must only be free of contact.  Where lengths change too much on the way to
+    tell which points count, the time is halved.  Ropes are free of contact: points that count are apart, and between
+    others the curve turns by less than π, so that it cannot come back.
     """
+    if radius is None:
+        return free_motion(mesh, start, end, obstacles)
     exponent = int(np.frexp(max(np.abs(start).max(), np.abs(end).max(), *(each.size for each in obstacles)))[1])
     points = np.ldexp(start.T, -exponent, order="C"), np.ldexp(end.T, -exponent, order="C")
     own = np.ldexp(radius, -exponent) * (1.0 + _SLACK) + _SLACK
@@ -77,9 +79,11 @@ def rope_motion(
 
 
 def is_rope(
-    mesh: Mesh, start: FloatArray, end: FloatArray, radius: FloatArray, obstacles: Sequence[Obstacle] = ()
+    mesh: Mesh, start: FloatArray, end: FloatArray, radius: FloatArray | None = None, obstacles: Sequence[Obstacle] = ()
 ) -> bool:
     """Whether the motion from ``start`` to ``end``, each (n, m), is proved that of a rope; see `rope_motion`."""
+    if radius is None:
+        return is_free(mesh, start, end, obstacles)
     return rope_motion(mesh, start, end, radius, obstacles).proved
 
 

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from ..base import FloatArray, OptionError, check_time
-from ..collision import FreeMotion, Limit, free_motion, rope_motion
+from ..collision import FreeMotion, Limit, rope_motion
 from ..curve import Curve, Mesh, Obstacle, Pins
 from ..curve.symmetry import NO_SYMMETRY, Symmetry
 from ..energies import Objective
@@ -166,8 +166,6 @@ class Problem:
         check_time()
         if not self.certifiable:
             return FreeMotion(1.0, None, Limit.UNTESTED)
-        if self.radius is None:
-            return free_motion(self.mesh, start, end, self.obstacles)
         return rope_motion(self.mesh, start, end, self.radius, self.obstacles)
 
 

@@ -9,8 +9,9 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
+from functools import partial
 from itertools import pairwise
-from typing import ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple, Protocol
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
@@ -23,8 +24,13 @@ from ..io.trajectory import Iterate
 from ..proof.checker import RefusedError, kept_vertices
 from .key_options import Course, Timing
 from .placement import Frame, Link, Measure, Origin, Similarity
+from .rope import KEPT, corners
 
-Proof = Callable[[Mesh, FloatArray, FloatArray], bool]
+
+class Proof(Protocol):
+    """Whether a straight motion is proved free of contact, or that of a rope if components have radii."""
+
+    def __call__(self, mesh: Mesh, start: FloatArray, end: FloatArray, radius: FloatArray | None = None, /) -> bool: ...
 
 
 class Kind(Enum):
@@ -44,7 +50,7 @@ class Key:
     points: Frame
     kind: Kind = Kind.ADDED
     size: Similarity = field(default_factory=Similarity)  # by which it is shown, in the world
-    radius: float = 0.0  # of the rope that the curve is all along, as shown, in the common space; 0 if it is none
+    radius: float = 0.0  # of the rope that the curve is proved to be all along, as shown, in the common space; or 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,11 +191,12 @@ class Recording:
     def keys(self, free: Proof, limit: int | None = None, timing: Timing | None = None) -> Keys:
         """Choose the keys of an animation from the start to the last iterate.
 
-        ``free``: ``free(mesh, start, end)`` proves a straight motion free of contact; ``limit``: wanted number of keys,
-        at least 2, spread over the iterates as over the frames of an even motion; None keys every iterate. More are
-        added where the straight motion from one to the next cannot be proved, and, if every iterate is keyed, where
+        ``free``: proves a straight motion free of contact, or that of a rope; ``limit``: wanted number of keys, at
+        least 2, spread over the iterates as over the frames of an even motion; None keys every iterate. More are added
+        where the straight motion from one to the next cannot be proved, and, if every iterate is keyed, where
         ``timing`` leaves room: on interpolating curves through the iterates, where that can be proved. By default they
-        are no more than half of all, but for short runs.
+        are no more than half of all, but for short runs. A curve that was a rope is one from key to key, unless that
+        cannot be proved: then all motions are free of contact, and keys have no radius.
         """
         places = [each.place for each in self._passed]
         most = len(places) if timing is None else timing.most_keys
@@ -222,19 +229,23 @@ class Recording:
                 pairs = zip(times, points, strict=True)
                 between[k] = [self._stored(Key(t, shape, size=self._size(t, shape))) for t, shape in pairs]
         start, ends = self._link.to_stored(self._mesh, self.start.vertices), list(map(self._stored, ends))
-        unproved = int(not self._proved(start, ends[0].points, free))  # rounding may push something through another
-        keys = ends[:1]
-        for a, b, added, end in zip(places, places[1:], between, ends[1:], strict=False):
-            smooth = [*added, end]
-            if all(self._proved(one.points, other.points, free) for one, other in pairwise([keys[-1], *smooth])):
-                keys += smooth
-                continue
-            for key, proved in self._way(a, b, free):
-                keys.append(key)
-                unproved += not proved
-        return Keys(tuple(keys), unproved)
+        for radius in (self._radius, 0.0):
+            proved = partial(self._proved, free, radius)
+            unproved = int(not proved(ends[0], ends[0], start))  # rounding may push one through another
+            keys = ends[:1]
+            for a, b, added, end in zip(places, places[1:], between, ends[1:], strict=False):
+                smooth = [*added, end]
+                if all(proved(one, other) for one, other in pairwise([keys[-1], *smooth])):
+                    keys += smooth
+                    continue
+                for key, is_free in self._way(a, b, proved):
+                    keys.append(key)
+                    unproved += not is_free
+            if not unproved:
+                break
+        return Keys(tuple(key if radius else replace(key, radius=0.0) for key in keys), unproved)
 
-    def _way(self, a: int, b: int, free: Proof) -> Iterator[tuple[Key, bool]]:
+    def _way(self, a: int, b: int, proved: Callable[[Key, Key], bool]) -> Iterator[tuple[Key, bool]]:
         """Yield the keys after shape ``a`` up to ``b``, each with whether the motion to it was proved.
 
         Where one straight motion is not, others lead over shapes in between, and along a single leg in shorter pieces.
@@ -242,7 +253,7 @@ class Recording:
 
         def along(start: Key, end: Key, depth: int) -> list[Key]:
             """Keys along one leg, the motions to all of them proved; none if that fails."""
-            if self._proved(start.points, end.points, free):
+            if proved(start, end):
                 return [end]
             if not depth:
                 return []
@@ -265,8 +276,8 @@ class Recording:
         # an iterate makes a better key than the inner end of a leg
         inside = [each.place for each in self._passed if a < each.place < b] or range(a + 1, b)
         middle = inside[len(inside) // 2]
-        yield from self._way(a, middle, free)
-        yield from self._way(middle, b, free)
+        yield from self._way(a, middle, proved)
+        yield from self._way(middle, b, proved)
 
     def result(self, free: Proof) -> Keys:
         """Return the last iterate alone; it counts as proved if the way there and its rounding were."""
@@ -274,7 +285,10 @@ class Recording:
         assert last is not None, "a relaxation yields at least its start"
         exact = self._link.to_stored(self._mesh, self._marked(last.curve.vertices, -1))
         exact, stored = self._shown(exact, key.size) if self._in_points else exact, self._stored(key)
-        return Keys((stored,), int(not (last.certified and self._proved(exact, stored.points, free))))
+        rounded = stored, stored, exact
+        radius = self._radius if self._proved(free, self._radius, *rounded) else 0.0
+        proved = last.certified and (radius > 0.0 or self._proved(free, 0.0, *rounded))
+        return Keys((stored if radius else replace(stored, radius=0.0),), int(not proved))
 
     def course(self, keys: Keys) -> Course:
         """How far the relaxation has come at each of some keys.
@@ -286,11 +300,11 @@ class Recording:
     def at(self, frame: float, timing: Timing) -> Key:
         """The shape that an animation of what was recorded so far has at a scene frame; nothing is proved of it."""
         place = np.interp(frame, timing.moments(self._course), np.arange(len(self._shapes)))
-        around = [self._key(k) for k in (int(place), min(int(place) + 1, len(self._shapes) - 1))]
-        part = np.array([place % 1.0])
-        (points,) = interpolated(np.stack([self._shown(key.points, key.size) for key in around]), part)
-        (time,) = interpolated(np.array([key.time for key in around]), part)
-        return Key(float(time), points.astype(np.float32))
+        ends, part = (int(place), min(int(place) + 1, len(self._shapes) - 1)), np.array([place % 1.0])
+        around = [self._in_view(self._key(k)) for k in ends]
+        (points,) = interpolated(np.stack([key.points for key in around]), part)
+        ((time, radius),) = interpolated(np.array([(key.time, key.radius) for key in around]), part).tolist()
+        return Key(time, points.astype(np.float32), radius=radius)
 
     @property
     def way(self) -> float:
@@ -308,10 +322,9 @@ class Recording:
         return Curve(self._marked(self._passed[0].curve.vertices, 0), self._mesh)
 
     @property
-    def frame(self) -> Frame:
+    def shown(self) -> Key:
         """The last iterate as it is shown, with all points that keys have."""
-        key = self._key(-1)
-        return self._shown(key.points, key.size).astype(np.float32)
+        return self._in_view(self._key(-1))
 
     @property
     def _course(self) -> Course:
@@ -366,14 +379,30 @@ class Recording:
 
     def _stored(self, key: Key) -> Key:
         """A key as it is stored: where nothing but points can be keyed, they are those shown."""
-        key = replace(key, radius=self._radius * key.size.factor)
-        if not self._in_points or key.size.is_identity:
-            return key
-        return replace(key, points=self._shown(key.points, key.size).astype(np.float32), size=Similarity())
+        shown = self._in_view(key)
+        return shown if self._in_points else replace(key, radius=shown.radius)
 
-    def _proved(self, start: Frame | FloatArray, end: Frame, free: Proof) -> bool:
-        """Whether the straight motion between stored points is free of contact."""
-        return free(self._mesh, *(self._link.to_common(self._mesh, points) for points in (start, end)))
+    def _in_view(self, key: Key) -> Key:
+        """A key with points and rope in the size in which they are shown."""
+        points, radius = self._shown(key.points, key.size).astype(np.float32), KEPT * self._radius * key.size.factor
+        return replace(key, points=points, size=Similarity(), radius=radius)
+
+    def _proved(self, free: Proof, radius: float, start: Key, end: Key, exact: FloatArray | None = None) -> bool:
+        """Whether the straight motion between keys as stored is free of contact, and that of a rope, if it is one.
+
+        ``exact``: the points of the first one, unless they are as stored.
+        """
+        points = start.points if exact is None else exact, end.points
+        a, b = (self._link.to_common(self._mesh, each) for each in points)
+        if not free(self._mesh, a, b):
+            return False
+        if not radius:
+            return True
+        if self._in_points:  # between two sizes it is that of one size, at another pace
+            b = b * (start.radius / end.radius)
+            radius = start.radius / KEPT
+        mesh, a, b = corners(self._mesh, a, b, radius)
+        return free(mesh, a, b, np.full(len(mesh.closed), 0.5 * (1.0 + KEPT) * radius))
 
 
 @dataclass(frozen=True)

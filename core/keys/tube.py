@@ -8,14 +8,12 @@ fails the keys stay as they were. A curve that is a rope all along is drawn as t
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
-from itertools import pairwise
 
 import numpy as np
 from scipy.sparse import diags_array
 from scipy.sparse.linalg import spsolve
 
 from ..base.types import FloatArray
-from ..collision import is_rope
 from ..collision.embedded import clears
 from ..curve import Curve, Mesh
 from ..curve.distances import nearest_strands, strand_gaps
@@ -147,35 +145,10 @@ def tube_radii(mesh: Mesh, points: Sequence[FloatArray], frames: FloatArray) -> 
 
 
 def rope_radii(mesh: Mesh, keys: Keys) -> FloatArray | None:
-    """Radii of the tube at all vertices, (keys, n), that is the rope itself: of one radius, proved from key to key.
-
-    None if there is no rope, or it is too thin to be seen.
-    """
-    points, radii = [key.points.astype(np.float64) for key in keys.keys], np.array([key.radius for key in keys.keys])
-    sizes = np.array([np.ptp(each, axis=0).max() for each in points])
-    if len(radii) == 1 or (radii < _LEAST * sizes).any():
-        return None
-    before, after = mesh.tails[mesh.incoming[mesh.inner]], mesh.heads[mesh.outgoing[mesh.inner]]
-    legs, number = list[tuple[Mesh, FloatArray, FloatArray]](), np.arange(mesh.size)
-    for start, end in pairwise(points):
-        # leave out points that are no corners, as they lie on edges up to rounding, but for every eighth of a row
-        straight = np.zeros(mesh.size, dtype=bool)
-        straight[mesh.inner] = True
-        for each in (start, end):
-            chord, away = each[after] - each[before], each[mesh.inner] - each[before]
-            off = np.linalg.norm(np.cross(chord, away), axis=1)
-            straight[mesh.inner] &= off <= 2e-7 * sizes[0] * np.linalg.norm(chord, axis=1)
-        straight &= (number - np.maximum.accumulate(np.where(straight, 0, number))) % 8 != 0
-        counts = [int((~straight[piece]).sum()) for piece in mesh.slices]
-        if min(counts) < 3:
-            straight, counts = np.zeros(mesh.size, dtype=bool), list(mesh.component_sizes)
-        legs.append((Mesh(tuple(counts), mesh.closed), start[~straight], end[~straight]))
-    thickest = np.maximum(radii[1:], radii[:-1])
-    for share in (1.0, 0.95, 0.9, 0.8):  # keys are rounded, and cut corners of the way that was proved
-        thick = (np.full(len(mesh.closed), (share - 1e-6) * radius) for radius in thickest)
-        if all(is_rope(*leg, radius) for leg, radius in zip(legs, thick, strict=True)):
-            return np.repeat(0.998 * share * radii[:, None], mesh.size, axis=1)
-    return None
+    """Radii of the tube that is the rope itself, at all vertices, (keys, n), as shown; None if none is, or is seen."""
+    radii = np.array([key.radius for key in keys.keys])
+    sizes = np.array([key.size.factor * np.ptp(key.points, axis=0).max() for key in keys.keys])
+    return None if (radii < _LEAST * sizes).any() else np.repeat(radii[:, None], mesh.size, axis=1)
 
 
 def eased(radii: FloatArray, frames: FloatArray, moves: Sequence[bool] = ()) -> FloatArray:

@@ -10,14 +10,15 @@ import numpy as np
 
 from ..base.arguments import checked
 from ..base.errors import CurveError, MobiusFlowError
-from ..collision import check_embedded, minimal_gap
+from ..collision import check_embedded
 from ..curve import Curve, Mesh
 from ..curve.refine import evenly
 from ..curve.tube import tubes
 from ..descent.task import centred
 from ..energies.hierarchy import moebius_energy
 from ..proof import stages
-from ..proof.checker import TrajectoryError
+from ..proof.checker import Archive, TrajectoryError
+from .tube import free_radius, thickest_radius
 
 COLOURS = ("#3b6fb6", "#d1663f", "#4b9b6e", "#9b5fb0", "#c9a227", "#5aa7b8", "#b8436d", "#7a7a7a")
 EYE = (0.26, -0.42, 1.36)  # from where figures are seen at first
@@ -30,13 +31,13 @@ class Motion:
 
     curves: tuple[Curve, ...]
     energies: tuple[float, ...] = ()
+    rope: float = 0.0  # its radius, if the curve is one all along
 
     @property
     def radius(self) -> float:
-        """Radius of tubes that are easy to see, but thinner where strands are near each other."""
-        length = max(curve.length for curve in self.curves)
-        gap = min(minimal_gap(curve)[0] for curve in self.curves)
-        return float(np.clip(0.45 * gap, 0.002 * length, 0.012 * length))
+        """Radius of tubes: that of the rope, or as thick as strands leave room; never too thin to be seen."""
+        fits = self.rope or min(free_radius(curve, thickest_radius(curve)) for curve in self.curves)
+        return max(fits, 0.002 * max(curve.length for curve in self.curves))
 
 
 @checked
@@ -60,10 +61,12 @@ def motion(path: str | os.PathLike[str], frames: int = FRAMES) -> Motion:
         curves = [curve for number, curve in enumerate(_curves(path)) if number in chosen]
         for curve in curves:
             check_embedded(curve)
+        with Archive(path) as archive:
+            rope = min(archive.radius(), default=0.0)
     except (TrajectoryError, CurveError) as error:
         raise MobiusFlowError(f"{path}: {error}") from error
     energies = tuple(moebius_energy(centred(curve))[0] for curve in curves)
-    return Motion(tuple(_on_one_mesh(curves)), energies)
+    return Motion(tuple(_on_one_mesh(curves)), energies, rope)
 
 
 def _curves(path: str) -> Iterator[Curve]:

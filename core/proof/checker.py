@@ -699,7 +699,9 @@ class Archive(zipfile.ZipFile):
         return list(rows)
 
     def radius(self) -> list[float]:
-        """Of each component as a rope."""
+        """Of each component as a rope; none if it is said to be none."""
+        if "radius.npy" not in self.names:
+            return []
         radius = [r for (r,) in list(self.array("radius", FLOATS, 1, "a list of float64"))[1:]]
         if not radius or min(radius) <= 0:
             raise TrajectoryError("radius must have a number above 0 for each component")
@@ -877,7 +879,7 @@ def check(
             parts = [archive.triangles(name) for name in names]
             what["obstacles"] = len(parts)
             pins = archive.points("pins", [2, 3]) if "pins.npy" in archive.names else []
-            radius = archive.radius() if "radius.npy" in archive.names else []
+            radius = archive.radius()
             what |= {"pins": len(pins), "radius": tuple(radius)}
             total = 0
             triangles, obstacle = [*chain(*parts)], [k for k, part in enumerate(parts) for _ in part]

@@ -89,7 +89,7 @@ def test_an_abandoned_thread_ends_at_its_next_proof():
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
 def test_a_thread_that_fails_is_an_error():
-    writer = started(SimpleNamespace(prepare=lambda proof: proof(1)), lambda *_: True)
+    writer = started(SimpleNamespace(prepare=lambda proof: proof(0)), lambda number: 1 // number)
     with pytest.raises(MobiusFlowError, match="could not be prepared"):
         writer.advance()
 

@@ -102,7 +102,7 @@ def knot():
 
 @pytest.mark.parametrize("keep_size", ["LENGTH", "RADIUS"])
 def test_a_fitted_tube_is_as_thick_as_free_of_contact_allows_at_every_moment(operator, knot, keep_size):
-    operator.given |= {"keep_size": keep_size}
+    operator.given |= {"keep_size": keep_size, "radius": "none"}
     depth, original, depths = knot.data.bevel_depth, knot.data, []
     operator.start()
     for index in (1, 3, 6):
@@ -116,11 +116,15 @@ def test_a_fitted_tube_is_as_thick_as_free_of_contact_allows_at_every_moment(ope
     assert (knot.data.bevel_depth, is_fitted(knot.data)) == (depth, True)
 
 
-def test_a_fitted_tube_is_kept_as_it_is_shown(operator, knot):
-    operator.given |= {"keep_size": "LENGTH", "max_iterations": 8}
+@pytest.mark.parametrize("radius", ["none", "keep"])
+def test_a_fitted_tube_is_kept_as_it_is_shown(operator, knot, radius):
+    """That of a rope is the rope itself all along."""
+    operator.given |= {"keep_size": "LENGTH", "max_iterations": 8, "radius": radius}
     operator.start()
     operator.reach(8)
     shown = knot.data.bevel_depth
+    if radius == "keep":
+        assert shown == pytest.approx(0.998 * operator.run.last.radius[0] / 2.0, rel=COARSE)
     assert operator.until(lambda: False) == {"FINISHED"}
     assert knot.data.bevel_depth == pytest.approx(shown, rel=COARSE)
     assert is_fitted(knot.data)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from families import family
 from mobius_flow.core import OptionError, RelaxOptions, relax
-from mobius_flow.core.collision import is_free
+from mobius_flow.core.collision import is_rope
 from mobius_flow.core.keys.key_options import LAST_FRAME, Course, Pace, Timing
 from mobius_flow.core.keys.motion import Recording
 from mobius_flow.core.keys.placement import Link, Placement
@@ -37,7 +37,7 @@ def half_way(keys, frames):
 @pytest.mark.parametrize("limit", [None, 60])
 @pytest.mark.parametrize("pace", [Pace.EVEN, Pace.DISTANCE])
 def test_half_of_the_motion_is_travelled_in_the_middle_of_the_frames(motion, pace, limit):
-    keys = motion.keys(is_free, limit, Timing(pace=pace))
+    keys = motion.keys(is_rope, limit, Timing(pace=pace))
     assert keys.certified
     frames = Timing(pace=pace).frames(motion.course(keys))
     assert (frames[0], frames[-1]) == (1, 250)

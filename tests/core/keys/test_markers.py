@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, relax
-from mobius_flow.core.collision import is_free
+from mobius_flow.core.collision import is_rope
 from mobius_flow.core.curve.refine import Markers, subdivide
 from mobius_flow.core.keys.motion import Recording
 from mobius_flow.core.keys.placement import Link, Placement
@@ -26,7 +26,7 @@ def test_points_that_are_added_are_on_the_edges_of_all_keys(finer, limit):
     turned = Placement(np.array([[0.0, -2.0, 0.0], [0.5, 0.0, 0.0], [0.0, 0.0, 1.0]]), np.array([1.0, 2.0, 3.0]))
     link = Link((turned,), (1,))
     motion = followed(finer, link)
-    keys = motion.keys(is_free, limit)
+    keys = motion.keys(is_rope, limit)
     start, end = finer[0].curve, finer[-1].curve
     assert {len(key.points) for key in keys.keys} == {len(end)}
     assert_proved(keys, end.mesh)
@@ -61,7 +61,7 @@ def test_strand_moves_are_keyed(name):
     motion, curves = followed(iterates), {each.index: each.curve for each in iterates}
     assert len(motion.start) < 2 * max(map(len, curves.values()))
     for limit in limits:
-        keys = motion.keys(is_free, limit)
+        keys = motion.keys(is_rope, limit)
         assert_proved(keys, motion.start.mesh)
         for key in (key for key in keys.keys if key.time in curves):
             curve, points = curves[key.time], Curve(key.points.astype(np.float64))
@@ -113,7 +113,7 @@ def test_a_drag_that_is_taken_back_takes_its_meshes_along():
         detour.add(iterate(stage - 1 + k, curve.vertices, curve, ()))
     for each in run[stage - 1 :]:
         detour.add(each)
-    expected, found = plain.keys(is_free), detour.keys(is_free)
+    expected, found = plain.keys(is_rope), detour.keys(is_rope)
     assert_proved(found, detour.start.mesh)
     np.testing.assert_array_equal(detour.course(found).distance, plain.course(expected).distance)
     for a, b in zip(found.keys, expected.keys, strict=True):

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, RelaxOptions, relax
-from mobius_flow.core.collision import is_free
+from mobius_flow.core.collision import is_free, is_rope
 from mobius_flow.core.io.trajectory import StrandMoves
 from mobius_flow.core.keys.key_options import Pace, Timing
 from mobius_flow.core.keys.motion import Kind, Recording
@@ -20,22 +20,22 @@ def test_a_chord_that_collides_gets_keys_at_the_legs(angle, most):
     start, end = around(0.0), around(angle)
     legs = tuple(around(each).vertices for each in np.linspace(0, angle, 5)[1:])
     assert is_free(start.mesh, start.vertices, end.vertices) == (most == 2)
-    keys = collected([start, end], {1: legs}).keys(is_free)
+    keys = collected([start, end], {1: legs}).keys(is_rope)
     assert 2 <= len(keys.keys) <= most
     assert_proved(keys, start.mesh)
     assert {key.points.tobytes() for key in keys.keys[1:]} <= {leg.astype(np.float32).tobytes() for leg in legs}
 
 
 def test_what_cannot_be_proved_is_counted_not_hidden():
-    keys = collected([around(0.0), around(np.pi)]).keys(is_free)
+    keys = collected([around(0.0), around(np.pi)]).keys(is_rope)
     assert (keys.certified, keys.unproved, len(keys.keys)) == (False, 1, 2)
     square = regular_polygon(4).vertices + 1000.0
     close = Curve.from_components([square, square + np.array([1.0, 0.0, 1e-12])])
-    assert not collected([close, close]).keys(is_free).certified
-    assert not collected([close]).result(is_free).certified
+    assert not collected([close, close]).keys(is_rope).certified
+    assert not collected([close]).result(is_rope).certified
     curve = around(0.0)
     made = (iterate(k, curve.vertices, curve, certified=k == 0) for k in (0, 1))
-    assert not followed(made, at_rest(2)).result(is_free).certified
+    assert not followed(made, at_rest(2)).result(is_rope).certified
 
 
 @pytest.mark.parametrize(
@@ -55,12 +55,12 @@ def test_times(heights, longest, times):
 @pytest.mark.parametrize("limit", [2, 5, 9])
 def test_thinning_spreads_keys_and_inserts_iterates_where_chords_collide(limit):
     curves = [around(angle) for angle in np.linspace(0, np.pi, 21)]
-    keys = collected(curves).keys(is_free, limit=limit)
+    keys = collected(curves).keys(is_rope, limit=limit)
     assert limit <= len(keys.keys) < 10
     assert_proved(keys, curves[0].mesh)
     assert {key.time for key in keys.keys} <= set(range(21))
     curves = [around(angle) for angle in np.linspace(0, 0.5, 21)]
-    keys = collected(curves).keys(is_free, limit=limit)
+    keys = collected(curves).keys(is_rope, limit=limit)
     assert len(keys.keys) == limit
     np.testing.assert_allclose([key.time for key in keys.keys], np.linspace(0, 20, limit), atol=0.5 + 1e-9)
     assert_proved(keys, curves[0].mesh)
@@ -70,13 +70,13 @@ def test_thinning_spreads_keys_and_inserts_iterates_where_chords_collide(limit):
 def test_a_real_run_is_proved_and_timing_decides_when_and_not_what(limit):
     iterates = list(relax(torus_trefoil(48), RelaxOptions(max_iterations=40, vertices=48, mesh="fixed")))
     motion = followed(iterates)
-    keys = motion.keys(is_free, limit)
+    keys = motion.keys(is_rope, limit)
     assert_proved(keys, iterates[0].curve.mesh)
     assert keys.keys[-1].time == iterates[-1].index
     np.testing.assert_array_equal(keys.keys[-1].points, iterates[-1].curve.vertices.astype(np.float32))
     passed = motion.course(motion.keys(lambda *_: True)).flow_time
     np.testing.assert_allclose(passed, np.cumsum([0.0, *(each.step_size for each in iterates[1:])]))
-    found = [motion.keys(is_free, limit, Timing(pace=pace, length=30)) for pace in Pace]
+    found = [motion.keys(is_rope, limit, Timing(pace=pace, length=30)) for pace in Pace]
     kept = [[key.time for key in keys.keys if key.kind is Kind.STEP] for keys in found]
     assert kept[0] == kept[1] == kept[2] == kept[3]
 
@@ -103,7 +103,7 @@ def test_thinning_keys_iterates_rather_than_the_ends_of_legs():
     angles = np.linspace(0, np.pi, 8)  # an odd number of steps, so that the middle of all legs is within one
     curves = [around(angle) for angle in angles]
     halves = {k + 1: (around(0.5 * (a + b)).vertices, around(b).vertices) for k, (a, b) in enumerate(pairwise(angles))}
-    times = [key.time for key in collected(curves, halves).keys(is_free, limit=2).keys]
+    times = [key.time for key in collected(curves, halves).keys(is_rope, limit=2).keys]
     assert len(times) > 2
     assert times == [round(time) for time in times]
 
@@ -128,7 +128,7 @@ def test_chords_of_different_objects_are_proved_against_each_other(placements):
     """Each square by itself may go straight; together the second must go round the first."""
     link = Link(placements, (1, 1))
     curves = [around(angle) for angle in np.linspace(0, np.pi, 21)]
-    keys = collected(curves, link=link).keys(is_free, limit=2)
+    keys = collected(curves, link=link).keys(is_rope, limit=2)
     mesh = curves[0].mesh
     assert keys.certified
     assert 2 < len(keys.keys) < 10
@@ -140,14 +140,14 @@ def test_chords_of_different_objects_are_proved_against_each_other(placements):
         assert is_free(mesh, *world)
     for k, s in enumerate(mesh.slices):
         alone = collected([Curve(curve.vertices[s]) for curve in curves], link=Link((placements[k],), (1,)))
-        assert len(alone.keys(is_free, limit=2).keys) == 2
+        assert len(alone.keys(is_rope, limit=2).keys) == 2
 
 
 def test_a_hop_is_keyed_like_a_step():
     iterates = list(relax(torus_knot(3, 4, 90), RelaxOptions(vertices=90, hops=1, seed=1)))
     motion = followed(iterates)
     assert max(len(each.path) for each in iterates) > 20
-    keys = motion.keys(is_free)
+    keys = motion.keys(is_rope)
     assert len(keys.keys) < 2 * len(iterates)
     assert_proved(keys, iterates[-1].curve.mesh)
 
@@ -164,7 +164,7 @@ def zigzag():
 
 @pytest.mark.parametrize("limit", [None, 65])
 def test_keys_on_curves_through_the_iterates_make_a_motion_smooth(zigzag, limit):
-    sharp, smooth = zigzag.keys(is_free, limit), zigzag.keys(is_free, limit, ZIGZAG)
+    sharp, smooth = zigzag.keys(is_rope, limit), zigzag.keys(is_rope, limit, ZIGZAG)
     assert_proved(smooth, zigzag.start.mesh)
     assert len(smooth.keys) == pytest.approx(limit or 8 * 12 + 1, abs=9)
     assert smooth.kinds[Kind.STEP] == 9
@@ -184,16 +184,16 @@ def test_keys_on_curves_through_the_iterates_make_a_motion_smooth(zigzag, limit)
 def test_at_most_half_of_many_keys_are_added_and_no_more_than_there_are_times_for():
     ring = regular_polygon(20)
     motion = collected([ring.with_vertices(ring.vertices + 0.1 * np.sin(k)) for k in range(100)])
-    keys = motion.keys(is_free, None, Timing(length=2000))
+    keys = motion.keys(is_rope, None, Timing(length=2000))
     assert 0.5 * len(keys.keys) <= keys.kinds[Kind.STEP] == 100 < 0.6 * len(keys.keys)
     timing = Timing(length=2)
-    keys = motion.keys(is_free, None, timing)
+    keys = motion.keys(is_rope, None, timing)
     assert 20 < len(keys.keys) < 70
     assert np.diff(timing.frames(motion.course(keys))).min() > 0.01
 
 
 def test_where_a_smooth_motion_is_not_proved_it_stays_straight(zigzag):
-    iterates = {key.points.tobytes() for key in zigzag.keys(is_free).keys}
+    iterates = {key.points.tobytes() for key in zigzag.keys(is_rope).keys}
 
     def free(_mesh, start, end):
         near = min(start[0, 0], end[0, 0]) < 2.0
@@ -215,7 +215,7 @@ def test_strand_moves_are_seen_by_flow_time_as_long_as_by_distance():
         for k, each in enumerate(shapes)
     ]
     motion = followed(made)
-    keys = motion.keys(is_free)
+    keys = motion.keys(is_rope)
     assert [key.kind for key in keys.keys] == [Kind.STEP] + 4 * [Kind.MOVE] + 4 * [Kind.STEP]
     timing = Timing(pace=Pace.FLOW_TIME, length=101)
     np.testing.assert_allclose(timing.frames(motion.course(keys)), np.linspace(1, 101, 9), atol=0.02)
@@ -240,7 +240,7 @@ def test_pinned_points_keep_the_numbers_of_the_start_and_points_at_rest_stay_exa
 def test_falls_of_the_energy_count_and_rises_on_the_way_to_another_curve_but_not_on_a_finer_mesh(energies):
     start = regular_polygon(5)
     motion = followed(iterate(k, start.vertices + 0.1 * k, start, energy=energy) for k, energy in enumerate(energies))
-    fall = motion.course(motion.keys(is_free)).fall
+    fall = motion.course(motion.keys(is_rope)).fall
     if energies[-1] > 5.0:
         np.testing.assert_allclose(np.diff(fall), np.diff(fall)[::-1], atol=1e-12)
         assert fall[3] > 5.0

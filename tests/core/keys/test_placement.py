@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError, RelaxOptions, relax
 from mobius_flow.core.base.errors import Place
-from mobius_flow.core.collision import free_motion, is_free
+from mobius_flow.core.collision import free_motion, is_free, is_rope
 from mobius_flow.core.curve import refine
 from mobius_flow.core.keys.key_options import Timing
 from mobius_flow.core.keys.motion import Kind, Recording
@@ -190,7 +190,7 @@ def test_contact_is_neither_made_nor_undone_and_its_time_is_passed_at_the_other_
 def test_a_motion_is_shown_in_one_size_and_its_keys_are_the_iterates(measure, in_points):
     iterates = list(relax(lattice_knot("4_1"), RelaxOptions(max_iterations=6, vertices=90, mesh="fixed")))
     motion = followed(iterates, measure=measure, in_points=in_points)
-    keys = motion.keys(is_free, None, Timing(length=100))
+    keys = motion.keys(is_rope, None, Timing(length=100))
     assert_proved(keys, motion.start.mesh)
     shown = [Curve(key.size.of(key.points.astype(float))) for key in keys.keys]
     size = measure.of(iterates[0].curve)
@@ -202,7 +202,7 @@ def test_a_motion_is_shown_in_one_size_and_its_keys_are_the_iterates(measure, in
             np.testing.assert_allclose(barycenter(curve), barycenter(each), atol=1e-5)
             assert in_points or np.array_equal(key.points, each.vertices.astype(np.float32))
     assert in_points == all(key.size.is_identity for key in keys.keys)
-    np.testing.assert_allclose(motion.frame, shown[-1].vertices, atol=1e-6)
+    np.testing.assert_allclose(motion.shown.points, shown[-1].vertices, atol=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -219,5 +219,5 @@ def test_sizes_change_evenly_between_curves_that_have_their_own(sizes, pins, nat
     for k, (size, held) in enumerate(zip(sizes, pins, strict=True)):
         motion.add(iterate(k, size * ring.vertices, ring, pins=held))
     motion.natural = natural
-    seen = [np.linalg.norm(key.size.of(key.points.astype(float))[5]) for key in motion.keys(is_free).keys]
+    seen = [np.linalg.norm(key.size.of(key.points.astype(float))[5]) for key in motion.keys(is_rope).keys]
     np.testing.assert_allclose(seen, shown, rtol=1e-6)

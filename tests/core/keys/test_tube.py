@@ -1,14 +1,15 @@
 """Tubes: as thick as there is room, smooth in films, and proved."""
 
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, Mesh, Obstacle, RelaxOptions, minimize
-from mobius_flow.core.collision import is_free
+from mobius_flow.core.collision import is_rope
 from mobius_flow.core.curve.distances import nearest_strands
-from mobius_flow.core.keys.motion import Key, Keys, recorded
+from mobius_flow.core.curve.refine import evenly
+from mobius_flow.core.keys.key_options import Pace, Timing
+from mobius_flow.core.keys.motion import Key, Keys, Kind, recorded
 from mobius_flow.core.keys.placement import Measure
 from mobius_flow.core.keys.tube import (
     free_radius,
@@ -20,6 +21,8 @@ from mobius_flow.core.keys.tube import (
     tube_radii,
 )
 from mobius_flow.core.knots import knot, smooth_knot
+from recorded_motions import followed, iterate
+from scipy.spatial.distance import pdist, squareform
 from shapes import lattice_knot, regular_polygon
 
 RING = regular_polygon(60).vertices
@@ -97,7 +100,7 @@ def moving(vertices, keys, unproved=0):
 @pytest.mark.parametrize("unproved", [0, 1])
 def test_corners_are_rounded_and_the_motion_is_proved_anew(unproved):
     knot = lattice_knot("4_1")
-    _, keys = rounded(knot.mesh, moving(knot.vertices, 3, unproved), is_free)
+    _, keys = rounded(knot.mesh, moving(knot.vertices, 3, unproved), is_rope)
     assert keys.unproved == unproved
     assert sharpest(knot.vertices) == pytest.approx(90)
     assert max(sharpest(key.points.astype(float)) for key in keys.keys) < 60
@@ -123,7 +126,7 @@ def test_where_a_round_motion_is_not_proved_keys_keep_their_corners():
 
 def test_a_fine_curve_and_an_open_one_keep_their_ends_and_their_places():
     arc = regular_polygon(1000).vertices[:600]
-    made, keys = rounded(Mesh((600,), (False,)), moving(arc, 1), is_free)
+    made, keys = rounded(Mesh((600,), (False,)), moving(arc, 1), is_rope)
     assert made.closed == (False,)
     assert np.linalg.norm(keys.keys[0].points[[0, -1]] - arc[[0, -1]], axis=1).max() < 0.05
 
@@ -167,26 +170,52 @@ def test_tubes_are_not_much_thicker_elsewhere_where_many_strands_are_close():
     assert radii[:60].max() <= 2.2 * np.quantile(radii[60:], 0.5) < thickest_radius(curve)
 
 
-@pytest.mark.parametrize("measure", [Measure.LENGTH, Measure.RADIUS])
-def test_a_rope_is_drawn_as_it_is_and_has_room_from_key_to_key(measure):
+def crowding(vertices, radius):
+    """Least distance of points of a closed polygon that are a bit more than half a circle apart along it, in widths."""
+    points = evenly(vertices, True, 400)
+    steps = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
+    along = np.abs(np.subtract.outer(places := np.cumsum(steps) - steps, places))
+    far = np.minimum(along, steps.sum() - along) > 1.1 * np.pi * radius
+    return pdist(points)[squareform(far, checks=False)].min() / (2.0 * radius)
+
+
+@pytest.mark.parametrize(
+    ("measure", "timing"), [(Measure.LENGTH, None), (Measure.RADIUS, Timing(length=120))], ids=["few", "smooth"]
+)
+def test_a_rope_is_drawn_as_it_is_and_has_room_from_key_to_key(measure, timing):
     """Also where the mesh changes on the way, so that keys have points on edges."""
     iterates = []
     minimize(knot("8_3"), RelaxOptions(radius="keep"), iterates.append)
     motion, _ = recorded(iterates, measure)
-    keys = motion.keys(is_free, 40)
+    keys = motion.keys(is_rope, None if timing else 40, timing)
+    assert keys.certified
+    assert bool(timing) == (keys.kinds[Kind.ADDED] > 20)
     radii = rope_radii(motion.start.mesh, keys)
     lengths = [Curve(key.points.astype(float), motion.start.mesh).length for key in keys.keys]
-    np.testing.assert_allclose(
-        radii / radii[0], np.outer(lengths, np.ones(motion.start.mesh.size)) / lengths[0], rtol=1e-4
-    )
-    assert 0.79 * iterates[-1].radius[0] < radii[0, 0] * iterates[0].curve.length / lengths[0] < iterates[-1].radius[0]
+    expected = 0.998 * iterates[-1].radius[0] * np.array(lengths) / iterates[0].curve.length
+    np.testing.assert_allclose(radii, np.outer(expected, np.ones(motion.start.mesh.size)), rtol=0.01)
     for (a, one), (b, other) in pairwise(zip(keys.keys, radii[:, 0], strict=True)):
         for t in (0.0, 0.5):
-            curve = Curve((1.0 - t) * a.points + t * b.points.astype(float), motion.start.mesh)
-            gap = nearest_strands(curve, np.pi, 2.0 * max(one, other))
-            assert gap >= 2.0 * min(one, other)
-    near = [Curve.from_components([RING, RING + np.array([0.0, 0.0, d])]) for d in (1.0, 0.15)]
-    meeting = Keys(tuple(Key(float(k), each.vertices.astype(np.float32), radius=0.1) for k, each in enumerate(near)), 0)
-    assert rope_radii(near[0].mesh, meeting) is None
-    threads = Keys(tuple(replace(key, radius=0.0) for key in keys.keys), 0)
-    assert rope_radii(motion.start.mesh, threads) is None
+            assert crowding((1.0 - t) * a.points + t * b.points.astype(float), (1.0 - t) * one + t * other) >= 1.0
+    still = motion.result(is_rope)
+    assert still.certified
+    assert still.keys[0].radius == radii[-1, 0]
+
+
+def test_what_is_not_proved_as_a_rope_is_free_of_contact_and_has_no_radius():
+    """Smooth pieces stay straight where they fail as ropes alone, and keys have no radius if a chord does."""
+    ring = regular_polygon(30)
+    shapes = [ring.with_vertices(ring.vertices + np.array([0.5 * k, 0.5 * (k % 2), 0.0])) for k in range(9)]
+    motion = followed(iterate(k, each.vertices, each, radius=(0.1,)) for k, each in enumerate(shapes))
+    timing, iterates = Timing(pace=Pace.ITERATE, frames_per_iterate=12.0), {s.vertices[0, 0] for s in shapes}
+    for straight, chords in ((True, True), (True, False), (False, True)):
+
+        def proved(_mesh, start, end, radius=None, straight=straight, chords=chords):
+            known = {start[0, 0], end[0, 0]} <= {np.float64(np.float32(x)) for x in iterates}
+            return radius is None or (straight if known else chords)
+
+        keys = motion.keys(proved, None, timing)
+        assert keys.certified
+        assert len(keys.keys) == (9 if straight and not chords else 97)
+        assert {key.radius for key in keys.keys} == {0.998 * 0.1 if straight else 0.0}
+    assert motion.result(lambda *given: len(given) == 3).keys[0].radius == 0.0
