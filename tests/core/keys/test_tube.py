@@ -219,3 +219,17 @@ def test_what_is_not_proved_as_a_rope_is_free_of_contact_and_has_no_radius():
         assert len(keys.keys) == (9 if straight and not chords else 97)
         assert {key.radius for key in keys.keys} == {0.998 * 0.1 if straight else 0.0}
     assert motion.result(lambda *given: len(given) == 3).keys[0].radius == 0.0
+
+
+def test_between_two_sizes_a_rope_is_proved_in_one():
+    """A ring that becomes twice as large is shown in one size, with half the radius at the end."""
+    shapes, seen = [Curve(factor * RING) for factor in (1.0, 2.0)], []
+
+    def proved(_mesh, start, end, radius=None):
+        seen.extend([] if radius is None else [(radius[0], np.ptp(end, axis=0)[0] / np.ptp(start, axis=0)[0])])
+        return True
+
+    made = (iterate(k, each.vertices, each, radius=(0.1,)) for k, each in enumerate(shapes))
+    keys = followed(made, measure=Measure.RADIUS, in_points=True).keys(proved)
+    np.testing.assert_allclose(seen, [(0.0999, 1.0), (0.0999, 2.0)], rtol=1e-6)
+    assert [key.radius for key in keys.keys] == pytest.approx([0.0998, 0.0499])
