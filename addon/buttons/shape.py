@@ -86,8 +86,8 @@ def _report(operator: Button, what: Message, unproved: int) -> None:
 
 
 class CURVE_OT_mobius_flow_fit_tube(Button, bpy.types.Operator):
-    """Draw the selected curves as the ropes that they were relaxed as, or as the thickest round tubes that do not touch. \
-Relaxing keeps them so until you change their bevel"""
+    """Draw the selected curves as the ropes that they were relaxed as, or as the thickest round tubes that do not \
+touch. Relaxing keeps them so until you change their bevel"""
 
     bl_label = "Fit Tube"
     needs = (FITTABLE,)

@@ -36,12 +36,12 @@ def remember(
         if not animated(data):
             return
         slots = len(before.materials), len(data.materials)  # those between are goals'
-        data[_RECORD] = {"rope": rope, "original": before, "holds": [timing.hold_start, 0], "loop": timing.loop, "slots": slots}
+        data[_RECORD] = {"original": before, "holds": [timing.hold_start, 0], "loop": timing.loop, "slots": slots}
     elif count := key_count(data):
         course = Course(*np.array(data[_RECORD]["course"]).reshape(-1, count)).then(course)
         frames, shown = np.append(data[_RECORD]["frames"], frames[1:]), [*_noted(data), *shown[1:]]
     record = data[_RECORD]
-    record["rope"] = min(record.get("rope", 0.0), rope)
+    record["rope"] = rope if before is not None else min(record.get("rope", 0.0), rope)
     if before is not None or count:  # versions that did not note them wrote shape keys as they are
         record["frames"], record["course"] = frames.tolist(), np.concatenate(course).tolist()
     elif data.shape_keys:
