@@ -1,6 +1,7 @@
 """How the site is built: python -m sphinx -W docs build/docs
 
-Add -D plot_gallery=0 to leave the gallery's examples unexecuted.  Nothing is fetched, neither here nor by the pages.
+Add -D plot_gallery=0 to leave the gallery's examples unexecuted.  Nothing is fetched, neither here nor by the pages,
+but with -t online the lists of what other projects' documents have, to which names of theirs then lead.
 """
 
 import re
@@ -28,6 +29,16 @@ extensions = [
     "docstrings",
     "mathml",
 ]
+if "online" in tags:  # type: ignore[name-defined]  # noqa: F821  # python -m sphinx -t online …
+    extensions.append("sphinx.ext.intersphinx")
+    intersphinx_mapping = {
+        name: (f"https://{place}/", None)
+        for name, place in {
+            "python": "docs.python.org/3",
+            "numpy": "numpy.org/doc/stable",
+            "scipy": "docs.scipy.org/doc/scipy",
+        }.items()
+    }
 exclude_patterns = ["_extensions"]
 suppress_warnings = ["config.cache"]  # the gallery's settings hold objects
 

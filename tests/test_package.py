@@ -26,7 +26,7 @@ def test_the_citation_names_this_version_and_the_paper():
     assert citation["keywords"] == PROJECT["project"]["keywords"]
     assert {"cff-version", "message", "title", "authors"} <= set(citation)
     assert citation["version"] == PROJECT["project"]["version"]
-    assert citation["license"] == PROJECT["project"]["license"]
+    assert f"{citation['license']} AND CC0-1.0" == PROJECT["project"]["license"]
     (paper,) = citation["references"]
     assert {"type", "title", "authors"} <= set(paper)
     assert paper["doi"] == "10.1007/s00205-021-01680-1"
@@ -70,3 +70,15 @@ def test_a_command_of_the_readme_installs_what_it_needs(command, needs):
         ours = {path.stem for path in ROOT.glob("docs/_extensions/*.py")}
         needs |= {name.split(".")[0].replace("_", "-") for name in ast.literal_eval(listed[1])} - ours
     assert has >= needs
+
+
+def test_the_recipe_for_conda_asks_for_what_the_package_asks_for():
+    yaml = pytest.importorskip("yaml")
+    recipe = yaml.safe_load((ROOT / "tools/recipe.yaml").read_text(encoding="utf-8"))
+    project = PROJECT["project"]
+    assert recipe["context"]["version"] == project["version"]
+    assert recipe["about"]["license"] == project["license"]
+    _, *run = recipe["requirements"]["run"]
+    assert [*map(Requirement, run)] == [*map(Requirement, project["dependencies"])]
+    assert PROJECT["build-system"]["requires"][0].replace(">", " >") == recipe["requirements"]["host"][-1]
+    assert recipe["build"]["python"]["entry_points"] == [f"{name} = {to}" for name, to in project["scripts"].items()]

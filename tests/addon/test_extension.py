@@ -1,5 +1,6 @@
 """The extension's zip: what is in it, and that it works in a clean Blender with nothing else installed."""
 
+import ast
 import hashlib
 import importlib.util
 import os
@@ -48,10 +49,11 @@ def archive(builder, empty_wheels, tmp_path):
 def test_only_what_blender_runs_is_in_the_zip(archive):
     files = [name for name in archive.namelist() if not name.endswith("/")]
     top = {name.split("/")[0] for name in files}
-    assert top == {"__init__.py", "blender_manifest.toml", "LICENSE", "README.md", "addon", "core", "wheels"}
+    documents = {"CHANGELOG.md", "LICENSE", "README.md"}
+    assert top == {"__init__.py", "blender_manifest.toml", *documents, "addon", "core", "wheels"}
     data = [name for name in files if name.startswith(("addon/", "core/")) and not name.endswith(".py")]
     tables = [f"core/knots/{name}" for name in ("least_energies.csv", "shapes.npz", "table.ini")]
-    assets = ["addon/assets/assets.blend", "addon/assets/knots.png"]
+    assets = [f"addon/assets/{name}" for name in ("LICENSE.md", "assets.blend", "knots.png")]
     assert sorted(data) == [*assets, "addon/translations/de.po", *tables]
     assert not [name for name in files if "__pycache__" in name or Path(name).name.startswith(".")]
     tracked = subprocess.run(
@@ -65,6 +67,34 @@ def test_only_what_blender_runs_is_in_the_zip(archive):
     assert links
     assert all(link in files for link in links if "://" not in link)
     assert all(f"**{button}**" in text for button in ("Add Knot", "Relax", "Render Film"))
+
+
+def reviewed(path: Path) -> set[str]:
+    """What in a module reviewers of extensions look for."""
+    modules = {"ctypes", "multiprocessing", "pickle", "signal", "socket", "subprocess", "threading", "urllib"}
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        match node:
+            case (
+                ast.Name(id="__file__" as name)
+                | ast.Call(func=ast.Name(id="eval" | "exec" | "__import__" | "open" as name))
+            ):
+                found.add(name)
+            case ast.Attribute(value=ast.Name(id="sys"), attr="modules"):
+                found.add("sys.modules")
+            case ast.Import(names=names):
+                found |= {each.name.partition(".")[0] for each in names} & modules
+            case ast.ImportFrom(module=str(name), level=0):
+                found |= {name.partition(".")[0]} & modules
+    return found
+
+
+def test_reviewers_are_told_all_that_they_look_for():
+    text = (ROOT / "tools/extension.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (`.*`) \| (`.*`) \| \S.* \|$", text, re.MULTILINE)
+    told = {name: set(re.findall(r"`(.*?)`", has)) for names, has in rows for name in re.findall(r"`(.*?)`", names)}
+    paths = [ROOT / "__init__.py", *ROOT.glob("addon/**/*.py"), *ROOT.glob("core/**/*.py")]
+    assert told == {path.relative_to(ROOT).as_posix(): has for path in paths if (has := reviewed(path))}
 
 
 def test_debians_blender_has_a_wheel_more(builder, empty_wheels, tmp_path):
