@@ -52,6 +52,14 @@ def test_no_reflection_is_an_alignment():
     assert alignments(curve, curve.with_vertices(curve.vertices * [1, 1, -1]), Freedom())[0].distance > 0.3
 
 
+def test_of_ways_that_fit_alike_one_keeps_order_directions_and_place():
+    circle = knot("0_1", 60).vertices
+    link = Curve.from_components([circle, circle + [0.0, 0.0, np.ptp(circle)]])
+    best = alignments(link, link, Freedom())[0]
+    assert best.as_given
+    assert best.angle < 0.1
+
+
 def test_about_an_axis_ends_stay():
     arc = Curve(np.random.default_rng(3).normal(size=(9, 3)), Mesh((9,), (False,)))
     start, end = arc.vertices[[0, -1]]
