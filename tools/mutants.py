@@ -40,6 +40,8 @@ def mutants() -> Iterator[Mutant]:
 def main(names: Sequence[str]) -> int:
     """Try the mutants with these names, or all."""
     chosen = [mutant for mutant in mutants() if not names or mutant.name in names]
+    if unknown := set(names) - {mutant.name for mutant in chosen}:
+        raise SystemExit(f"no mutant is called {', '.join(sorted(unknown))}; see tools/mutations")
     with tempfile.TemporaryDirectory() as work:
         copy = Path(work) / "mobius_flow"
         shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns(".*", "build", "__pycache__", "*.egg-info"))
