@@ -54,7 +54,7 @@ def test_no_reflection_is_an_alignment():
 
 def test_of_ways_that_fit_alike_one_keeps_order_directions_and_place():
     circle = knot("0_1", 60).vertices
-    link = Curve.from_components([circle, circle + [0.0, 0.0, np.ptp(circle)]])
+    link = Curve.from_components([circle, np.add(circle, [0.0, 0.0, np.ptp(circle)])])
     best = alignments(link, link, Freedom())[0]
     assert best.as_given
     assert best.angle < 0.1
