@@ -11,6 +11,7 @@ and with the Python package beside `bpy`::
 
 import os
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -22,10 +23,11 @@ from ..core.keys.key_options import Pace
 from ..core.keys.placement import Measure
 from ..core.separate import SeparateOptions
 from ..core.tighten import TightenOptions
-from .curves import bake, bevel, sizes
+from .curves import bake, bevel, doors, sizes
 from .curves.recorded import BakedKeys
 from .curves.session import Report, Session
-from .curves.splines import radii, stretch
+from .curves.splines import SOURCE, Reference, depth, radii, stretch
+from .curves.strands import KINDS
 from .curves.surroundings import Surroundings
 from .live.requirements import BAKED, CLEARABLE, POLYGONS, READABLE, RELAXABLE, TUBED, UNEDITED, idle, require
 from .pictures import staging
@@ -61,7 +63,7 @@ class Relaxation:
         if not objects:
             raise MobiusFlowError("give at least one curve object")
         for obj in objects:
-            if getattr(obj, "type", None) != "CURVE":
+            if getattr(obj, "type", None) not in {"CURVE", *KINDS}:
                 raise MobiusFlowError(f"'{getattr(obj, 'name', obj)}' is not a curve object")
             if objects.count(obj) > 1:
                 raise MobiusFlowError(f"'{obj.name}' is given twice")
@@ -94,7 +96,7 @@ class Relaxation:
             What was done, described in its ``sentence``; ``certified`` says whether all of it was proved. Anything that
             cannot be relaxed, or is not a setting, raises a MobiusFlowError.
         """
-        return begin(self.objects, complete(settings) | {"avoid": avoid}, False, self.sample_splines).run(drag)
+        return self._run(complete(settings) | {"avoid": avoid}, drag)
 
     def morph(self, *goals: bpy.types.Object, avoid: Iterable[bpy.types.Object] = (), **settings: Any) -> Report:
         """Become another curve, or one after the other, by a motion that is proved, and keep it as keyframes.
@@ -102,8 +104,7 @@ class Relaxation:
         The goals are curve objects with splines of the same kinds, and are hidden once they are reached.  Raises
         MobiusFlowError if no motion leads there, or none is found; otherwise as `relax`.
         """
-        values = complete(settings) | {"avoid": avoid}
-        return begin(self.objects, values, False, self.sample_splines, Relaxation(*goals).objects).run()
+        return self._run(complete(settings) | {"avoid": avoid}, goals=Relaxation(*goals).objects)
 
     def separate(
         self,
@@ -117,11 +118,8 @@ class Relaxation:
 
         ``over``, ``lengths`` and ``free_ends`` are those of `mobius_flow.core.separate`.
         """
-        values, ropes = (
-            complete(settings) | {"avoid": avoid},
-            {"over": over, "lengths": lengths, "free_ends": free_ends},
-        )
-        return begin(self.objects, values, False, self.sample_splines, ropes=ropes).run()
+        ropes = {"over": over, "lengths": lengths, "free_ends": free_ends}
+        return self._run(complete(settings) | {"avoid": avoid}, ropes=ropes)
 
     def tighten(self, starts: int = 1, **settings: Any) -> Report:
         """Pull closed curves tight, as ropes of nine tenths of their thickness, and keep the motion as keys.
@@ -129,8 +127,7 @@ class Relaxation:
         Of several ``starts`` the shortest goes on; of the settings of `relax`, ``vertices``, ``seed`` and
         ``time_limit`` count, and those of keys.  Otherwise as `relax`.
         """
-        values = complete(settings) | {"avoid": ()}
-        return begin(self.objects, values, False, self.sample_splines, starts=starts).run()
+        return self._run(complete(settings) | {"avoid": ()}, starts=starts)
 
     def relax_further(self, avoid: Iterable[bpy.types.Object] = (), **settings: Any) -> Report:
         """Go on from the end of the animation, with new keys after the old ones; otherwise as `relax`.
@@ -138,7 +135,15 @@ class Relaxation:
         ``balance=True`` leads to the image of the same energy that bends least, ``escape_saddles=True`` downhill from a
         saddle, and with ``stability=True`` the report says whether the curves rest at a minimum.
         """
-        return begin(self.objects, complete(settings) | {"avoid": avoid}, True, self.sample_splines).run()
+        return self._run(complete(settings) | {"avoid": avoid}, continues=True)
+
+    def _run(
+        self, values: Mapping[str, Any], drag: Callable[[Hand, Iterate], object] | None = None, **more: Any
+    ) -> Report:
+        session = begin(self.objects, values, sample_splines=self.sample_splines, **more)
+        report = session.run(drag)
+        self.objects = tuple(session.objects)
+        return report
 
     def clear(self) -> None:
         """Take the keys away, and give the curves back as they were before; raises MobiusFlowError as `relax`."""
@@ -146,6 +151,8 @@ class Relaxation:
         for obj in self.objects:
             bake.clear(obj)
             sizes.release(obj)
+            if SOURCE in obj.data:
+                doors.leave(obj.data)
 
     @property
     def curves(self) -> list[Curve]:
@@ -180,8 +187,8 @@ class Relaxation:
 def begin(
     objects: Sequence[bpy.types.Object],
     values: Mapping[str, Any],
-    continues: bool,
-    sample_splines: bool,
+    continues: bool = False,
+    sample_splines: bool = False,
     goals: Sequence[bpy.types.Object] = (),
     ropes: Mapping[str, Any] | None = None,
     starts: int = 0,
@@ -197,10 +204,11 @@ def begin(
         BAKED.of(objects) if continues else None,
         UNEDITED.of(objects),
         None if sample_splines else POLYGONS.of(objects),
+        None if ropes is None else TUBED.of(objects),
     )
     options = key_options(values)
     options = bake.continued(objects, options) if continues else options
-    constant = options.constant_radius or any(bevel.is_constant(obj.data) for obj in objects)
+    constant = options.constant_radius or any(bevel.is_constant(obj.data) for obj in objects if obj.type == "CURVE")
     options = replace(options, constant_radius=constant)
     if not isinstance(values["avoid"], Iterable):
         raise MobiusFlowError(f"avoid is of type {type(values['avoid']).__name__}; give a list of objects")
@@ -210,21 +218,24 @@ def begin(
     surroundings = Surroundings.of(avoid, [*objects, *goals])
     pins, tangents = values.get("pins", ()), values["pin_tangents"]
     job: SeparateOptions | TightenOptions | None = None
-    if ropes is not None:  # sizes are what is asked for: nothing is scaled, and no tube fitted
-        require(TUBED.of(objects))
-        options = replace(options, keep_size=Measure.LENGTH, fit_bevel=False)
-        widths = [
-            stretch(obj) * obj.data.bevel_depth * float(radii(each).max())
-            for obj in objects
-            for each in obj.data.splines
-        ]
-        job = SeparateOptions(radius=widths, **ropes)
-    elif starts:  # the rope gets shorter, not thicker
-        options = replace(options, keep_size=options.keep_size or Measure.LENGTH, constant_radius=True)
-        wanted = relax_options(values)
-        facts = {"vertices": wanted.vertices} if wanted.vertices else {}
-        job = TightenOptions(starts=starts, seed=wanted.seed, time_limit=wanted.time_limit, **facts)
-    return Session(objects, relax_options(values), options, continues, surroundings, pins, tangents, goals, job)
+    with ExitStack() as undone:
+        carriers = []
+        for obj in objects:
+            carriers.append(obj if obj.type == "CURVE" else doors.enter(obj))
+            undone.callback(lambda made: doors.withdraw(made.get()), Reference(carriers[-1]))
+        if ropes is not None:  # sizes are what is asked for: nothing is scaled, and no tube fitted
+            options = replace(options, keep_size=Measure.LENGTH, fit_bevel=False)
+            splines = [(obj, each) for obj in carriers for each in obj.data.splines]
+            widths = [stretch(obj) * depth(obj.data) * float(radii(each).max()) for obj, each in splines]
+            job = SeparateOptions(radius=widths, **ropes)
+        elif starts:  # the rope gets shorter, not thicker
+            options = replace(options, keep_size=options.keep_size or Measure.LENGTH, constant_radius=True)
+            wanted = relax_options(values)
+            facts = {"vertices": wanted.vertices} if wanted.vertices else {}
+            job = TightenOptions(starts=starts, seed=wanted.seed, time_limit=wanted.time_limit, **facts)
+        session = Session(carriers, relax_options(values), options, continues, surroundings, pins, tangents, goals, job)
+        undone.pop_all()
+    return session
 
 
 def implied(given: Collection[str]) -> dict[str, Any]:

@@ -17,7 +17,7 @@ from ...core.curve import Mesh, arc_lengths, smoothed
 from ...core.keys.placement import DrawingPlane
 from ...core.knots import Drawing, knot_type
 from ...core.knots.inscribed import averaged
-from ..curves.splines import read_link, read_splines
+from ..curves.strands import Strands, read_link
 from ..live import overlay
 from ..live.requirements import Condition, selected_curves
 from ..translations import iface_, rpt_
@@ -234,7 +234,7 @@ def _crossing(context: bpy.types.Context, mouse: FloatArray) -> tuple[Drawing, D
     obj = context.object
     if obj is None or obj.type != "CURVE" or _PLANE not in obj.data or obj.data.shape_keys is not None:
         return None
-    values, curve = np.array(obj.data[_PLANE]), Curve.from_components(read_splines(obj))
+    values, curve = np.array(obj.data[_PLANE]), Curve.from_components(Strands.of(obj).components)
     plane = DrawingPlane(values[:3], values[3:].reshape(3, 3))
     drawing = Drawing.seen(curve.with_vertices((curve.vertices - plane.origin) @ plane.axes.T))
     places = plane.raised(np.column_stack([drawing.crossings, np.zeros(len(drawing.crossings))]))

@@ -10,8 +10,9 @@ from bpy.props import EnumProperty
 from ...core import Curve, MobiusFlowError
 from ...core.base.messages import Message
 from ..curves import bake
+from ..curves.doors import show_instead
 from ..curves.moving import deforms
-from ..curves.splines import Splines, closed, sampled, write_points
+from ..curves.splines import Splines, sampled, shape, write_points
 from ..live.requirements import Remedy, closable, convertible, idle, needing, selected_curves
 from .button import Button
 
@@ -29,7 +30,7 @@ def make_local(obj: bpy.types.Object) -> None:
     local = _own(obj)
     local.data = _own(local.data)
     if not local.users_scene:
-        _select_instead(obj, local)
+        show_instead(obj, local)
 
 
 def _own(block: bpy.types.ID) -> bpy.types.ID:
@@ -44,7 +45,8 @@ def to_poly(obj: bpy.types.Object) -> None:
     Raises CurveError if no polygon is drawn for one of them; nothing is changed then.
     """
     frames = sampled(obj)
-    drawn = Curve.from_components([frame.astype(np.float64) for frame in frames], closed(obj.data))
+    closed = [flag for *_, flag in shape(obj.data)]
+    drawn = Curve.from_components([frame.astype(np.float64) for frame in frames], closed)
     Splines.of(obj.data).polygons(drawn, drawn).fill(obj.data)
     write_points(obj.data, np.concatenate(frames))
 
@@ -70,7 +72,7 @@ def still_copy(obj: bpy.types.Object) -> bpy.types.Object:
     """
     world = obj.matrix_world.copy()
     copy = obj.copy()
-    _select_instead(obj, copy)
+    show_instead(obj, copy)
     for modifier in (moving := list(filter(deforms, copy.modifiers))):
         modifier.use_apply_on_spline = True  # not on what is drawn around it
     bpy.context.view_layer.update()
@@ -95,19 +97,6 @@ def still_copy(obj: bpy.types.Object) -> bpy.types.Object:
         bpy.context.view_layer.update()
         copy.data.transform(copy.matrix_world.inverted_safe() @ world)  # shear, which no object has by itself
     return copy
-
-
-def _select_instead(obj: bpy.types.Object, copy: bpy.types.Object) -> None:
-    """Put a copy into the collections of the original, selected, and active if the original was."""
-    view_layer = bpy.context.view_layer
-    was_active = view_layer.objects.active == obj
-    own = [each for each in obj.users_collection if each.library is None and each.override_library is None]
-    for collection in own or [bpy.context.scene.collection]:
-        collection.objects.link(copy)
-    obj.select_set(False)
-    copy.select_set(True)
-    if was_active:
-        view_layer.objects.active = copy
 
 
 _MENDED: Mapping[Remedy, tuple[Callable[[bpy.types.Object], object], str]] = {  # may raise MobiusFlowErrors

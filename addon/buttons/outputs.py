@@ -15,13 +15,15 @@ from ...core.driver.words import named
 from ...core.keys.colours import COLOURINGS, COMPONENT, DISTANCE, ENERGY, vertex_values
 from ...core.keys.smooth_fit import FEWEST, SmoothFit, bezier_points, fitted
 from ..curves import bevel
+from ..curves.assets import add_nodes
+from ..curves.doors import object_like
 from ..curves.keyframes import add_keys
 from ..curves.recorded import Recorded, in_world
 from ..curves.sizes import placement
-from ..curves.splines import length, read, stretch
+from ..curves.splines import depth, length, read, stretch
 from ..curves.surroundings import TUBE_OF
 from ..live.requirements import READABLE, selected_curves
-from ..pictures.materials import bundled, vertex_colours
+from ..pictures.materials import vertex_colours
 from ..translations import rpt_
 from .adding import check_length
 from .button import Button
@@ -29,13 +31,6 @@ from .button import Button
 _PLAIN = "NONE"
 COLOUR = "colour"  # attribute of vertices
 _LOOKS = ("bevel_mode", "bevel_depth", "bevel_resolution", "extrude", "offset", "taper_object", "bevel_object")
-# fmt: off
-_PLACE = (  # a matrix instead would be split into these anew, and lose shear and the last bits
-    "rotation_mode", "location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale",
-    "delta_location", "delta_rotation_euler", "delta_rotation_quaternion", "delta_scale",
-    "parent_type", "parent", "parent_bone", "parent_vertices", "matrix_parent_inverse",
-)
-# fmt: on
 _Objects, _Records = Sequence[bpy.types.Object], Sequence[Recorded]
 
 
@@ -119,12 +114,12 @@ FBX does with NLA Strips and All Actions off, one frame later"""
     def make(self, objects: _Objects, recorded: _Records, link: Curve) -> list[bpy.types.Object]:
         """Make the meshes; the numbers that colors may show become attributes."""
         values, first, made = vertex_values(link), 0, []
-        drawn = all(obj.data.bevel_depth for obj in objects)
+        drawn = all(depth(obj.data) for obj in objects)
         wanted = self.radius or (0.0 if drawn else bevel.fitting_radius(link))  # in the world
         colours = None if self.color == _PLAIN else COLOURINGS[self.color](values[self.color])
         for obj, each in zip(objects, recorded, strict=True):
-            depth = 0.0 if self.radius else obj.data.bevel_depth
-            radii = depth * each.radii if depth else np.full(each.radii.shape, wanted / stretch(obj))
+            thick = 0.0 if self.radius else depth(obj.data)
+            radii = thick * each.radii if thick else np.full(each.radii.shape, wanted / stretch(obj))
             tube = tube_object(obj, each, radii, self.sides)
             part = slice(first, first := first + each.mesh.size)
             write_values(tube.data, {name: array[part] for name, array in values.items()})
@@ -187,14 +182,6 @@ are. USD and Alembic keep the control points, glTF and FBX what is drawn (glTF n
         return made
 
 
-def _object_like(obj: bpy.types.Object, data: bpy.types.ID) -> bpy.types.Object:
-    """Make an object for other data, with the place and the parent of an object but not its animation."""
-    made = bpy.data.objects.new(data.name, data)
-    for name in _PLACE:
-        setattr(made, name, getattr(obj, name))
-    return made
-
-
 def tube_object(obj: bpy.types.Object, recorded: Recorded, radii: FloatArray, sides: int) -> bpy.types.Object:
     """Make a mesh object where a curve object is, with its motion as shape keys, its materials and its caps.
 
@@ -206,7 +193,7 @@ def tube_object(obj: bpy.types.Object, recorded: Recorded, radii: FloatArray, si
     ends = caps(curve, sides)[: None if obj.data.use_fill_caps else 0]
     mesh.from_pydata(surface[0].tolist(), [], [*quads(curve, sides).tolist(), *ends.tolist()])
     mesh.polygons.foreach_set("use_smooth", np.arange(len(mesh.polygons)) < len(mesh.polygons) - len(ends))
-    made = _object_like(obj, mesh)
+    made = object_like(obj, mesh)
     made[TUBE_OF] = obj
     corners = np.concatenate([curve.tails.repeat(sides), curve.ends.ravel()])  # a curve vertex of each face
     for material in obj.data.materials:
@@ -241,8 +228,7 @@ def compute_values(tube: bpy.types.Object, curve: Mesh) -> None:
     """
     name, closed = "Möbius Flow Attributes", np.array(curve.closed, dtype=np.float64)[curve.component]
     write_values(tube.data, {"ring": np.arange(curve.size, dtype=np.float64), "closed": closed})
-    tree = bpy.data.node_groups.get(name) or bundled("node_groups", name)
-    tube.modifiers.new(name, "NODES").node_group = tree
+    add_nodes(tube, name)
 
 
 def write_colours(mesh: bpy.types.Mesh, colours: FloatArray, material: bpy.types.Material) -> None:
@@ -306,6 +292,6 @@ def smooth_objects(
                 point.handle_left_type = point.handle_right_type = "ALIGNED"
             for name, array in (("co", middle), ("handle_right", right), ("handle_left", left)):
                 points_of.foreach_set(name, array.astype(np.float32).ravel())
-        made.append(_object_like(obj, data))
+        made.append(object_like(obj, data))
         shown += [place.to_world(each.astype(np.float64)) for each in stored]
     return made, SmoothFit(link, tuple(shown))

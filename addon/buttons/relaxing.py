@@ -14,17 +14,20 @@ from ...core.keys.placement import at
 from ..curves import bake, pins
 from ..curves.session import Session
 from ..curves.splines import control_points, questions
+from ..curves.strands import Strands
 from ..live import registry
 from ..live.modal import Listening, report_end, report_result, unseen
 from ..live.requirements import (
     BAKED,
     CLEARABLE,
+    ENTERABLE,
     POLYGONS,
     RELAXABLE,
     TUBED,
     Condition,
     avoided,
     container,
+    relaxed_together,
     require,
     selected_curves,
     shown_curves,
@@ -44,7 +47,7 @@ _PICKED = Condition(
 _INSIDE = Condition("Put the curves inside the container first", lambda context: container(context) is None)
 _SEVERAL = Condition(
     "Select a curve, and then the one that it is to become",
-    lambda context: context.active_object not in selected_curves(context) or len(selected_curves(context)) < 2,
+    lambda context: context.active_object not in relaxed_together(context) or len(relaxed_together(context)) < 2,
 )
 
 
@@ -70,7 +73,7 @@ class Relaxing(Listening, Button):
             options={"SKIP_SAVE", "HIDDEN"},
         ),
     }
-    needs = (RELAXABLE,)
+    needs = (ENTERABLE,)
     continues = False  # whether baked curves are relaxed on from the ends of their animations
     stays = False  # whether a live run waits for a hand where it comes to rest
 
@@ -78,7 +81,8 @@ class Relaxing(Listening, Button):
         """Relax the selected curves live; ask first if keys are replaced, or smooth splines have to become polygons."""
         if bpy.app.background or context.window is None:
             return self.execute(context)
-        if not (self.again or self.continues) and any(bake.is_baked(obj.data) for obj in self.moving(context)):
+        keyed = (obj for obj in self.moving(context) if obj.type == "CURVE" and bake.is_baked(obj.data))
+        if not (self.again or self.continues) and any(keyed):
             ask = partial(_go_on_or_begin_anew, type(self).bl_idname)
             context.window_manager.popup_menu(ask, title=iface_("Already Animated"), icon="QUESTION")
             return {"CANCELLED"}
@@ -108,12 +112,12 @@ class Relaxing(Listening, Button):
         report_result(self, context.scene, self.session(context, self.values(context)).run())
 
     def moving(self, context: bpy.types.Context) -> list[bpy.types.Object]:
-        """The curves that get keys."""
-        return selected_curves(context)
+        """The objects that get keys."""
+        return relaxed_together(context)
 
     def session(self, context: bpy.types.Context, values: dict[str, Any]) -> Session:
         """Begin to relax the selected curves; raises MobiusFlowError."""
-        return begin(selected_curves(context), values, self.continues, self.sample_splines)
+        return begin(relaxed_together(context), values, self.continues, self.sample_splines)
 
     def values(self, context: bpy.types.Context) -> dict[str, Any]:
         """The settings: those given to the operator, and the scene's; raises MobiusFlowError."""
@@ -142,7 +146,7 @@ def _go_on_or_begin_anew(name: str, menu: bpy.types.Menu, _context: bpy.types.Co
 
 def _in_turn(context: bpy.types.Context) -> list[bpy.types.Object]:
     """The curve that morphs, and what it becomes before it is the active one."""
-    return sorted((obj for obj in selected_curves(context) if obj != context.active_object), key=lambda obj: obj.name)
+    return sorted((obj for obj in relaxed_together(context) if obj != context.active_object), key=lambda obj: obj.name)
 
 
 class CURVE_OT_mobius_flow_morph(Relaxing, bpy.types.Operator):
@@ -151,7 +155,7 @@ keyframes; of several, the first by name moves, and becomes one after the other 
 hidden, which would be in the same place (Alt H)"""
 
     bl_label = "Morph to Active"
-    needs = (RELAXABLE, POLYGONS, _SEVERAL)
+    needs = (ENTERABLE, POLYGONS, _SEVERAL)
 
     def moving(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         return _in_turn(context)[:1]
@@ -170,16 +174,17 @@ keys go on from the end of their animation. Of all shapes of one energy they com
 
     @property
     def continues(self) -> bool:
-        return BAKED.of(selected_curves(bpy.context)) is None
+        objects = relaxed_together(bpy.context)
+        return all(obj.type == "CURVE" for obj in objects) and BAKED.of(objects) is None
 
     def values(self, context: bpy.types.Context) -> dict[str, Any]:
         """The settings of Relax, but lengths stay, for pins, and shapes are balanced, or knots would stay tiny."""
-        values, curves = super().values(context), [obj.data for obj in selected_curves(context)]
-        free = values["energy"] == "moebius" and not values["avoid"] and not any(map(pins.count, curves))
-        closed = all(spline.use_cyclic_u for data in curves for spline in data.splines)
+        values, pinned = super().values(context), sum(pins.count(obj.data) for obj in selected_curves(context))
+        free = values["energy"] == "moebius" and not values["avoid"] and not pinned
+        closed = free and all(all(Strands.of(obj).closed) for obj in relaxed_together(context))
         return values | {
             "keep_size": "LENGTH" if values["keep_size"] == "AUTO" else values["keep_size"],
-            "balance": values["balance"] or (free and closed),
+            "balance": values["balance"] or closed,
         }
 
 
@@ -188,7 +193,7 @@ class CURVE_OT_mobius_flow_separate(Relaxing, bpy.types.Operator):
 moved as little as that allows; ends and pins stay in place. Where two curves meet, the later one goes over"""
 
     bl_label = "Separate"
-    needs = (RELAXABLE, POLYGONS, TUBED)
+    needs = (ENTERABLE, POLYGONS, TUBED)
 
     over: EnumProperty(
         name="Over",
@@ -207,7 +212,7 @@ moved as little as that allows; ends and pins stay in place. Where two curves me
     def session(self, context: bpy.types.Context, values: dict[str, Any]) -> Session:
         over, lengths = None if self.over == "AUTO" else self.over.lower(), "keep" if self.keep_lengths else "free"
         ropes = {"over": over, "lengths": lengths, "free_ends": self.free_ends}
-        return begin(selected_curves(context), values, False, self.sample_splines, ropes=ropes)
+        return begin(relaxed_together(context), values, False, self.sample_splines, ropes=ropes)
 
 
 class CURVE_OT_mobius_flow_tighten(Relaxing, bpy.types.Operator):
@@ -215,7 +220,7 @@ class CURVE_OT_mobius_flow_tighten(Relaxing, bpy.types.Operator):
 keep the motion as keyframes"""
 
     bl_label = "Tighten"
-    needs = (RELAXABLE, POLYGONS)
+    needs = (ENTERABLE, POLYGONS)
 
     starts: IntProperty(
         name="Starts",
@@ -226,14 +231,14 @@ keep the motion as keyframes"""
     )
 
     def session(self, context: bpy.types.Context, values: dict[str, Any]) -> Session:
-        return begin(selected_curves(context), values, False, self.sample_splines, starts=self.starts)
+        return begin(relaxed_together(context), values, False, self.sample_splines, starts=self.starts)
 
 
 class CURVE_OT_mobius_flow_pack(Relaxing, bpy.types.Operator):
     """Let the selected curves grow inside the container, which they never touch, until it is full or you press Keep"""
 
     bl_label = "Pack"
-    needs = (RELAXABLE, _PICKED, _INSIDE)
+    needs = (ENTERABLE, _PICKED, _INSIDE)
 
     def values(self, context: bpy.types.Context) -> dict[str, Any]:
         """The settings of Relax, but curves grow, and always avoid the container."""

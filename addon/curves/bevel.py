@@ -14,7 +14,7 @@ from ...core import Curve, Obstacle
 from ...core.keys.tube import free_radius, radius_beside, thickest_radius
 from . import bake
 from .recorded import Recorded, drawn_radius, in_world
-from .splines import radii, stretch
+from .splines import SOURCE, radii, stretch
 
 _FITTED = "mobius_flow_tube"  # custom property of curve data: depths that were fitted
 _CONSTANT = "mobius_flow_tube_constant"  # another one: whether they were fitted to be as thick at all keys
@@ -23,7 +23,7 @@ _CONSTANT = "mobius_flow_tube_constant"  # another one: whether they were fitted
 def can_fit(data: bpy.types.Curve) -> bool:
     """Whether a curve is drawn as a line or a plain round tube; any other shape is the user's own."""
     plain = data.bevel_mode == "ROUND" and data.taper_object is None and not data.extrude and not data.offset
-    return plain and all((radii(spline) == 1).all() for spline in data.splines)
+    return SOURCE not in data and plain and all((radii(spline) == 1).all() for spline in data.splines)
 
 
 def is_fitted(data: bpy.types.Curve) -> bool:

@@ -11,7 +11,8 @@ from ...core.keys.key_options import Timing
 from ...core.keys.motion import Keys
 from .fcurves import CONSTANT
 from .keyframes import add_keys, there_and_back
-from .splines import Reference, read_link
+from .splines import Reference
+from .strands import read_link
 
 
 class Goals:

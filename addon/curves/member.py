@@ -15,11 +15,11 @@ from ...core.base import FloatArray, Message
 from ...core.keys.key_options import Course, KeyOptions, Output
 from ...core.keys.motion import Keys
 from ...core.keys.placement import Frame
-from . import bake, bevel, keyframes, sizes
+from . import bake, bevel, doors, keyframes, sizes
 from .keyframes import own_action
 from .moving import what_deforms
 from .sizes import placement
-from .splines import Reference, Splines, read, shape, write_points
+from .splines import SOURCE, Reference, Splines, read, shape, write_points
 
 _MARK = "mobius_flow_stand_in"  # custom property of stand-ins
 
@@ -33,10 +33,12 @@ class Member:
         self._continues, self._baked = continues, bake.is_baked(obj.data)
         self._object, self._original = Reference(obj), Reference(obj.data)
         self._stand_in: Reference | None = None
+        mark = obj.data.get(SOURCE)
+        self._source = Reference(mark["object"]) if mark and mark["object"] and not self._baked else None
 
     def begin(self) -> None:
         """Show a stand-in: the curve that the relaxation begins with."""
-        obj, original = self.object, self._original.get()
+        obj, original = self.found(), self._original.get()
         assert obj is not None, "whoever begins looks for it first"
         sizes.suspend(obj)
         self.placement = placement(obj)
@@ -50,6 +52,8 @@ class Member:
             bake.clear(obj)
         self._shape = shape(obj.data)
         self._splines = Splines.of(obj.data)
+        carries = SOURCE in obj.data and not self._continues
+        self._strands = doors.strands_of(obj) if carries else None
         self._plain, self._fitted = bevel.can_fit(obj.data), bevel.is_fitted(obj.data)
 
     def _show(self, data: bpy.types.Curve) -> None:
@@ -57,6 +61,14 @@ class Member:
         data[_MARK] = {"original": original, "name": data.name}  # copies have the mark too, but another name
         self._stand_in, self._shape = Reference(data), shape(data)
         self._object.get().data = data
+
+    def found(self) -> bpy.types.Object | None:
+        """The object, or a new carrier of its source where undo, saving or the end of a run has taken that away."""
+        source = self._source.get() if self._source is not None else None
+        if self.object is None and source is not None:
+            obj = doors.enter(source)
+            self._object, self._original = Reference(obj), Reference(obj.data)
+        return self.object
 
     @property
     def object(self) -> bpy.types.Object | None:
@@ -77,6 +89,9 @@ class Member:
         if not self.lost():
             self._splines.polygons(drawn, refined).fill(self.data)
             self._shape = shape(self.data)
+            if self._strands is not None:
+                here = refined.with_vertices(self.placement.to_local(refined.vertices))
+                doors.follow(self._object.get(), self._strands, drawn, here)
 
     def move(self, points: Frame, radius: float | None) -> None:
         """Move the points, (n, 3), unless they are lost, and give the tube the radius, in the object's coordinates."""
@@ -150,6 +165,7 @@ class Member:
             keyframes.remove(original)
         for kind, block in keyframes.blocks(data).items():  # names that are free now
             block.name = names.get(kind, block.name)
+        doors.keep(self.object)
         sizes.drive(self.object, bake.sizes(data))
 
     def discard(self) -> bool:
@@ -164,16 +180,25 @@ class Member:
             if self._fitted:
                 bevel.fit(data, data.bevel_depth)
             return False
+        restored = obj is not None and obj.data in (data, original)
+        if obj is None and original is not None and self._source is not None:
+            doors.leave(original)
         if data is not None:
             _show_original(data)
-        return obj is not None and obj.data == original
+        elif restored:
+            doors.withdraw(obj)
+        return restored
 
     def hide(self) -> None:
         """Show the original for a moment, because the file is being saved or something is undone."""
         if not self.keyed and not self.lost():
             _name_original(self.data)
-            self._object.get().data = self._original.get()
-            sizes.resume(self._object.get())
+            obj, data = self._object.get(), self.data
+            obj.data = self._original.get()
+            sizes.resume(obj)
+            doors.withdraw(obj)
+            if self.object is None:
+                keyframes.remove(data)
 
     def resume(self) -> None:
         """Show the stand-in again after `hide`; undo may have removed it, or brought another one back."""
@@ -181,7 +206,10 @@ class Member:
         for other in _stand_ins():
             if other != data and other[_MARK]["original"] == original:
                 _show_original(other)
-        if (obj := self.object) is None or obj.data not in (original, data):
+        obj = self.object
+        if obj is None and self._source is not None and self._source.get() is not None:
+            self.begin()
+        if obj is None or obj.data not in (original, data):
             return
         if data is None:
             self.begin()
@@ -211,6 +239,7 @@ def _show_original(data: bpy.types.Curve) -> None:
         keyframes.remove(data)
         for obj in wearers:
             sizes.resume(obj)
+            doors.withdraw(obj)
 
 
 def _name_original(data: bpy.types.Curve) -> None:

@@ -18,7 +18,8 @@ from . import bake, pins
 from .keyframes import coordinate_curves, fcurves_of
 from .moving import what_moves
 from .sizes import placement, resume, suspend
-from .splines import closed, key_points, radii, read, read_link, read_splines, stretch, write_points
+from .splines import depth, key_points, mesh_of, radii, read, stretch, write_points
+from .strands import Strands, read_link
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,10 +38,9 @@ class Recorded:
         """Read the splines of a curve object; raises CurveError if they cannot be read."""
         data = obj.data
         if not bake.is_baked(data):
-            splines = read_splines(obj)
-            mesh, points = Mesh(tuple(map(len, splines)), closed(data)), np.concatenate(splines)[None]
+            mesh, points = (each := Strands.of(obj)).mesh, np.concatenate(each.components)[None]
             return cls(mesh, np.zeros(1), points, _radii(data, mesh)[None], points)
-        mesh = Mesh(tuple(len(spline.points) for spline in data.splines), closed(data))
+        mesh = mesh_of(data)
         if data.shape_keys:
             (curve,) = fcurves_of(data.shape_keys)
             frames = _frames([curve])
@@ -127,7 +127,7 @@ def world_motion(
 def drawn_radius(obj: bpy.types.Object) -> float:
     """How far what is drawn around an object's curve reaches from it where the radius is 1, in the world."""
     data = obj.data
-    return float((data.bevel_depth + data.extrude + abs(data.offset)) * stretch(obj))
+    return float((depth(data) + data.extrude + abs(data.offset)) * stretch(obj))
 
 
 class BakedKeys:
@@ -138,9 +138,7 @@ class BakedKeys:
     """
 
     def __init__(self, objects: Sequence[bpy.types.Object]) -> None:
-        splines = [spline for obj in objects for spline in obj.data.splines]
-        flags = tuple(flag for obj in objects for flag in closed(obj.data))
-        self.mesh = Mesh(tuple(len(each.points) for each in splines), flags)
+        self.mesh = mesh_of(*(obj.data for obj in objects))
         self.link = Link(tuple(map(placement, objects)), tuple(len(obj.data.splines) for obj in objects))
         self.sizes = [bake.sizes(obj.data) for obj in objects]
         keys = [keyed_points(obj.data) for obj in objects]

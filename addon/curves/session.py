@@ -31,7 +31,8 @@ from .goals import Goals
 from .member import Member
 from .pins import pin, pinned_vertices, unpin
 from .sizes import placement
-from .splines import coordinates, read_link, stretch
+from .splines import coordinates, stretch
+from .strands import read_link
 from .surroundings import NOTHING, Surroundings
 
 
@@ -175,7 +176,8 @@ class Session:
     def reopen(self) -> None:
         """Go on after `discard`; raises MobiusFlowError if the curves are not as they were at first."""
         changed = Message("{names} changed since the relaxation ended; relax anew", names=self.title)
-        objects, curve, link = self.objects, self.curve, self.link
+        curve, link = self.curve, self.link
+        objects = [obj for member in self.members if (obj := member.found()) is not None]
         if len(objects) < len(self.members) or self.surroundings.lost():
             raise MobiusFlowError(changed)
         self._begin(objects)

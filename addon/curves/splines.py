@@ -12,9 +12,10 @@ import numpy.typing as npt
 from ...core import Curve, CurveError, Mesh
 from ...core.base import FloatArray, Message
 from ...core.curve.refine import along, on_refined
-from ...core.keys.placement import Frame, Link
+from ...core.keys.placement import Frame
 from .sizes import placement
 
+SOURCE = "mobius_flow_source"  # custom property of curve data that carries the keys of an object of another kind
 _TYPES: dict[str, Any] = {"BOOLEAN": np.int32, "INT": np.int32, "FLOAT": np.float32, "ENUM": np.int32}
 
 
@@ -89,6 +90,12 @@ def shape(data: bpy.types.Curve) -> list[tuple[int, str, bool]]:
     return [(len(control_points(each)), each.type, bool(each.use_cyclic_u)) for each in data.splines]
 
 
+def mesh_of(*every: bpy.types.Curve) -> Mesh:
+    """The polygons of curve data of poly splines, one after the other."""
+    sizes, _, flags = zip(*(each for data in every for each in shape(data)), strict=True)
+    return Mesh(sizes, flags)
+
+
 def digest(data: bpy.types.Curve) -> bytes:
     """A fingerprint of the points and of the number of their keys; cheap enough for every redraw."""
     keys = len(data.shape_keys.key_blocks) if data.shape_keys else 0
@@ -107,6 +114,11 @@ def coordinates(spline: bpy.types.Spline) -> Frame:
     """The positions of the points of a spline of any type; shape (n, 3)."""
     width = 3 if spline.type == "BEZIER" else 4
     return read(control_points(spline), "co", width).reshape(-1, width)[:, :3]
+
+
+def depth(data: bpy.types.Curve) -> float:
+    """Radius of what is drawn around a curve where a point's own is 1; hair is as thick as its points say."""
+    return 1.0 if SOURCE in data else float(data.bevel_depth)
 
 
 def radii(spline: bpy.types.Spline) -> Frame:
@@ -188,39 +200,6 @@ def sampled(obj: bpy.types.Object) -> list[Frame]:
         if len(loop) < (3 if spline.use_cyclic_u else 2):
             raise CurveError(Message(sentence, number=k, name=obj.name, count=len(loop)))
     return loops
-
-
-def read_link(objects: Sequence[bpy.types.Object]) -> tuple[Curve, Link]:
-    """Read the splines of curve objects in world space, one component each, and where they are stored.
-
-    Splines that are not cyclic are open components, smooth ones the polygons drawn for them. Raises CurveError if a
-    coordinate is not finite, or as good as infinite, or no polygon is drawn.
-    """
-    placements = tuple(placement(obj) for obj in objects)
-    components = [read_splines(obj) for obj in objects]
-    link = Link(placements, tuple(len(each) for each in components))
-    world = [place.to_world(c) for place, each in zip(placements, components, strict=True) for c in each]
-    return Curve.from_components(world, [flag for obj in objects for flag in closed(obj.data)]), link
-
-
-def closed(data: bpy.types.Curve) -> tuple[bool, ...]:
-    """Whether each spline is closed; those that are not cyclic are open."""
-    return tuple(bool(spline.use_cyclic_u) for spline in data.splines)
-
-
-def read_splines(obj: bpy.types.Object) -> list[FloatArray]:
-    """The polygons of all splines in the object's coordinates, (n, 3) each; raises as `read_link` does."""
-    smooth = smooth_splines(obj.data)
-    frames = sampled(obj) if smooth else [coordinates(spline) for spline in obj.data.splines]
-    for k, frame in enumerate(frames, 1):
-        bad = np.flatnonzero(~(np.abs(frame) < 1e30).all(axis=1))  # Blender clamps infinite ones to the largest number
-        if bad.size:
-            sentence = (
-                "Point {point} of spline {spline} of '{name}' is not finite, or further away than anything; repair or"
-                " delete it"
-            )
-            raise CurveError(Message(sentence, point=bad[0] + 1, spline=k, name=obj.name))
-    return [frame.astype(np.float64) for frame in frames]
 
 
 def stretch(obj: bpy.types.Object) -> float:

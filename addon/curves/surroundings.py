@@ -17,6 +17,7 @@ from .moving import unsteady, unsteady_object
 from .splines import Reference, read
 
 STAGE = "mobius_flow_stage"  # custom property of objects that only surround curves, to be seen with them
+CARRIER = "mobius_flow_carrier"  # of a copy of hair, strokes or edges: the curve object whose motion it shows
 TUBE_OF = "mobius_flow_tube_of"  # custom property of a tube's mesh: the curve object that it was made of
 SOLID = {"CURVE", "MESH", "SURFACE", "META", "FONT"}  # what Blender makes meshes of
 WITHOUT_SHAPE = {"ARMATURE", "CAMERA", "LATTICE", "LIGHT", "LIGHT_PROBE", "SPEAKER"}
@@ -110,7 +111,8 @@ def near(
     overlap = (low <= highest + margin).all(axis=1) & (high >= lowest - margin).all(axis=1)
     candidates = (everything[int(k)] for k in np.flatnonzero(overlap & ~mine))
     others = (obj for obj in candidates if obj.type in SOLID and obj not in avoided)
-    return [obj for obj in others if STAGE not in obj and obj.get(TUBE_OF) not in together and obj.visible_get()]
+    others = (obj for obj in others if not {obj.get(TUBE_OF), obj.get(CARRIER)} & together)
+    return [obj for obj in others if STAGE not in obj and obj.visible_get()]
 
 
 def _obstacles(objects: Sequence[bpy.types.Object], relaxed: Sequence[bpy.types.Object]) -> Iterator[Obstacle]:

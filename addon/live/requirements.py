@@ -13,7 +13,8 @@ from ...core.base.messages import Message
 from ..curves import bake, bevel, splines
 from ..curves.moving import what_deforms, what_moves
 from ..curves.splines import box
-from ..curves.surroundings import TUBE_OF, WITHOUT_SHAPE
+from ..curves.strands import KINDS, has_loops
+from ..curves.surroundings import CARRIER, TUBE_OF, WITHOUT_SHAPE
 from . import registry
 
 
@@ -47,7 +48,7 @@ class Check:
     """A requirement on a curve object: where ``failure`` finds something, the sentence says so.
 
     What is found fills in ``field`` in the sentence or, if it is a mapping, several fields. ``together`` marks
-    what is required only of curves that are relaxed together.
+    what is required only of curves that are relaxed together, ``any_kind`` what is of objects of other kinds, too.
     """
 
     sentence: str
@@ -55,9 +56,10 @@ class Check:
     remedy: Remedy | None = None
     field: str = ""
     together: bool = False
+    any_kind: bool = False
 
     def refusal(self, obj: bpy.types.Object) -> Refusal | None:
-        if not (found := self.failure(obj)):
+        if not (self.any_kind or obj.type == "CURVE") or not (found := self.failure(obj)):
             return None
         values = found if isinstance(found, Mapping) else {self.field: found}
         return Refusal(Message(self.sentence, name=obj.name, **values), self.remedy)
@@ -74,16 +76,29 @@ class Condition:
         return Refusal(Message(self.sentence)) if self.fails(context) else None
 
 
-def selected_curves(context: bpy.types.Context) -> list[bpy.types.Object]:
-    """The curve objects that are relaxed together: all that are selected, whichever is active."""
-    return [obj for obj in context.selected_objects if obj.type == "CURVE"]
+def selected_curves(context: bpy.types.Context, *more: str) -> list[bpy.types.Object]:
+    """The curve objects that are selected, whichever is active, and those whose motion selected copies show.
+
+    ``more``: other custom properties of objects, which say what curve object they were made of.
+    """
+    made_of = list(context.selected_objects)
+    for name in (CARRIER, *more):
+        made_of = [obj.get(name, obj) for obj in made_of if obj is not None]
+    there = (obj for obj in made_of if obj is not None and obj.name in context.scene.objects)
+    return [obj for obj in dict.fromkeys(there) if obj.type == "CURVE"]
 
 
 def shown_curves(context: bpy.types.Context) -> list[bpy.types.Object]:
     """The curve objects whose motion is seen: those selected, and those that selected tubes' meshes were made of."""
-    made_of = (obj.get(TUBE_OF, obj) for obj in context.selected_objects)
-    there = (obj for obj in made_of if obj is not None and obj.name in context.scene.objects)
-    return [obj for obj in dict.fromkeys(there) if obj.type == "CURVE"]
+    return selected_curves(context, TUBE_OF)
+
+
+def relaxed_together(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """The selected objects that are curves of any kind; a mesh with faces is none where there are others."""
+    chosen = [obj for obj in context.selected_objects if obj.type in KINDS and CARRIER not in obj]
+    lines = [obj for obj in chosen if obj.type != "MESH" or not obj.data.polygons]
+    found = [*selected_curves(context), *lines]
+    return found or [obj for obj in chosen if has_loops(obj.data)]
 
 
 def curves_at_hand(context: bpy.types.Context) -> list[bpy.types.Object]:
@@ -150,7 +165,7 @@ def avoided(context: bpy.types.Context, name: str | None = None) -> list[bpy.typ
     collection = context.scene.mobius_flow_surroundings.avoid if name is None else bpy.data.collections.get(name)
     if name and collection is None:
         raise MobiusFlowError(Message("There is no collection '{name}' to avoid", name=name))
-    found, relaxed = list[bpy.types.Object](), selected_curves(context)
+    found, relaxed = list[bpy.types.Object](), relaxed_together(context)
     for obj in collection.all_objects if collection is not None else ():
         bare = obj.type in WITHOUT_SHAPE or (obj.type == "EMPTY" and obj.instance_type == "NONE")
         if not bare and obj not in relaxed and obj.visible_get():
@@ -161,7 +176,7 @@ def avoided(context: bpy.types.Context, name: str | None = None) -> list[bpy.typ
 
 def container(context: bpy.types.Context) -> bpy.types.Object | None:
     """The mesh that was picked as a container, if the boxes of all selected curves lie in its own."""
-    outer, curves = context.scene.mobius_flow_surroundings.container, selected_curves(context)
+    outer, curves = context.scene.mobius_flow_surroundings.container, relaxed_together(context)
     if outer is None or not curves:
         return None
     (low, high), boxes = box(outer), map(box, curves)
@@ -192,7 +207,10 @@ def _is_flat(obj: bpy.types.Object) -> bool:
 
 
 _OBJECT_MODE = Check(
-    "'{name}' is being edited; go back to Object Mode first", lambda obj: obj.mode != "OBJECT", Remedy.OBJECT_MODE
+    "'{name}' is being edited; go back to Object Mode first",
+    lambda obj: obj.mode != "OBJECT",
+    Remedy.OBJECT_MODE,
+    any_kind=True,
 )
 _OWN = (
     Check(
@@ -255,11 +273,15 @@ _OWN_KEYS = (
 )
 _BAKED = (
     _UNCHANGED,
-    Check("'{name}' has no keys of Möbius Flow; press Relax first", lambda obj: not bake.was_baked(obj.data)),
+    Check(
+        "'{name}' has no keys of Möbius Flow; press Relax first",
+        lambda obj: obj.type != "CURVE" or not bake.was_baked(obj.data),
+        any_kind=True,
+    ),
 )
 _UNKEYED = Curves(_OBJECT_MODE, *_OWN, *_OWN_KEYS)
 
-RELAXABLE = Curves(
+_RELAXABLE = (
     *(_OBJECT_MODE, *_OWN, *_SPLINES, *_OWN_KEYS),
     Check(
         "{deformer} moves its points, so that strands may be seen to cross; remove it, or relax a copy without it",
@@ -267,7 +289,7 @@ RELAXABLE = Curves(
         Remedy.COPY,
         "deformer",
     ),
-    Check("'{name}' is scaled to nothing in some direction; give it a scale other than 0", _is_flat),
+    Check("'{name}' is scaled to nothing in some direction; give it a scale other than 0", _is_flat, any_kind=True),
     Check(
         "'{name}' is moved by {mover}, and curves relaxed together must keep their places; "
         "remove that, or relax each curve alone",
@@ -275,8 +297,11 @@ RELAXABLE = Curves(
         Remedy.COPY,
         "mover",
         together=True,
+        any_kind=True,
     ),
 )
+RELAXABLE = Curves(*_RELAXABLE)
+ENTERABLE = Curves(*_RELAXABLE, among=relaxed_together)
 READABLE = Curves(_OBJECT_MODE, *_SPLINES)
 FILMABLE = Curves(*READABLE.checks, among=shown_curves)
 PAINTABLE = Curves(*READABLE.checks, *_OWN)
@@ -290,8 +315,14 @@ FITTABLE = Curves(
 TUBED = Curves(
     Check(
         "'{name}' has no bevel depth; set it to the rope's radius first (Object Data properties, Geometry > Bevel)",
-        lambda obj: not obj.data.bevel_depth,
-    )
+        lambda obj: not splines.depth(obj.data),
+    ),
+    Check(
+        "'{name}' has no thickness; give its points an attribute named radius first",
+        lambda obj: obj.type == "MESH" and "radius" not in obj.data.attributes,
+        any_kind=True,
+    ),
+    among=relaxed_together,
 )
 PINNABLE = Curves(*_OWN, among=curves_at_hand)
 BAKED = Curves(*_BAKED)
@@ -309,7 +340,8 @@ POLYGONS = Curves(
         "(Edit Mode, Curve > Set Spline Type > Poly), or set Sample Splines",
         _smooth_spline,
         Remedy.TO_POLY,
-    )
+    ),
+    among=relaxed_together,
 )
 
 

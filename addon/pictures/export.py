@@ -131,9 +131,10 @@ def compose(
     import bpy
 
     from ..curves import keyframes
+    from ..curves.assets import bundled
     from ..curves.splines import new_curve_data
     from . import stage
-    from .materials import bundled, colour_components
+    from .materials import colour_components
 
     points, look = [key.points for key in keys.keys], playing.look or DEFAULT
     if radii is None:

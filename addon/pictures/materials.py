@@ -5,17 +5,14 @@ tube's material the nodes that are set here have names: "tint", the colour of a 
 "share", "lay", "fine" and "bump", what depends on a curve's length and thickness.
 """
 
-from pathlib import Path
-from typing import Any
-
 import bpy
 import numpy as np
 
 from ...core.base.types import FloatArray
 from ...core.keys.colours import flatly_lit
+from ..curves.assets import bundled
 from .looks import DEFAULT, LOOKS
 
-_ASSETS = Path(__file__).parents[1] / "assets" / "assets.blend"
 _PIXELS = 1024  # of what changes along a component
 
 
@@ -93,20 +90,6 @@ def vertex_colours(attribute: str) -> bpy.types.Material:
     colours = nodes.new("ShaderNodeVertexColor")
     colours.name, colours.layer_name = "colors", attribute
     _tint_by(made, colours)
-    return made
-
-
-def bundled(kind: str, name: str) -> Any:
-    """A new copy of what assets/assets.blend has of a kind, such as "worlds", under a name.
-
-    Raises OSError if the file is missing.
-    """
-    libraries = set(bpy.data.libraries)
-    with bpy.data.libraries.load(str(_ASSETS)) as (_, wanted):
-        setattr(wanted, kind, [name])
-    (made,) = getattr(wanted, kind)
-    made.use_fake_user = False
-    bpy.data.batch_remove(set(bpy.data.libraries) - libraries)  # nothing is linked to the file
     return made
 
 

@@ -12,9 +12,9 @@ from scipy.ndimage import maximum_filter1d, uniform_filter1d
 from ...core.base.types import FloatArray
 from ...core.curve.refine import interpolated
 from ...core.keys.placement import Frame
+from ..curves.assets import bundled
 from ..curves.keyframes import add_keys
 from .looks import Look
-from .materials import bundled
 
 
 @dataclass(frozen=True, eq=False)

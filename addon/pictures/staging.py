@@ -12,12 +12,13 @@ import numpy as np
 
 from ...core import CurveError
 from ...core.keys.colours import COMPONENT
+from ..curves.assets import bundled
 from ..curves.recorded import world_motion
 from ..curves.splines import read
 from ..curves.surroundings import STAGE, TUBE_OF, WITHOUT_SHAPE
 from . import stage
 from .looks import LOOKS, ON_STAGE
-from .materials import bundled, colour_components
+from .materials import colour_components
 
 _NAME = "Stage"
 # of its collection: what the scene had before, and what it was set up around

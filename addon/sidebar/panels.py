@@ -17,7 +17,16 @@ from ..curves.moving import unsteady
 from ..curves.splines import length
 from ..live import registry
 from ..live.modal import unseen
-from ..live.requirements import RELAXABLE, Remedy, avoided, closable, curves_at_hand, selected_curves, shown_curves
+from ..live.requirements import (
+    ENTERABLE,
+    Remedy,
+    avoided,
+    closable,
+    curves_at_hand,
+    relaxed_together,
+    selected_curves,
+    shown_curves,
+)
 from ..live.run import RunState
 from ..pictures import staging
 from ..pictures.icons import labels
@@ -47,7 +56,7 @@ def _buttons(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
 
 def _concerned(context: bpy.types.Context) -> Sequence[bpy.types.Object]:
     run = registry.current()
-    return run.objects if run is not None else selected_curves(context)
+    return run.objects if run is not None else relaxed_together(context)
 
 
 def _hints(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -55,13 +64,13 @@ def _hints(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     run, shown, objects = registry.current(), registry.shown(context.active_object), _concerned(context)
     if shown is not None and shown.recoverable:
         operator(layout, "recover", icon="RECOVER_LAST")
-    hindered = RELAXABLE(context)
-    if hindered and (run is None or any(obj not in objects for obj in selected_curves(context))):
+    hindered, chosen = ENTERABLE(context), relaxed_together(context)
+    if hindered and (run is None or any(obj not in objects for obj in chosen)):
         refused(layout.column(align=True), context, hindered)
     if run or not hindered:
         # say what cannot be avoided, or else what might be crossed, with the button that helps
         found = avoided(context)
-        if moving := unsteady(found, selected_curves(context)):
+        if moving := unsteady(found, chosen):
             sentence(layout, context, moving, icon="ERROR")
         elif unguarded := surroundings.warning(context, objects, found):
             sentence(layout, context, unguarded, icon="ERROR")

@@ -14,6 +14,7 @@ inserted, a marker of that edge becomes it, and only if none is left do all earl
 import heapq
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -337,15 +338,19 @@ def along(values: npt.NDArray[np.float32], size: int, closed: bool) -> FloatArra
     return np.interp(np.linspace(0.0, len(values) - 1, size), np.arange(len(values)), values)
 
 
-def on_refined(values: FloatArray, lengths: FloatArray, refined: FloatArray, closed: bool) -> FloatArray:
-    """Values at the vertices of a refined polygon, linear along the edges of the original.
+def on_refined(
+    values: npt.NDArray[Any], lengths: FloatArray, refined: FloatArray, closed: bool
+) -> npt.NDArray[Any]:
+    """Values at the vertices of a refined polygon, linear along the edges of the original, or, if whole, the nearer.
 
-    ``values``: at the original vertices, (n,); ``lengths``, ``refined``: edge lengths of both polygons, which run
+    ``values``: at the original vertices, (n, ...); ``lengths``, ``refined``: edge lengths of both polygons, which run
     through the same points from the same vertex.
     """
     old, new = (np.concatenate([[0.0], np.cumsum(each)]) / each.sum() for each in (lengths, refined))
     # a vertex met a rounding error too early gets its neighbour's value with a weight of 1e-15: none in 32 bits
-    return np.asarray(np.interp(new[:-1], old[:-1], values, period=1.0) if closed else np.interp(new, old, values))
+    places = np.interp(new[:-1] if closed else new, old, np.arange(float(len(old))))
+    around = np.concatenate([values, values[:1]]) if closed else values
+    return interpolated(around, places) if values.dtype.kind == "f" else around[places.round().astype(np.intp)]
 
 
 def interpolated(values: FloatArray, places: FloatArray) -> FloatArray:
