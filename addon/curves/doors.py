@@ -1,7 +1,7 @@
 """Objects that are no curve objects: a curve object carries their keys, and a copy of theirs shows its motion.
 
-The source is hidden, and otherwise left alone. The copy is of the same kind, with all that the source's curves have, and
-bundled nodes put its points where the carrier has them: it is rendered where there is no extension, too.
+The source is hidden, and otherwise left alone. The copy is of the same kind, with all that the source's curves have;
+bundled nodes put its points where the carrier has them. It is rendered where there is no extension, too.
 """
 
 import bpy
@@ -76,11 +76,13 @@ def leave(data: bpy.types.Curve) -> None:
     if source is not None and source.name in bpy.context.view_layer.objects:
         source.hide_render = not rendered
         source.hide_set(False)
+        source.select_set(True)
         for carrier in carriers:
             show_instead(carrier, source)
     for carrier in carriers:
         bpy.data.objects.remove(carrier)
     keyframes.remove(data)
+    bpy.context.view_layer.update()
 
 
 def copy_of(carrier: bpy.types.Object) -> bpy.types.Object | None:
@@ -92,7 +94,12 @@ def strands_of(carrier: bpy.types.Object) -> Strands:
     """What a carrier that has no keys was made of; raises MobiusFlowError if that is not so any more."""
     source = carrier.data[SOURCE]["object"]
     if source is not None:
-        strands = Strands.of(source)
+        hidden = source.hide_get()
+        source.hide_set(False)  # or else its modifiers make nothing
+        try:
+            strands = Strands.of(source)
+        finally:
+            source.hide_set(hidden)
         if strands.mesh == mesh_of(carrier.data):
             return strands
     sentence = "'{name}' has other points than what it was made of; delete it, and relax that anew"

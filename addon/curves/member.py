@@ -181,12 +181,12 @@ class Member:
                 bevel.fit(data, data.bevel_depth)
             return False
         restored = obj is not None and obj.data in (data, original)
-        if obj is None and original is not None and self._source is not None:
-            doors.leave(original)
         if data is not None:
             _show_original(data)
         elif restored:
             doors.withdraw(obj)
+        if obj is None and self._source is not None:
+            doors.leave(original)
         return restored
 
     def hide(self) -> None:

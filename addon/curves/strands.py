@@ -53,6 +53,7 @@ class Strands:
     components: Sequence[FloatArray]  # (n, 3) each
     closed: tuple[bool, ...]
     attributes: Mapping[str, Attribute] = field(default_factory=dict)
+    materials: Sequence[bpy.types.Material | None] = ()
     own: bool = True  # those of its own data, on which modifiers act, rather than what these make
 
     @classmethod
@@ -152,6 +153,7 @@ def _read(obj: bpy.types.Object, own: bool) -> Strands:
         for block in reversed(made):
             bpy.data.batch_remove([block])
         drop_nodes(_NODES)
+        bpy.context.view_layer.update()
     if not attributes:
         return Strands((), ())
     for name in ("curve_type", "mobius_flow_poly", "mobius_flow_chosen"):  # all are polygons now
@@ -161,7 +163,9 @@ def _read(obj: bpy.types.Object, own: bool) -> Strands:
         attributes["radius"] = Attribute("FLOAT", "POINT", radii)
     components = np.split(attributes["position"].values, np.cumsum(sizes)[:-1])
     closed = attributes["cyclic"].values if "cyclic" in attributes else np.zeros(len(sizes), dtype=bool)
-    return Strands(components, tuple(closed.tolist()), attributes, own)
+    worn = obj if own else obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    materials = [each and each.original for each in worn.data.materials]
+    return Strands(components, tuple(closed.tolist()), attributes, materials, own)
 
 
 def _check_count(obj: bpy.types.Object, data: Any) -> None:
@@ -249,6 +253,6 @@ def copied(source: bpy.types.Object, strands: Strands, drawn: Curve, refined: Cu
         data = bpy.data.hair_curves.new(source.data.name)
         data.add_curves(list(sizes))
     _give(data, attributes)
-    for material in source.data.materials:
+    for material in strands.materials:
         data.materials.append(material)
     return data

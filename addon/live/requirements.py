@@ -96,7 +96,7 @@ def shown_curves(context: bpy.types.Context) -> list[bpy.types.Object]:
 def relaxed_together(context: bpy.types.Context) -> list[bpy.types.Object]:
     """The selected objects that are curves of any kind; a mesh with faces is none where there are others."""
     chosen = [obj for obj in context.selected_objects if obj.type in KINDS and CARRIER not in obj]
-    lines = [obj for obj in chosen if obj.type != "MESH" or not obj.data.polygons]
+    lines = [obj for obj in chosen if obj.type != "MESH" or (obj.data.edges and not obj.data.polygons)]
     found = [*selected_curves(context), *lines]
     return found or [obj for obj in chosen if has_loops(obj.data)]
 

@@ -338,9 +338,7 @@ def along(values: npt.NDArray[np.float32], size: int, closed: bool) -> FloatArra
     return np.interp(np.linspace(0.0, len(values) - 1, size), np.arange(len(values)), values)
 
 
-def on_refined(
-    values: npt.NDArray[Any], lengths: FloatArray, refined: FloatArray, closed: bool
-) -> npt.NDArray[Any]:
+def on_refined(values: npt.NDArray[Any], lengths: FloatArray, refined: FloatArray, closed: bool) -> npt.NDArray[Any]:
     """Values at the vertices of a refined polygon, linear along the edges of the original, or, if whole, the nearer.
 
     ``values``: at the original vertices, (n, ...); ``lengths``, ``refined``: edge lengths of both polygons, which run

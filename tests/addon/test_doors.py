@@ -1,0 +1,316 @@
+"""Each kind of object that shows curves × what its relaxation promises."""
+
+import sys
+
+import bpy
+import numpy as np
+import pytest
+from blender_scenes import add_trefoil, contents, sentence, stored
+from mobius_flow.addon.curves.doors import copy_of
+from mobius_flow.addon.curves.recorded import BakedKeys
+from mobius_flow.addon.curves.strands import Strands
+from mobius_flow.addon.scripting import Relaxation
+from mobius_flow.core import MobiusFlowError
+from other_kinds import KINDS, KNOT, POINTS, STROKES, THICK, TINT, add_edges, add_hair, add_loop, nodes
+from processes import finished
+
+FEW = {"max_iterations": 3}
+READ = '''
+import bpy, sys, numpy as np
+def points(obj, name="position", field="vector", width=3):
+    """What is shown of a copy: an attribute of all points, in its coordinates."""
+    data = obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    owners = [layer.frames[0].drawing for layer in data.layers if len(layer.frames)] if hasattr(data, "layers") else [data]
+    arrays = []
+    for owner in owners:
+        array = np.empty(width * len(owner.attributes[name].data), dtype=np.float32)
+        owner.attributes[name].data.foreach_get(field, array)
+        arrays.append(array)
+    return np.concatenate(arrays).reshape(-1, width)
+'''
+exec(READ)
+
+
+def there(points, wanted):
+    """The numbers of the points that are at wanted places, (k, 3)."""
+    distances = np.linalg.norm(points[:, None] - wanted[None], axis=2)
+    assert (distances.min(axis=0) < 1e-5).all()
+    return distances.argmin(axis=0)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_it_is_shown_in_motion_with_all_that_it_had(kind):
+    source = KINDS[kind]()
+    source.location = (1, 2, 3)
+    read = Strands.of(source)
+    assert bpy.ops.curve.mobius_flow_relax(**FEW) == {"FINISHED"}
+    carrier = bpy.context.object
+    copy = copy_of(carrier)
+    assert carrier.type == "CURVE"
+    assert copy.type == source.type
+    assert (source.visible_get(), source.hide_render, copy.hide_render) == (False, True, False)
+    assert [each.name for each in copy.data.materials] == ["Own"]
+    keys = BakedKeys([carrier])
+    for frame, key in ((1, 0), (250, -1)):
+        bpy.context.scene.frame_set(frame)
+        shown = points(copy) @ np.array(copy.matrix_world)[:3, :3].T + np.array(copy.matrix_world)[:3, 3]
+        np.testing.assert_allclose(shown, keys.curves[key].vertices, atol=1e-5)
+    bpy.context.scene.frame_set(1)
+    old = there(points(copy), np.concatenate(read.components))
+    for name in {"tint", "radius"} & set(read.attributes):
+        np.testing.assert_allclose(points(copy, name, "value", 1)[old, 0], read.attributes[name].values, rtol=1e-5)
+    if kind in ("poly", "edges", "strokes"):
+        old = there(points(copy), POINTS)
+        np.testing.assert_allclose(points(copy, "tint", "value", 1)[old, 0], TINT, atol=1e-6)
+        np.testing.assert_allclose(points(copy, "radius", "value", 1)[old, 0], THICK, rtol=1e-5)
+    if kind == "made":
+        assert not any(modifier.name == "Nodes" for modifier in copy.modifiers), "what it made is in the points"
+        there(points(copy), KNOT + np.float32([0, 0, 2])) if hasattr(bpy.types.Curves, "set_types") else None
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_clearing_gives_everything_back(kind):
+    source = KINDS[kind]()
+    before, data = contents(), source.data
+    bpy.ops.curve.mobius_flow_relax(**FEW)
+    bpy.ops.curve.mobius_flow_continue(**FEW)
+    copy_of(bpy.context.object).select_set(True)
+    bpy.context.object.select_set(False)
+    assert bpy.ops.curve.mobius_flow_clear() == {"FINISHED"}, "its copy will do"
+    assert contents() == before
+    assert (source.data, source.visible_get(), source.hide_render) == (data, True, False)
+    assert bpy.context.object == source
+
+
+def test_it_moves_and_is_rendered_where_there_is_no_extension(tmp_path):
+    made = []
+    for k, (kind, add) in enumerate(KINDS.items()):
+        bpy.ops.object.select_all(action="DESELECT")
+        source = add()
+        source.location.x = 8 * k
+        made.append(kind)
+        bpy.ops.curve.mobius_flow_relax(length=20, **FEW)
+        copy_of(bpy.context.object).name = kind
+    bpy.context.scene.frame_set(20)
+    expected = {kind: points(bpy.data.objects[kind]) for kind in made}
+    np.savez(tmp_path / "expected.npz", **expected)
+    bpy.context.scene.frame_set(1)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "doors.blend"))
+    program = (
+        READ
+        + f"""
+bpy.ops.wm.open_mainfile(filepath={str(tmp_path / "doors.blend")!r})
+bpy.context.scene.frame_set(20)
+for kind, wanted in np.load({str(tmp_path / "expected.npz")!r}).items():
+    np.testing.assert_array_equal(points(bpy.data.objects[kind]), wanted)
+assert "mobius_flow" not in sys.modules
+print("shown")
+"""
+    )
+    done = finished([sys.executable, "-P", "-c", program])
+    assert done.stdout.endswith("shown\n"), done.stderr
+
+
+def morph(source):
+    bpy.ops.object.select_all(action="DESELECT")
+    goal = {"CURVES": add_hair, "MESH": add_edges}.get(source.type, KINDS.get("strokes"))()
+    goal.name, owner = "Goal", goal.data
+    if hasattr(owner, "layers"):
+        owner = owner.layers[0].frames[0].drawing
+    owner.attributes["position"].data[3].vector *= 1.1
+    source.select_set(True)
+    return bpy.ops.curve.mobius_flow_morph(**FEW)
+
+
+def pack(source):
+    bpy.ops.mesh.primitive_cube_add(size=20)
+    bpy.context.scene.mobius_flow_surroundings.container = bpy.context.object
+    bpy.context.object.select_set(False)
+    source.select_set(True)
+    return bpy.ops.curve.mobius_flow_pack(**FEW)
+
+
+VERBS = {
+    "Grab": lambda _: bpy.ops.curve.mobius_flow_grab(**FEW),
+    "Pack": pack,
+    "Separate": lambda _: bpy.ops.curve.mobius_flow_separate(),
+    "Morph": morph,
+    "again": lambda _: bpy.ops.curve.mobius_flow_relax(**FEW) and bpy.ops.curve.mobius_flow_bake_again(vertices=90),
+    "still": lambda _: bpy.ops.curve.mobius_flow_relax(keyframes="RESULT", **FEW),
+    "F-curves": lambda _: bpy.ops.curve.mobius_flow_relax(keyframes="FCURVES", **FEW),
+}
+
+
+@pytest.mark.parametrize("verb", VERBS)
+@pytest.mark.parametrize("kind", ["poly", "edges", *(["strokes"] if STROKES else [])])
+def test_every_verb_takes_it(kind, verb):
+    source = KINDS[kind]()
+    assert VERBS[verb](source) == {"FINISHED"}
+    (copy,) = (each for each in map(copy_of, bpy.data.objects) if each is not None)
+    (carrier,) = (obj for obj in bpy.data.objects if copy_of(obj) == copy)
+    assert copy.type == source.type
+    bpy.context.scene.frame_set(250)
+    np.testing.assert_allclose(points(copy), stored(carrier.data), atol=1e-5)
+
+
+def test_a_rope_as_thick_as_hair_is_pulled_tight():
+    obj = bpy.data.objects["Source"] if "Source" in bpy.data.objects else add_hair()
+    only = bpy.data.hair_curves.new("Source")
+    only.add_curves([len(KNOT)])
+    only.attributes["position"].data.foreach_set("vector", KNOT.ravel())
+    only.attributes.new("cyclic", "BOOLEAN", "CURVE").data.foreach_set("value", [True])
+    obj.data = only
+    report = Relaxation(obj).tighten(vertices=150, time_limit=2.0)
+    assert report.names == ("Source Keys",)
+    assert copy_of(bpy.context.object).type == "CURVES"
+
+
+def test_scripts_have_the_carrier_afterwards():
+    source = add_hair()
+    relaxation = Relaxation(source)
+    with pytest.raises(MobiusFlowError, match="press Relax first"):
+        relaxation.relax_further()
+    assert relaxation.relax(**FEW).certified
+    assert relaxation.relax_further(**FEW).continues
+    relaxation.clear()
+    assert [obj.name for obj in bpy.data.objects] == ["Source"]
+
+
+def empty():
+    add_hair().data = bpy.data.hair_curves.new("Empty")
+
+
+def gone():
+    add_hair().modifiers.new("Nodes", "NODES").node_group = nodes("GeometryNodeDeleteGeometry")
+    bpy.context.object.data = bpy.data.hair_curves.new("Empty")
+
+
+def cut():
+    tree = nodes("GeometryNodeDeleteGeometry")
+    tree.nodes.new("GeometryNodeSetPosition")  # which might move something
+    add_hair().modifiers.new("Nodes", "NODES").node_group = tree
+
+
+def dot():
+    data = bpy.data.hair_curves.new("Dot")
+    data.add_curves([5, 1])
+    data.attributes["position"].data.foreach_set("vector", np.arange(18, dtype=np.float32))
+    add_hair().data = data
+
+
+def far():
+    add_hair().data.attributes["position"].data[30].vector = (np.inf, 0, 0)
+
+
+def fur():
+    data = bpy.data.hair_curves.new("Fur")
+    data.add_curves([4] * 100_000)
+    add_hair().data = data
+
+
+def branch():
+    mesh = bpy.data.meshes.new("Tree")
+    mesh.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], [(0, 1), (0, 2), (0, 3)], [])
+    add_edges().data = mesh
+
+
+def edit():
+    add_loop()
+    bpy.ops.object.mode_set(mode="EDIT")
+
+
+def flat():
+    add_hair().scale.z = 0
+
+
+BAD = {
+    empty: "'Source' shows no curves; draw some, or see what its modifiers do",
+    gone: "'Source' shows no curves; draw some, or see what its modifiers do",
+    cut: "'Source' shows no curves; draw some, or see what its modifiers do",
+    dot: "Spline 2 of 'Source' has fewer than 2 points; give it more, or delete it",
+    far: "Point 7 of spline 2 of 'Source' is not finite, or further away than anything; repair or delete it",
+    fur: "'Source' has 100000 curves, and at most 1000 are relaxed together; make an object of a few",
+    branch: "Edges of 'Source' branch; take out those that are not of a loop or a path",
+    edit: "'Source' is being edited; go back to Object Mode first",
+    flat: "'Source' is scaled to nothing in some direction; give it a scale other than 0",
+}
+
+
+@pytest.mark.parametrize("spoil", BAD, ids=lambda spoil: spoil.__name__)
+def test_bad_input_is_one_sentence_and_changes_nothing(spoil):
+    spoil()
+    bpy.context.view_layer.update()
+    before = contents()
+    with pytest.raises(RuntimeError) as caught:
+        bpy.ops.curve.mobius_flow_relax(**FEW)
+    assert BAD[spoil] in sentence(caught.value)
+    assert contents() == before
+
+
+def test_edges_without_a_thickness_are_no_ropes():
+    add_loop()
+    with pytest.raises(RuntimeError, match="'Source' has no thickness; give its points an attribute named radius"):
+        bpy.ops.curve.mobius_flow_separate()
+
+
+def test_a_curve_object_that_is_selected_too_leaves_solids_alone():
+    solid, knot = add_loop(), add_trefoil()
+    solid.select_set(True)
+    bpy.ops.curve.mobius_flow_relax(**FEW)
+    assert knot.data.shape_keys is not None
+    assert solid.visible_get()
+
+
+def test_another_source_is_refused():
+    source = add_hair()
+    bpy.ops.curve.mobius_flow_relax(**FEW)
+    source.data = add_hair("POLY").data.copy()
+    bpy.context.object.select_set(False)
+    data = bpy.data.hair_curves.new("Other")
+    data.add_curves([5])
+    data.attributes["position"].data.foreach_set("vector", np.arange(15, dtype=np.float32) ** 2)
+    source.data = data
+    bpy.data.objects["Source Keys"].select_set(True)
+    before = contents()
+    with pytest.raises(RuntimeError, match="has other points than what it was made of; delete it, and relax that"):
+        bpy.ops.curve.mobius_flow_bake_again(**FEW)
+    assert contents() == before
+
+
+def ended(way, operator, path):
+    """End a run, or let it be disturbed and then end it."""
+    if way == "saved":
+        bpy.ops.wm.save_as_mainfile(filepath=path, copy=True)
+    elif way == "dragged":
+        operator.run.session.hide()
+        operator.run.session.resume()
+    elif way == "deleted":
+        bpy.data.objects.remove(bpy.data.objects["Source Keys"])
+        operator.event()
+    operator.run.cancel()
+
+
+@pytest.mark.parametrize("kind", ["poly", "edges", *(["strokes"] if STROKES else [])])
+@pytest.mark.parametrize("way", ["cancelled", "saved", "dragged", "deleted"])
+def test_a_run_that_ends_without_a_result_leaves_no_trace(operator, tmp_path, kind, way):
+    source = KINDS[kind]()
+    before = contents()
+    operator.start()
+    operator.reach(2)
+    assert copy_of(bpy.context.object) is not None, "it is seen to move"
+    ended(way, operator, str(tmp_path / "saved.blend"))
+    assert contents() == before
+    assert source.visible_get()
+    assert not source.hide_render
+    if way == "saved":
+        bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "saved.blend"))
+        assert contents() == before
+
+
+def test_it_can_be_recovered(operator):
+    add_hair()
+    operator.start()
+    operator.reach(2)
+    operator.run.cancel()
+    assert bpy.ops.curve.mobius_flow_recover() == {"FINISHED"}
+    assert copy_of(bpy.context.object) is not None
