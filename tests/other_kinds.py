@@ -115,3 +115,14 @@ KINDS = {
     "loop": add_loop,
     **({"strokes": add_strokes} if STROKES else {}),
 }
+
+
+def points(obj, name="position", field="vector", width=3):
+    """What is shown of an object: an attribute of all points, in its coordinates; (n, width)."""
+    data = obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    layers = getattr(data, "layers", ())
+    owners = [layer.frames[0].drawing for layer in layers if len(layer.frames)] or [data]
+    arrays = [np.empty(width * len(owner.attributes[name].data), dtype=np.float32) for owner in owners]
+    for owner, array in zip(owners, arrays, strict=True):
+        owner.attributes[name].data.foreach_get(field, array)
+    return np.concatenate(arrays).reshape(-1, width)
