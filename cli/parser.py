@@ -21,6 +21,7 @@ COMMANDS = {  # the module of each, which has add_COMMAND(parser), and what it d
     "energy": ("info", "print the energy of a curve"),
     "info": ("info", "identify the knot type of curves, and measure them"),
     "verify": ("verify", "check a trajectory for contact"),
+    "audit": ("audit", "tell which chains of another program's trajectory passed through each other"),
     "view": ("view", "show a curve or a motion in a browser, or make a solid of it"),
     "knot": ("knot", "write a named knot"),
 }

@@ -7,6 +7,7 @@ from .base.errors import CurveError, CurveFileError, MobiusFlowError, OptionErro
 from .curve import Curve, Mesh, Obstacle
 from .descent import METHODS, Task
 from .driver import Hand, Outcome, RelaxOptions, Result, Status, WithOutcome, minimize, relax
+from .driver.audit import Audit, audit
 from .energies import MoebiusEnergy, Objective
 from .io import knot_list, read_curve, write_curve
 from .io.obstacles import read_obstacle
@@ -17,6 +18,7 @@ from .tighten import tighten
 
 __all__ = [
     "METHODS",
+    "Audit",
     "Curve",
     "CurveError",
     "CurveFileError",
@@ -36,6 +38,7 @@ __all__ = [
     "Task",
     "Trajectory",
     "WithOutcome",
+    "audit",
     "knot_list",
     "minimize",
     "morph",

@@ -192,8 +192,12 @@ def cross(u: Sequence[Any], v: Sequence[Any], multiplied: Any = mul, less: Any =
     return [less(multiplied(u[i], v[j]), multiplied(u[j], v[i])) for i, j in ((1, 2), (2, 0), (0, 1))]
 
 
-def meet(*ends: Motion) -> bool:
-    """Whether edges x0 x1 and y0 y1, whose four ends are motions, have a common point at any time."""
+def contacts(*ends: Motion) -> Iterator[tuple[Time, int]]:
+    """Yield when edges x0 x1 and y0 y1, whose four ends are motions, meet, and if they pass through each other the way.
+
+    That is the sign that the volume det(x0 - y0, x1 - x0, y1 - y0) has afterwards, being opposite before, and 0 where
+    they only touch.  If it is zero all the time, they touch all along, and the first and the last contact are yielded.
+    """
     x0, x1, y0, y1 = (list(zip(*motion, strict=True)) for motion in ends)  # coordinates as polynomials in time
     a, b, c, d = (list(map(minus, p, q)) for p, q in ((x0, y0), (x0, y1), (x1, y0), (x1, y1)))
     e, f = list(map(minus, x1, x0)), list(map(minus, y1, y0))
@@ -209,9 +213,11 @@ def meet(*ends: Motion) -> bool:
     for time in moments:
         # seen along an axis, edges in one plane meet if each has the ends of the other on both sides of it
         axis = next((k for k, component in enumerate(normal) if sign(component, time)), None)
+        through = False
         if axis is not None:
             sides = [sign(area[axis], time) for _, _, area in beside]
             touch = sides[0] * sides[1] <= 0 and sides[2] * sides[3] <= 0
+            through = all(sides) and any(volume) and bool(time[0])
         else:  # parallel, or of no length: an end of one is on the other
             touch = any(
                 not any(sign(each, time) for each in area)
@@ -219,8 +225,16 @@ def meet(*ends: Motion) -> bool:
                 for first, last, area in beside
             )
         if touch:
-            return True
-    return False
+            order, slope = 0, volume  # of the root, and a derivative
+            while through and not sign(slope, time):
+                order, slope = order + 1, [k * c for k, c in enumerate(slope)][1:]
+            way = sign(slope, time) if order % 2 else 0
+            yield time, (way > 0) - (way < 0)
+
+
+def meet(*ends: Motion) -> bool:
+    """Whether edges x0 x1 and y0 y1, whose four ends are motions, have a common point at any time."""
+    return any(True for _ in contacts(*ends))
 
 
 def meet_triangle(x0: Motion, x1: Motion, *corners: Motion) -> bool:

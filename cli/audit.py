@@ -1,0 +1,179 @@
+"""``mobius-flow audit``: which chains of a trajectory passed through each other."""
+
+import argparse
+import json
+import os
+import re
+import sys
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..core.base import OptionError, counted
+from ..core.driver.audit import Audit, Meeting, auditing
+from ..core.io.snapshots import READERS
+from ..core.knots import KnotType
+from . import signals
+from .progress import live
+from .terminal import GREEN, YELLOW, Item, emit, report, table
+
+_EPILOG = """\
+examples:
+  mobius-flow audit melt.lammpstrj
+  mobius-flow audit melt.xtc --chains 50x200 --json > passings.json
+  mobius-flow audit brush.xyz --chains 100 --open --box 20,20,35
+
+Between frames all beads are taken to go straight at constant speed, in a time from 0 to 1.  What happens on that way is
+decided exactly; what happened in the simulation may be something else if frames are far apart.  Frames are counted from
+0, chains from 1, in JSON also from 0, and beads as in the file.
+
+exit status:
+  0    the trajectory was audited to its end, whatever was found
+  1    it broke off, or beads came or went: the report is about what came before, and says why it ends
+  2    bad input or bad options, so that there is nothing to report; one line says what and where
+  130  interrupted by Ctrl-C, SIGTERM or SIGHUP; what was found is printed
+"""
+
+
+def add_audit(parser: argparse.ArgumentParser) -> None:
+    parser.description, parser.epilog = "Tell which chains of a trajectory passed through each other.", _EPILOG
+    parser.add_argument("trajectory", metavar="FOREIGN", help=f"of another program: {', '.join(READERS)}")
+    text = (
+        "beads of each chain, such as 50x200 or 20x100,5x400, or 200 if all have as many (default: bonds or molecules)"
+    )
+    parser.add_argument("--chains", metavar="KxN,…", help=text)
+    shape = parser.add_mutually_exclusive_group()
+    text = "chains are rings (default, unless the file has bonds)"
+    shape.add_argument("--rings", dest="closed", action="store_true", default=True, help=text)
+    shape.add_argument("--open", dest="closed", action="store_false", help="chains are open")
+    text = "the periodic box, if not as in the file: LX,LY,LZ, with XY,XZ,YZ behind if it is tilted; 0 where it is open"
+    parser.add_argument("--box", metavar="L,L,L", help=text)
+    text = "rings, and pairs of rings, that passed through each other whose types are identified at most (default: 100)"
+    parser.add_argument("--types", metavar="K", type=int, default=100, help=text)
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    parser.set_defaults(run=_run)
+
+
+def _run(options: argparse.Namespace) -> int:
+    """Audit, and print what is known, also of a part."""
+    chains, box = None, None
+    if options.chains is not None:
+        if not re.fullmatch(r"(\d{1,9}x)?\d{1,9}(,(\d{1,9}x)?\d{1,9})*", options.chains):
+            raise OptionError(f"chains are {options.chains!r:.40}; give numbers and sizes, such as 50x200")
+        pairs = [part.rpartition("x") for part in options.chains.split(",")]
+        chains = [int(size) for number, _, size in pairs for _ in range(int(number or 1))]
+        chains = chains[0] if options.chains.isdigit() else chains
+    if options.box is not None:
+        try:
+            box = [float(word) for word in options.box.split(",")]
+        except ValueError:
+            raise OptionError(f"box is {options.box!r:.40}; give three lengths, such as 20,20,35") from None
+    found: Audit | None = None
+    interrupted: KeyboardInterrupt | None = None
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    legs = auditing(options.trajectory, chains, closed=options.closed, box=box, processes=cores)
+    try:
+        with live() as show:
+            for found in signals.interruptible(legs):
+                show(f"{len(found.found):,} legs audited, {counted(sum(map(len, found.found)), 'contact')}")
+    except KeyboardInterrupt as error:
+        if found is None:
+            raise
+        found.problem, interrupted = "interrupted", error
+    assert found is not None
+    meetings = list(found.meetings(options.types))
+    emit(json.dumps(_as_json(found, meetings)) if options.json else _as_text(found, meetings))
+    if interrupted is not None:
+        raise interrupted
+    return 1 if found.problem else 0
+
+
+def _contacts(found: Audit) -> list[dict[str, Any]]:
+    """All contacts as users count: frames from 0, chains from 1, beads as in the file."""
+    shape, each = found.topology, found.passings
+    tails = shape.tails[each["edges"]]
+    ends = found.names[shape.beads[np.stack([tails, tails + 1], axis=2)]]
+    columns = {
+        "frames": np.stack([each["leg"], each["leg"] + 1], axis=1),
+        "time": each["time"],
+        "chains": shape.chain[tails],
+        "beads": ends,
+        "image": each["image"],
+        "place": each["place"],
+        "sign": each["sign"],
+    }
+    rows = zip(*(column.tolist() for column in columns.values()), strict=True)
+    return [dict(zip(columns, row, strict=True)) for row in rows]
+
+
+def _as_json(found: Audit, meetings: Sequence[Meeting]) -> Mapping[str, Any]:
+    """All that is known, under names that scripts can rely on."""
+
+    def told(kind: KnotType | None) -> Mapping[str, Any] | None:
+        return kind and {"name": str(kind), "names": list(kind.names), "proved": kind.proved}
+
+    return {
+        "legs": len(found.found),
+        "problem": found.problem or None,
+        "chains": [len(chain) for chain in found.topology.chains],
+        "closed": found.topology.closed,
+        "steps": found.steps,
+        "contacts": [each | {"kind": "passing" if each["sign"] else "touch"} for each in _contacts(found)],
+        "meetings": [
+            {
+                "chains": each.chains,
+                "image": each.image,
+                "passings": each.passings,
+                "touches": each.touches,
+                "linking": each.linking,
+                "before": told(each.before),
+                "after": told(each.after),
+            }
+            for each in meetings
+        ],
+    }
+
+
+def _as_text(found: Audit, meetings: Sequence[Meeting]) -> str:
+    """A headline, what happened between which chains, and every contact."""
+    rings, total = sum(found.topology.closed), len(found.topology.closed)
+    parts = [(len(found.found), "leg"), (rings, "ring"), (total - rings, "open chain")]
+    passed, own = (
+        sum(each.passings for each in meetings if each.chains[0] == each.chains[1] or every) for every in (True, False)
+    )
+    changed = [each for each in meetings if str(each.before) != str(each.after)]
+    rows: list[tuple[str, Item]] = [
+        ("reason", found.problem),
+        ("passings", f"{passed:,}" + (f", {own:,} of them of chains through themselves" if own else "")),
+        *(("changed", f"{_label(*each.chains, each.image)}: {each.before} → {each.after}") for each in changed),
+    ]
+    head = "✗ broken off" if found.problem else "✓ audited", " · ".join(counted(n, noun) for n, noun in parts if n)
+    blocks = [report(head, rows, sys.stdout, YELLOW if found.problem else GREEN)]
+    names = "chains", "passings", "touches", "linking", "before", "after"
+    between = [
+        [_label(*each.chains, each.image), str(each.passings), str(each.touches), f"{each.linking:+d}"]
+        + ["" if kind is None else str(kind) for kind in (each.before, each.after)]
+        for each in meetings
+    ]
+    contacts = [
+        [
+            "–".join(map(str, each["frames"])),
+            f"{each['time']:.6f}",
+            _label(*each["chains"], each["image"]),
+            ", ".join("–".join(map(str, ends)) for ends in each["beads"]),
+            " ".join(f"{x:.4g}" for x in each["place"]),
+            "passing" if each["sign"] else "touch",
+        ]
+        for each in _contacts(found)
+    ]
+    if meetings:
+        blocks.append(table(names, between, sys.stdout))
+        blocks.append(table(("frames", "time", "chains", "beads", "place", "what"), contacts, sys.stdout))
+    return "\n\n".join(blocks)
+
+
+def _label(first: int, second: int, image: Sequence[int]) -> str:
+    """Two chains, or one that met itself, by numbers from 0, and the boxes by which the second is moved."""
+    boxes = f" ({' '.join(f'{k:+d}' for k in image)})" if any(image) else ""
+    return f"{first + 1}" if first == second and not boxes else f"{first + 1}, {second + 1}{boxes}"
