@@ -11,13 +11,14 @@ from typing import Any
 import numpy as np
 
 from ..core.base import OptionError, counted
-from ..core.driver.audit import Audit, Meeting, auditing
+from ..core.driver.audit import Audit, auditing
 from ..core.io.snapshots import READERS
 from ..core.knots import KnotType
 from . import signals
 from .progress import live
 from .terminal import GREEN, YELLOW, Item, emit, report, table
 
+Rows = Sequence[Mapping[str, Any]]
 _EPILOG = """\
 examples:
   mobius-flow audit melt.lammpstrj
@@ -26,7 +27,7 @@ examples:
 
 Between frames all beads are taken to go straight at constant speed, in a time from 0 to 1.  What happens on that way is
 decided exactly; what happened in the simulation may be something else if frames are far apart.  Frames are counted from
-0, chains from 1, in JSON also from 0, and beads as in the file.
+0, chains from 1, and beads as in the file.
 
 exit status:
   0    the trajectory was audited to its end, whatever was found
@@ -57,13 +58,14 @@ def add_audit(parser: argparse.ArgumentParser) -> None:
 
 def _run(options: argparse.Namespace) -> int:
     """Audit, and print what is known, also of a part."""
-    chains, box = None, None
+    chains: int | list[int] | None = None
+    box: list[float] | None = None
     if options.chains is not None:
         if not re.fullmatch(r"(\d{1,9}x)?\d{1,9}(,(\d{1,9}x)?\d{1,9})*", options.chains):
             raise OptionError(f"chains are {options.chains!r:.40}; give numbers and sizes, such as 50x200")
         pairs = [part.rpartition("x") for part in options.chains.split(",")]
-        chains = [int(size) for number, _, size in pairs for _ in range(int(number or 1))]
-        chains = chains[0] if options.chains.isdigit() else chains
+        sizes = [int(size) for number, _, size in pairs for _ in range(int(number or 1))]
+        chains = sizes[0] if options.chains.isdigit() else sizes
     if options.box is not None:
         try:
             box = [float(word) for word in options.box.split(",")]
@@ -82,8 +84,9 @@ def _run(options: argparse.Namespace) -> int:
             raise
         found.problem, interrupted = "interrupted", error
     assert found is not None
-    meetings = list(found.meetings(options.types))
-    emit(json.dumps(_as_json(found, meetings)) if options.json else _as_text(found, meetings))
+    contacts = _contacts(found)
+    meetings = [vars(each) | {"chains": [k + 1 for k in each.chains]} for each in found.meetings(options.types)]
+    emit(_as_json(found, meetings, contacts) if options.json else _as_text(found, meetings, contacts))
     if interrupted is not None:
         raise interrupted
     return 1 if found.problem else 0
@@ -93,87 +96,80 @@ def _contacts(found: Audit) -> list[dict[str, Any]]:
     """All contacts as users count: frames from 0, chains from 1, beads as in the file."""
     shape, each = found.topology, found.passings
     tails = shape.tails[each["edges"]]
-    ends = found.names[shape.beads[np.stack([tails, tails + 1], axis=2)]]
     columns = {
         "frames": np.stack([each["leg"], each["leg"] + 1], axis=1),
         "time": each["time"],
-        "chains": shape.chain[tails],
-        "beads": ends,
+        "chains": shape.chain[tails] + 1,
+        "beads": found.names[shape.beads[np.stack([tails, tails + 1], axis=2)]],
         "image": each["image"],
         "place": each["place"],
         "sign": each["sign"],
+        "kind": np.where(each["sign"] == 0, "touch", "passing"),
     }
     rows = zip(*(column.tolist() for column in columns.values()), strict=True)
     return [dict(zip(columns, row, strict=True)) for row in rows]
 
 
-def _as_json(found: Audit, meetings: Sequence[Meeting]) -> Mapping[str, Any]:
+def _as_json(found: Audit, meetings: Rows, contacts: Rows) -> str:
     """All that is known, under names that scripts can rely on."""
 
-    def told(kind: KnotType | None) -> Mapping[str, Any] | None:
-        return kind and {"name": str(kind), "names": list(kind.names), "proved": kind.proved}
+    def told(kind: KnotType | None) -> object:
+        return None if kind is None else {"name": str(kind), "names": kind.names, "proved": kind.proved}
 
-    return {
-        "legs": len(found.found),
-        "problem": found.problem or None,
-        "chains": [len(chain) for chain in found.topology.chains],
-        "closed": found.topology.closed,
-        "steps": found.steps,
-        "contacts": [each | {"kind": "passing" if each["sign"] else "touch"} for each in _contacts(found)],
-        "meetings": [
-            {
-                "chains": each.chains,
-                "image": each.image,
-                "passings": each.passings,
-                "touches": each.touches,
-                "linking": each.linking,
-                "before": told(each.before),
-                "after": told(each.after),
-            }
-            for each in meetings
-        ],
-    }
+    types = ({when: told(each[when]) for when in ("before", "after")} for each in meetings)
+    return json.dumps(
+        {
+            "legs": len(found.found),
+            "problem": found.problem or None,
+            "chains": [len(beads) for beads in found.topology.chains],
+            "closed": found.topology.closed,
+            "steps": found.steps,
+            "meetings": [each | kinds for each, kinds in zip(meetings, types, strict=True)],
+            "contacts": contacts,
+        }
+    )
 
 
-def _as_text(found: Audit, meetings: Sequence[Meeting]) -> str:
+def _as_text(found: Audit, meetings: Rows, contacts: Rows) -> str:
     """A headline, what happened between which chains, and every contact."""
     rings, total = sum(found.topology.closed), len(found.topology.closed)
     parts = [(len(found.found), "leg"), (rings, "ring"), (total - rings, "open chain")]
-    passed, own = (
-        sum(each.passings for each in meetings if each.chains[0] == each.chains[1] or every) for every in (True, False)
-    )
-    changed = [each for each in meetings if str(each.before) != str(each.after)]
+    head = "✗ broken off" if found.problem else "✓ audited", " · ".join(counted(n, noun) for n, noun in parts if n)
+    passed = [each for each in contacts if each["sign"]]
+    own = sum(first == second for first, second in (each["chains"] for each in passed))
     rows: list[tuple[str, Item]] = [
         ("reason", found.problem),
-        ("passings", f"{passed:,}" + (f", {own:,} of them of chains through themselves" if own else "")),
-        *(("changed", f"{_label(*each.chains, each.image)}: {each.before} → {each.after}") for each in changed),
+        ("passings", f"{len(passed):,}" + (f", {own:,} of them of chains through themselves" if own else "")),
+        ("touches", f"{len(contacts) - len(passed):,}" if len(contacts) > len(passed) else ""),
     ]
-    head = "✗ broken off" if found.problem else "✓ audited", " · ".join(counted(n, noun) for n, noun in parts if n)
-    blocks = [report(head, rows, sys.stdout, YELLOW if found.problem else GREEN)]
-    names = "chains", "passings", "touches", "linking", "before", "after"
-    between = [
-        [_label(*each.chains, each.image), str(each.passings), str(each.touches), f"{each.linking:+d}"]
-        + ["" if kind is None else str(kind) for kind in (each.before, each.after)]
+    rows += [
+        ("changed", f"{_label(each)}: {each['before']} → {each['after']}")
         for each in meetings
+        if str(each["before"]) != str(each["after"])
     ]
-    contacts = [
+    blocks = [report(head, rows, sys.stdout, YELLOW if found.problem else GREEN)]
+    columns = "passings", "touches", "linking", "before", "after"
+    between = [[_label(each), *(str(each[name] or "") for name in columns)] for each in meetings]
+    single = [
         [
             "–".join(map(str, each["frames"])),
             f"{each['time']:.6f}",
-            _label(*each["chains"], each["image"]),
+            _label(each),
             ", ".join("–".join(map(str, ends)) for ends in each["beads"]),
             " ".join(f"{x:.4g}" for x in each["place"]),
-            "passing" if each["sign"] else "touch",
+            each["kind"],
         ]
-        for each in _contacts(found)
+        for each in contacts
     ]
-    if meetings:
-        blocks.append(table(names, between, sys.stdout))
-        blocks.append(table(("frames", "time", "chains", "beads", "place", "what"), contacts, sys.stdout))
+    if contacts:
+        blocks.append(table(("chains", *columns), between, sys.stdout))
+        blocks.append(table(("frames", "time", "chains", "beads", "place", "kind"), single, sys.stdout))
     return "\n\n".join(blocks)
 
 
-def _label(first: int, second: int, image: Sequence[int]) -> str:
-    """Two chains, or one that met itself, by numbers from 0, and the boxes by which the second is moved."""
-    boxes = f" ({' '.join(f'{k:+d}' for k in image)})" if any(image) else ""
-    return f"{first + 1}" if first == second and not boxes else f"{first + 1}, {second + 1}{boxes}"
+def _label(each: Mapping[str, Any]) -> str:
+    """Two chains, or one that met itself, and whole boxes by which the second is moved."""
+    numbers = [str(k) for k in each["chains"]]
+    if any(each["image"]):
+        return f"{', '.join(numbers)} ({' '.join(map(str, each['image']))})"
+    return ", ".join(dict.fromkeys(numbers))
