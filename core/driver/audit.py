@@ -31,7 +31,7 @@ class Meeting:
     image: tuple[int, int, int]  #: whole boxes by which the second is moved, seen from where the first frame has both
     passings: int
     touches: int
-    linking: int  #: by how much the linking number of two rings changed
+    linking: int  #: by how much passings changed the linking number of two rings
     before: KnotType | None  #: of the ring, or the two, in the first frame; None for open chains, or if not asked for
     after: KnotType | None  #: the same in the last frame
 
@@ -73,7 +73,7 @@ class Audit:
         for (a, b, *shift), signs in zip(keys.tolist(), groups, strict=True):
             alone, crossed = a == b and not any(shift), int(np.count_nonzero(signs))
             before = after = None
-            if crossed and most > 0:
+            if most > 0:
                 parts = [(a, np.zeros(3)), (b, np.array(shift))][: 1 if alone else 2]
                 before, after = (self._type(frame, parts) for frame in (self.first, self.last))
                 most -= before is not None

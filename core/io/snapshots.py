@@ -41,7 +41,7 @@ def snapshots(path: Path | str) -> Iterator[Snapshot]:
         needed = f"{path.suffix} needs the Python module {error.name}: pip install MDAnalysis gsd (the extra audit)"
         raise CurveFileError(path, needed) from error
     except (OSError, ValueError, RuntimeError, LookupError) as error:  # whatever libraries raise for damaged files
-        raise CurveFileError(path, f"cannot be read on: {reason_of(error)}") from error
+        raise CurveFileError(path, f"cannot be read: {reason_of(error)}") from error
 
 
 class _Lines:
@@ -113,7 +113,10 @@ def _bounds(lines: _Lines, words: list[str]) -> tuple[FloatArray, FloatArray, Bo
     sides = np.diag(high - low)
     sides[1, 0], sides[2, 0], sides[2, 1] = xy, xz, yz
     marks = [word for word in words if word not in ("xy", "xz", "yz")]
-    return sides, low, np.array(["p" in mark for mark in marks] if len(marks) == 3 else [True] * 3)
+    periodic = np.array(["p" in mark for mark in marks] if len(marks) == 3 else [True] * 3)
+    if (flat := np.flatnonzero(periodic & (sides.diagonal() <= 0.0))).size:
+        lines.fail(f"the box has no extent along {'xyz'[flat[0]]}")
+    return sides, low, periodic
 
 
 def _atoms(
@@ -155,7 +158,10 @@ def _read_xyz(path: Path) -> Iterator[Snapshot]:
                 first = sum(map(int, columns[2 : columns.index("pos") : 3]))
             cell = np.zeros((3, 3))
             if "Lattice" in said:
-                cell = np.array(said["Lattice"].split(), dtype=np.float64).reshape(3, 3)
+                try:
+                    cell = np.array(said["Lattice"].split(), dtype=np.float64).reshape(3, 3)
+                except ValueError:
+                    lines.fail("the lattice is not nine numbers")
                 cell *= np.array([[mark[0] in "Tt1"] for mark in said.get("pbc", "T T T").split()])
             yield Snapshot(lines.table(count, range(first, first + 3)), cell)
         if stream.read(1 << 16).strip():
@@ -192,7 +198,9 @@ def _read_xtc(path: Path) -> Iterator[Snapshot]:
 def _read_dcd(path: Path) -> Iterator[Snapshot]:
     """DCD of CHARMM, NAMD and LAMMPS, in the units that it has."""
     from MDAnalysis.coordinates.DCD import DCDReader
+    from MDAnalysis.lib.formats.libdcd import DCDFile
 
+    DCDFile(str(path)).close()  # refuses what is no such file, on which the reader would print a traceback
     with DCDReader(str(path), convert_units=False) as frames:
         for frame in frames:
             sides = frame.triclinic_dimensions

@@ -191,7 +191,7 @@ def _moment(time: Time) -> float:
         middle = 0.5 * (low + high)
         value = sum(c * (1.0 - middle) ** (len(q) - 1 - k) * middle**k for k, c in enumerate(q))
         low, high = (low, middle) if (value > 0) == rising else (middle, high)
-    return (i + low * (j - i)) / m
+    return (i + 0.5 * (low + high) * (j - i)) / m
 
 
 def _where(x: FloatArray, y: FloatArray) -> FloatArray:

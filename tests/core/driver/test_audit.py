@@ -1,0 +1,138 @@
+"""Audits find every passing of an oracle's and invent none, say what became of types, and break off with a sentence."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from melts import Found, melt, passings_by_eigenvalues, planted
+from mobius_flow.core import Audit, MobiusFlowError, audit
+from motions import Array
+from shapes import regular_polygon, torus_trefoil
+
+CIRCLE = regular_polygon(12).vertices
+HOPF = np.concatenate([CIRCLE, CIRCLE[:, [0, 2, 1]] + [1.0, 0.07, 0.03]])
+APART = HOPF + np.repeat([[0.0, 0, 0], [5, 0, 0]], 12, axis=0)
+
+
+def told(report: Audit) -> Found:
+    """As the oracle tells it."""
+    each = report.passings
+    first = report.topology.beads[report.topology.tails[each["edges"]]]
+    columns = (first[:, 0], first[:, 1], each["sign"], each["time"])
+    return sorted(zip(*(column.tolist() for column in columns), strict=True))
+
+
+@pytest.mark.parametrize(
+    ("rings", "beads", "seeds"),
+    [(12, 40, range(3)), pytest.param(50, 200, range(100, 120), marks=pytest.mark.slow)],
+)
+def test_planted_passings_are_found_and_none_invented(rings: int, beads: int, seeds: range) -> None:
+    for seed in seeds:
+        points, box = melt(rings, beads, seed)
+        moved, pairs = planted(points, box, beads, 10 if rings < 50 else 50, seed)
+        known = passings_by_eigenvalues(points, moved, box, beads)
+        found = told(audit([points % box, moved % box], beads, box=[box] * 3))
+        assert [each[:3] for each in found] == [each[:3] for each in known]
+        assert np.allclose([each[3] for each in found], [each[3] for each in known], atol=1e-9)
+        assert pairs <= {(a, b) for a, b, sign, time in found if sign and abs(time - 0.625) < 1e-9}
+
+
+def test_it_does_not_matter_how_chains_are_wrapped_or_who_works() -> None:
+    points, box = melt(55, 40, 5)
+    rng = np.random.default_rng(5)
+    frames = [points, points + 0.05 * rng.normal(size=points.shape)]
+    frames.append(frames[1] + 0.05 * rng.normal(size=points.shape))
+    whole = audit(frames, 40, box=[box] * 3)
+    assert len(whole.passings) > 20
+    others = [frame + box * rng.integers(-2, 3, size=frame.shape) for frame in frames]
+    for report in (audit(others, 40, box=[box] * 3), audit(others, 40, box=[box] * 3, processes=2)):
+        assert [each[:3] for each in told(report)] == [each[:3] for each in told(whole)]
+        assert report.passings["leg"].tolist() == whole.passings["leg"].tolist()
+    # apart from images, without a box there is the same
+    own = whole.passings[(whole.passings["image"] == 0).all(axis=1)]
+    assert [each[0:2] for each in told(audit(frames, 40))] == sorted(map(tuple, own["edges"].tolist()))
+
+
+def test_linking_numbers_and_types_change_as_told() -> None:
+    report = audit([HOPF, APART, APART], 12)
+    (pair,) = report.meetings()
+    assert (pair.chains, pair.passings, abs(pair.linking)) == ((0, 1), 1, 1)
+    assert (str(pair.before), str(pair.after)) == ("L2a1", "unknot ⊔ unknot")
+    assert pair.before is not None
+    assert pair.before.diagram is not None
+    assert pair.linking == -pair.before.diagram.linking_numbers[0]
+    assert [each.before for each in report.meetings(0)] == [None]
+    assert [each.linking for each in audit([HOPF, APART], 12, closed=False).meetings()] == [0]
+
+
+def test_types_are_told_where_strands_only_touch() -> None:
+    """One circle leaves the other through corners of both, which is told as a touch."""
+    exact = np.concatenate([CIRCLE, CIRCLE[:, [0, 2, 1]] + [1.0, 0, 0]])
+    (pair,) = audit([exact, exact + np.repeat([[0.0, 0, 0], [5, 0, 0]], 12, axis=0)], 12).meetings()
+    assert (pair.passings, pair.linking, str(pair.before), str(pair.after)) == (0, 0, "L2a1", "unknot ⊔ unknot")
+    assert pair.touches
+
+
+def test_a_knot_that_is_undone_is_told() -> None:
+    knot = torus_trefoil(30).vertices
+    flat = knot * [1.0, 1.0, -1.0]  # the mirror image
+    report = audit([knot, knot, flat], [30])
+    (own,) = report.meetings()
+    assert own.chains == (0, 0)
+    assert own.passings == len(report.passings) == 3
+    assert (str(own.before), str(own.after)) in {("3_1", "m3_1"), ("m3_1", "3_1")}
+
+
+def test_rings_may_go_round_the_box() -> None:
+    """An arm of one passes through the other; where an edge leaves the box is as good as any other place."""
+    line = np.array([[0.5, 1.7, 2], [1.5, 1.7, 2], [2.5, 1.7, 2], [3.5, 1.7, 2]])
+    arm = np.array([[0.5, 1.0, 0], [1.5, 1, 0], [2.5, 1, 0], [3.5, 1, 0]])
+    frames = [np.concatenate([line, arm + np.array([0, 0, height])]) for height in (1.0, 3.0)]
+    assert len(audit(frames, 4, box=[4, 4, 4]).passings) == 0  # they are parallel
+    frames[1][5:7] += [0.0, 1.5, 0.0]
+    report = audit(frames, 4, box=[4, 4, 4])
+    assert report.passings["sign"].sum() == 0
+    assert len(report.passings) == 2
+    assert [each.before for each in report.meetings()] == [None]
+
+
+def nan(points: Array) -> Array:
+    return np.where(np.arange(points.size).reshape(points.shape) == 4, np.nan, points)
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (lambda points: points[:-1], "frame 2 has 23 beads and the first one 24; none may come or go"),
+        (nan, "frame 2: bead 2 is not finite"),
+        (lambda points: points[:, :2], "frame 2 has shape (24, 2); frames are arrays"),
+        (lambda points: [["x"]], "frame 2 is no array of numbers"),
+    ],
+)
+def test_what_was_found_is_kept_when_a_trajectory_breaks_off(spoil: Callable[[Array], object], said: str) -> None:
+    report = audit([HOPF, APART, spoil(APART), HOPF], 12)
+    assert len(report.found) == len(report.passings) == 1
+    assert said in report.problem
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ({"chains": 7}, "24 beads are not chains of 7 each"),
+        ({"chains": [12, 13]}, "chains of 25 beads do not fit 24 beads"),
+        ({"chains": [2] * 12}, "there are no chains"),
+        ({}, "does not say which beads are chains"),
+        ({"chains": 12, "box": [1, 2]}, "give three lengths"),
+        ({"chains": 12, "box": "x"}, "box"),
+        ({"chains": 12, "box": [1, np.nan, 1]}, "frame 0: the box is flat, or not finite"),
+        ({"chains": 12, "box": [[1, 0, 0], [1, 0, 0], [0, 0, 1]]}, "frame 0: the box is flat"),
+        ({"chains": 12, "box": [1, 1, 1]}, "neighbours on chain 1 are 0.5176 apart, half the box or more"),
+    ],
+)
+def test_bad_questions_are_refused(arguments: dict[str, object], said: str) -> None:
+    with pytest.raises(MobiusFlowError, match=said):
+        audit([HOPF, HOPF], **arguments)  # type: ignore[arg-type]
+    with pytest.raises(MobiusFlowError, match="there are no frames"):
+        audit([], 12)
+    with pytest.raises(MobiusFlowError, match="there is one frame only"):
+        audit([HOPF], 12)
