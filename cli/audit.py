@@ -3,22 +3,20 @@
 import argparse
 import json
 import os
-import re
 import sys
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
+from ..core import Audit, audit
 from ..core.base import OptionError, counted
-from ..core.driver.audit import Audit, auditing
 from ..core.io.snapshots import READERS
 from ..core.knots import KnotType
-from . import signals
 from .progress import live
 from .terminal import GREEN, YELLOW, Item, emit, report, table
 
-Rows = Sequence[Mapping[str, Any]]
+Rows = Sequence[dict[str, Any]]
 _EPILOG = """\
 examples:
   mobius-flow audit melt.lammpstrj
@@ -40,14 +38,10 @@ exit status:
 def add_audit(parser: argparse.ArgumentParser) -> None:
     parser.description, parser.epilog = "Tell which chains of a trajectory passed through each other.", _EPILOG
     parser.add_argument("trajectory", metavar="FOREIGN", help=f"of another program: {', '.join(READERS)}")
-    text = (
-        "beads of each chain, such as 50x200 or 20x100,5x400, or 200 if all have as many (default: bonds or molecules)"
-    )
+    text = "beads of chains, such as 50x200 or 20x100,5x400, or 200 if all have as many (default: bonds or molecules)"
     parser.add_argument("--chains", metavar="KxN,…", help=text)
-    shape = parser.add_mutually_exclusive_group()
-    text = "chains are rings (default, unless the file has bonds)"
-    shape.add_argument("--rings", dest="closed", action="store_true", default=True, help=text)
-    shape.add_argument("--open", dest="closed", action="store_false", help="chains are open")
+    text = "chains are open (default: rings, unless the file has bonds)"
+    parser.add_argument("--open", action="store_true", help=text)
     text = "the periodic box, if not as in the file: LX,LY,LZ, with XY,XZ,YZ behind if it is tilted; 0 where it is open"
     parser.add_argument("--box", metavar="L,L,L", help=text)
     text = "rings, and pairs of rings, that passed through each other whose types are identified at most (default: 100)"
@@ -59,31 +53,35 @@ def add_audit(parser: argparse.ArgumentParser) -> None:
 def _run(options: argparse.Namespace) -> int:
     """Audit, and print what is known, also of a part."""
     chains: int | list[int] | None = None
-    box: list[float] | None = None
-    if options.chains is not None:
-        if not re.fullmatch(r"(\d{1,9}x)?\d{1,9}(,(\d{1,9}x)?\d{1,9})*", options.chains):
-            raise OptionError(f"chains are {options.chains!r:.40}; give numbers and sizes, such as 50x200")
-        pairs = [part.rpartition("x") for part in options.chains.split(",")]
-        sizes = [int(size) for number, _, size in pairs for _ in range(int(number or 1))]
-        chains = sizes[0] if options.chains.isdigit() else sizes
-    if options.box is not None:
-        try:
-            box = [float(word) for word in options.box.split(",")]
-        except ValueError:
-            raise OptionError(f"box is {options.box!r:.40}; give three lengths, such as 20,20,35") from None
-    found: Audit | None = None
+    try:
+        if options.chains is not None:
+            pairs = [part.rpartition("x") for part in options.chains.split(",")]
+            if sum(int(number or 1) for number, _, _ in pairs) > 1e7:
+                raise ValueError
+            sizes = [int(size) for number, _, size in pairs for _ in range(int(number or 1))]
+            chains = sizes[0] if pairs[0][:2] == ("", "") and len(pairs) == 1 else sizes
+    except ValueError:
+        raise OptionError(f"chains are {options.chains!r:.40}; give numbers and sizes, such as 50x200") from None
+    try:
+        box = None if options.box is None else [float(word) for word in options.box.split(",")]
+    except ValueError:
+        raise OptionError(f"box is {options.box!r:.40}; give three lengths, such as 20,20,35") from None
+    reports: list[Audit] = []
     interrupted: KeyboardInterrupt | None = None
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    legs = auditing(options.trajectory, chains, closed=options.closed, box=box, processes=cores)
     try:
         with live() as show:
-            for found in signals.interruptible(legs):
-                show(f"{len(found.found):,} legs audited, {counted(sum(map(len, found.found)), 'contact')}")
+
+            def note(report: Audit) -> None:
+                reports[:] = [report]
+                show(f"{counted(len(report.found), 'leg')} audited")
+
+            audit(options.trajectory, chains, closed=not options.open, box=box, processes=cores, callback=note)
     except KeyboardInterrupt as error:
-        if found is None:
+        if not reports:
             raise
-        found.problem, interrupted = "interrupted", error
-    assert found is not None
+        reports[0].problem, interrupted = "interrupted", error
+    (found,) = reports
     contacts = _contacts(found)
     meetings = [vars(each) | {"chains": [k + 1 for k in each.chains]} for each in found.meetings(options.types)]
     emit(_as_json(found, meetings, contacts) if options.json else _as_text(found, meetings, contacts))

@@ -2,7 +2,7 @@
 
 import signal
 from collections import deque
-from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
@@ -70,7 +70,7 @@ class Audit:
         keys, which = np.unique(np.hstack([chains, image]), axis=0, return_inverse=True)
         order = np.argsort(which.ravel(), kind="stable")
         groups = np.split(found["sign"][order], np.cumsum(np.bincount(which.ravel(), minlength=len(keys)))[:-1])
-        for (a, b, *shift), signs in zip(keys.tolist(), groups, strict=True):
+        for (a, b, *shift), signs in zip(keys.tolist(), groups, strict=False):  # of no keys there is one group
             alone, crossed = a == b and not any(shift), int(np.count_nonzero(signs))
             before = after = None
             if most > 0:
@@ -126,21 +126,6 @@ def audit(
     CurveError, OptionError
         If not even the first leg can be looked at.  Whatever is wrong later ends the report, as its ``problem``.
     """
-    for report in auditing(trajectory, chains, closed=closed, box=box, processes=processes):
-        if callback is not None:
-            callback(report)
-    return report
-
-
-def auditing(
-    trajectory: Path | str | Iterable[npt.ArrayLike],
-    chains: int | Sequence[int] | None = None,
-    *,
-    closed: bool = True,
-    box: npt.ArrayLike | None = None,
-    processes: int = 1,
-) -> Generator[Audit, None, None]:
-    """Yield the report, which grows, after every leg; see `audit`."""
     cell = None if box is None else cell_of(box)
     if isinstance(trajectory, Path | str):
         source, read = f"{trajectory}: ", snapshots(trajectory)
@@ -165,13 +150,15 @@ def auditing(
             report.found.append(found)
             report.steps.append(end.step)
             report.last = end
-            yield report
+            if callback is not None:
+                callback(report)
     except CurveError as error:
         if not report.found:
             raise
         report.problem = str(error)
     if not report.found:
         raise CurveError(f"{source}there is one frame only, and nothing moves")
+    return report
 
 
 def _legs(

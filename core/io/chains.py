@@ -30,9 +30,7 @@ class Topology:
         count = len(snapshot.points)
         if isinstance(sizes, int):
             if sizes < 1 or count % sizes:
-                raise OptionError(
-                    f"{count} beads are not chains of {sizes} each; give numbers and sizes, such as 50x200"
-                )
+                raise OptionError(f"{count} beads are not chains of {sizes} each; say how many there are: 50x200")
             sizes = [sizes] * (count // sizes)
         if sizes is not None:
             if min(sizes, default=0) < 1 or sum(sizes) > count:
@@ -85,19 +83,17 @@ def given(frames: Iterable[npt.ArrayLike]) -> Iterator[Snapshot]:
 
 
 def cell_of(box: npt.ArrayLike) -> FloatArray:
-    """The edges of a box as rows: from their lengths, or from their lengths and tilts xy, xz, yz, or as they are."""
+    """The edges of a box as rows: as they are, or from lengths and, if it is tilted, xy, xz and yz."""
     try:
-        given = real(box)
-    except (TypeError, ValueError) as error:
-        raise OptionError(f"box is no array of numbers: {error}") from error
-    if given.shape == (3, 3):
-        return given
-    if given.shape not in ((3,), (6,)):
-        raise OptionError(f"box has shape {given.shape}; give three lengths, or xy, xz and yz besides, or three rows")
-    cell = np.diag(given[:3])
-    if len(given) == 6:
-        cell[1, 0], cell[2, 0], cell[2, 1] = given[3:]
-    return cell
+        edges = real(box)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise OptionError(f"box is no array of numbers: {str(error).splitlines()[0]}") from error
+    if edges.shape in ((3,), (6,)):
+        x, y, z, xy, xz, yz = [*edges.tolist(), 0.0, 0.0, 0.0][:6]
+        return np.array([[x, 0.0, 0.0], [xy, y, 0.0], [xz, yz, z]])
+    if edges.shape != (3, 3):
+        raise OptionError(f"box has shape {edges.shape}; give three lengths, or six with xy, xz, yz, or three rows")
+    return edges
 
 
 def placed(read: Iterator[Snapshot], topology: Topology, cell: FloatArray | None, source: str) -> Iterator[Placed]:

@@ -81,8 +81,8 @@ def passings(before: Placed, after: Placed, beads: IntArray, tails: IntArray, fr
         for p, q in product((0, 1), repeat=2):
             shared |= (bead[p, a] == bead[q, b]) & (box[p, a] == box[q, b] + shift).all(axis=1)
         i, j = i[~shared], j[~shared]
-        rows = np.concatenate([ends[:, :, i], ends[:, :, j]], axis=1).reshape(2, -1, 3)
-        left = doubtful(*rows, np.arange(4 * len(i)).reshape(4, -1), clearance)[0]
+        start, end = np.concatenate([ends[:, :, i], ends[:, :, j]], axis=1).reshape(2, -1, 3)
+        left = doubtful(start, end, np.arange(4 * len(i)).reshape(4, -1), clearance)[0]
         for a, b, shift in zip(i[left].tolist(), number[j[left]].tolist(), image[j[left]], strict=True):
             boxes = np.stack([lattice[:, :, a], lattice[:, :, b] + shift], axis=1)  # of times, edges, ends and axes
             places = np.stack([points[:, :, a], points[:, :, b]], axis=1)

@@ -62,6 +62,7 @@ def test_linking_numbers_and_types_change_as_told() -> None:
     assert pair.before.diagram is not None
     assert pair.linking == -pair.before.diagram.linking_numbers[0]
     assert [each.before for each in report.meetings(0)] == [None]
+    assert list(audit([HOPF, HOPF], 12).meetings()) == []
     assert [each.linking for each in audit([HOPF, APART], 12, closed=False).meetings()] == [0]
 
 
