@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from ..base import CurveError, FloatArray, IntArray, checked, counted
+from ..base import CurveError, FloatArray, IntArray, OptionError, checked, counted, shown
 from ..curve import Curve
 from ..io.chains import Topology, cell_of, given, placed
 from ..io.snapshots import snapshots
@@ -126,6 +126,8 @@ def audit(
     CurveError, OptionError
         If not even the first leg can be looked at.  Whatever is wrong later ends the report, as its ``problem``.
     """
+    if not 1 <= processes <= 1000:
+        raise OptionError(f"processes is {shown(processes)}; it must be from 1 to 1000")
     cell = None if box is None else cell_of(box)
     if isinstance(trajectory, Path | str):
         source, read = f"{trajectory}: ", snapshots(trajectory)

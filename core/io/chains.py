@@ -72,6 +72,8 @@ def _along(bonds: IntArray, count: int) -> tuple[list[IntArray], list[bool]]:
 
 def given(frames: Iterable[npt.ArrayLike]) -> Iterator[Snapshot]:
     """Snapshots of arrays (n, 3); raises CurveError for what is none."""
+    if not np.iterable(frames):  # an array without axes
+        raise CurveError("the trajectory is no list of frames")
     for number, frame in enumerate(frames):
         try:
             points = real(frame)

@@ -91,6 +91,17 @@ FINE: dict[str, tuple[Callable[..., object], dict[str, object]]] = {
         core.tighten,
         {"curve": TREFOIL, "vertices": 100, "starts": 1, "seed": 0, "callback": lambda *_: None},
     ),
+    "audit": (
+        core.audit,
+        {
+            "trajectory": [TREFOIL.vertices, TREFOIL.vertices],
+            "chains": 20,
+            "closed": True,
+            "box": [99.0, 99.0, 99.0],
+            "processes": 1,
+            "callback": lambda *_: None,
+        },
+    ),
     "Iterate": (Iterate, vars(START)),
     "Outcome": (Outcome, {"status": Status.STALLED, "clauses": ("stuck",), "place": None}),
     "Result": (Result, vars(minimize(TREFOIL, SHORT))),
@@ -136,7 +147,7 @@ FINE: dict[str, tuple[Callable[..., object], dict[str, object]]] = {
 }
 # not made by users
 OF_THE_PROGRAM = {"CurveFile", "Weighted", "Format", "KnotType", "Drawing", "format_of", "load_curve", "check_closed"}
-OF_THE_PROGRAM |= {"at_edges", "at_vertices"}
+OF_THE_PROGRAM |= {"at_edges", "at_vertices", "Audit"}
 
 
 def test_all_that_is_public_is_tried():
