@@ -1,0 +1,185 @@
+"""A smooth drawing of a link diagram: charged elastic strands, pinned together at crossings, come to rest in the plane.
+
+With a parameter s along the strands, their energy is ½ ∫ |x′|² + 0.15 ∫ |x″|² + ∬ |x(s) − x(t)|⁻⁴ over pairs of points
+round the same face.  It falls in the metric of the first two terms, from the drawing on a grid, by steps in which the
+diagram stays: edges cross nowhere, and come to crossings in the same order round.  Lengths in the parameter are the
+grid's at first, then equal for all edges, which lets the drawing find its symmetry, and in the end those of the
+drawing itself, as if strands were rods under even tension.
+"""
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import splu
+from scipy.spatial import cKDTree
+
+from ..base import CurveError, FloatArray
+from ..curve import Curve, arc_lengths
+from ..curve.refine import at_shares
+from .diagrams import Diagram
+from .drawings import Drawing
+from .planar import grid_drawing
+
+MAX_CROSSINGS = 200  # of a diagram that is laid out: some minutes
+
+
+def laid_out(diagram: Diagram) -> Drawing:
+    """Draw a diagram as smooth closed curves, its parts that no crossing joins side by side, strands about 1 apart.
+
+    Vertices lie at all crossings.  Raises CurveError for more than `MAX_CROSSINGS`, and if nothing is there to draw.
+    """
+    if diagram.crossings > MAX_CROSSINGS:
+        raise CurveError(f"the diagram has {diagram.crossings} crossings; at most {MAX_CROSSINGS} can be laid out")
+    if not diagram.passes:
+        raise CurveError("the diagram is empty; give one with at least one component")
+    parts: list[FloatArray] = []
+    places, lower, upper, right, count = [np.empty((0, 2))], list[int](), list[int](), 0.0, 0
+    for piece in diagram.pieces():
+        if piece.crossings:
+            points, edges = relaxed(piece)
+            fine = [at_shares(points[edge], False, np.linspace(0.0, 1.0, 4 * len(edge))) for edge in edges]
+            points = upright(points, np.concatenate(fine))
+        else:
+            angle = 2.0 * np.pi * np.arange(48) / 48
+            points, edges = np.column_stack([np.cos(angle), np.sin(angle)]), [np.arange(49) % 48]
+        points = points + [right - points[:, 0].min(), -0.5 * (points[:, 1].min() + points[:, 1].max())]
+        right = 1.0 + float(points[:, 0].max())
+        starts = count + np.cumsum([0, *(len(edge) - 1 for edge in edges)])  # the vertex of each pass
+        count = int(starts[-1])
+        lower += [int(starts[low]) for low, _ in piece.levels]
+        upper += [int(starts[up]) for _, up in piece.levels]
+        places.append(points[: piece.crossings])
+        rest = iter(edges)
+        for passes in piece.passes:
+            parts.append(points[np.concatenate([next(rest)[:-1] for _ in passes or [()]])])
+    passes = np.sort(np.column_stack([lower, upper]).reshape(-1, 2), axis=1)
+    order = np.argsort(passes[:, 0])  # crossings in the order in which they are reached
+    over = np.array(upper, dtype=int) == passes[:, 0]
+    curve = Curve.from_components(parts)
+    return Drawing(curve, np.concatenate(places)[order], passes[order].astype(float), over[order])
+
+
+def relaxed(piece: Diagram) -> tuple[FloatArray, list[FloatArray]]:
+    """Places of the crossings of a connected diagram, and then of other vertices; and the vertices on each edge."""
+    grid = grid_drawing(piece)
+    paths = [np.concatenate([path, grid[after][:1]]) for path, after in zip(grid, piece.next, strict=True)]
+    lengths = np.array([arc_lengths(path)[-1] for path in paths])
+    pieces = np.maximum(12, np.round(4.0 * lengths).astype(np.intp))  # as fine as the strands of the grid are apart
+    first = piece.crossings + np.cumsum(pieces - 1) - (pieces - 1)
+    edges = [
+        np.concatenate([[piece.sequence[k][0]], first[k] + np.arange(pieces[k] - 1), [piece.sequence[after][0]]])
+        for k, after in enumerate(piece.next)
+    ]
+    x = np.empty((int(first[-1] + pieces[-1] - 1), 2))
+    for edge, path in zip(edges, paths, strict=True):
+        x[edge] = at_shares(path, False, np.linspace(0.0, 1.0, len(edge)))
+    for power, tolerance in ((1.0, 1e-2), (0.5, 1e-2), (0.0, 1e-6), (None, 1e-6), (None, 1e-6)):
+        if power is None:
+            spans = np.array([arc_lengths(x[edge])[-1] for edge in edges])
+        else:
+            spans = lengths**power
+        x = _at_rest(piece, x, edges, spans / spans.mean(), tolerance)
+    return x, edges
+
+
+def _at_rest(
+    piece: Diagram, x: FloatArray, edges: list[FloatArray], spans: FloatArray, tolerance: float
+) -> FloatArray:
+    """Let the energy fall until its derivative's square is a part ``tolerance`` of it; spans are parameter lengths."""
+    sizes = np.array([len(edge) - 1 for edge in edges])
+    ends = np.cumsum(sizes)
+    step = np.repeat(spans / sizes, sizes)
+    tails, heads = (np.concatenate([edge[part] for edge in edges]) for part in (slice(None, -1), slice(1, None)))
+    after = np.arange(len(tails)) + 1
+    after[ends - 1] = (ends - sizes)[piece.next]
+    between = 0.5 * (step + step[after])
+    rows = np.arange(len(tails))
+    entries = np.concatenate([1.0 / step, -1.0 / step])
+    slope = sp.coo_array((entries, (np.tile(rows, 2), np.concatenate([heads, tails]))), (len(rows), len(x))).tocsr()
+    bend = sp.diags_array(1.0 / between) @ (slope[after] - slope)
+    elastic = slope.T @ sp.diags_array(step) @ slope + 0.3 * bend.T @ sp.diags_array(between) @ bend
+    mass = 0.5 * (np.bincount(tails, step, len(x)) + np.bincount(heads, step, len(x)))
+    mass[: piece.crossings] *= 0.5  # which are on two strands, but one place
+    solve = splu((elastic + 0.01 * sp.diags_array(mass)).tocsc()).solve
+    # pairs of vertices round each face that are not next to each other, and of the segments after them
+    pairs, segments = [], []
+    for face in piece.faces:
+        ways = [(edges[dart // 2][:: -1 if dart % 2 else 1], spans[dart // 2]) for dart in face]
+        walk = np.concatenate([way[:-1] for way, _ in ways])
+        at = np.cumsum(np.concatenate([np.full(len(way) - 1, span / (len(way) - 1)) for way, span in ways]))
+        i, j = np.triu_indices(len(walk), 1)
+        apart = at[j] - at[i]
+        far = np.minimum(apart, at[-1] - apart) > 0.16
+        pairs.append(np.stack([walk[i], walk[j]])[:, far & (walk[i] != walk[j])])
+        ahead = np.roll(walk, -1)
+        four = np.stack([walk[i], ahead[i], walk[j], ahead[j]])
+        segments.append(four[:, (four[:2, None] != four[None, 2:]).all(axis=(0, 1))])
+    (i, j), (a, b, c, d) = np.concatenate(pairs, axis=1), np.concatenate(segments, axis=1)
+    weight = mass[i] * mass[j]
+    around = np.array([[edges[dart // 2][-2 if dart % 2 else 1] for dart in darts] for darts in piece.darts])
+
+    def energy(x: FloatArray) -> float:
+        return float(0.5 * np.sum(x * (elastic @ x)) + weight @ np.square(x[i] - x[j]).sum(axis=1) ** -2)
+
+    def gradient(x: FloatArray) -> FloatArray:
+        apart = x[i] - x[j]
+        force = (-4.0 * weight * np.square(apart).sum(axis=1) ** -3)[:, None] * apart
+        push = [np.bincount(i, f, len(x)) - np.bincount(j, f, len(x)) for f in force.T]
+        return np.asarray(elastic @ x + np.column_stack(push))
+
+    def side(p: FloatArray, q: FloatArray, r: FloatArray) -> FloatArray:
+        (ux, uy), (vx, vy) = (q - p).T, (r - p).T
+        return np.asarray(ux * vy - uy * vx)
+
+    def is_kept(x: FloatArray) -> bool:
+        p, q, r, s = x[a], x[b], x[c], x[d]
+        crossing = (side(p, q, r) * side(p, q, s) < 0.0) & (side(r, s, p) * side(r, s, q) < 0.0)
+        leave = x[around] - x[: len(around), None]
+        angles = np.arctan2(leave[..., 1], leave[..., 0])
+        turns = (np.roll(angles, -1, axis=1) - angles) % (2.0 * np.pi)
+        return bool(not crossing.any() and (turns.sum(axis=1) < 6.5).all() and turns.min() > 0.3)
+
+    stretch = 0.5 * float(np.sum(x * (elastic @ x)))
+    x = x * (2.0 * (energy(x) - stretch) / stretch) ** (1.0 / 6.0)  # the best scale
+    value, size, way, last, before = energy(x), 0.1, np.zeros_like(x), np.zeros_like(x), 1.0
+    for _ in range(1000):  # conjugate gradients (Polak and Ribière 1969)
+        derivative = gradient(x)
+        steepest = -solve(derivative)
+        norm = -float(np.sum(derivative * steepest))
+        if norm < tolerance * value:
+            break
+        way = steepest + max(0.0, (norm + float(np.sum(derivative * last))) / before) * way
+        if -np.sum(derivative * way) < 0.1 * norm:
+            way = steepest
+        last, before, fall, reach = steepest, norm, float(np.sum(derivative * way)), float(np.abs(way).max())
+        while (
+            size * reach > 0.3
+            or not (lower := energy(trial := x + size * way)) <= value + 1e-4 * size * fall
+            or not is_kept(trial)
+        ):
+            size *= 0.5
+            if size < 1e-9:
+                return x
+        x, value, size = trial, lower, min(1.7 * size, 1.0)
+    return x
+
+
+def upright(points: FloatArray, outline: FloatArray) -> FloatArray:
+    """Turn points in the plane so that what is nearest to an axis of symmetry stands upright, its heavier end below.
+
+    The ``outline`` are points as well, spread evenly and densely along the curves.
+    """
+    middle = outline - outline.mean(axis=0)
+    tree, few = cKDTree(middle), middle[:: max(1, len(middle) // 300)]
+
+    def miss(angle: float) -> float:
+        """How far the points are from their mirror images in the axis at an angle: the mean square."""
+        axis = np.array([np.cos(angle), np.sin(angle)])
+        return float(np.square(tree.query(few @ (2.0 * np.outer(axis, axis) - np.eye(2)))[0]).mean())
+
+    angle = 0.0
+    for steps in (np.linspace(0.0, np.pi, 90, endpoint=False), np.linspace(-0.035, 0.035, 29)):
+        angle = min((angle + step for step in steps.tolist()), key=miss)
+    c, s = np.sin(angle), np.cos(angle)
+    turned = (points - outline.mean(axis=0)) @ np.array([[c, s], [-s, c]])
+    below = turned[:, 1].min() + turned[:, 1].max() < 0.0
+    return np.asarray(-turned if below else turned)
