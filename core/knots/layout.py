@@ -37,7 +37,7 @@ def laid_out(diagram: Diagram) -> Drawing:
         if piece.crossings:
             points, edges = relaxed(piece)
             fine = [at_shares(points[edge], False, np.linspace(0.0, 1.0, 4 * len(edge))) for edge in edges]
-            points = upright(points, np.concatenate(fine))
+            points = points @ upright(np.concatenate(fine))
         else:
             angle = 2.0 * np.pi * np.arange(48) / 48
             points, edges = np.column_stack([np.cos(angle), np.sin(angle)]), [np.arange(49) % 48]
@@ -163,10 +163,10 @@ def _at_rest(
     return x
 
 
-def upright(points: FloatArray, outline: FloatArray) -> FloatArray:
-    """Turn points in the plane so that what is nearest to an axis of symmetry stands upright, its heavier end below.
+def upright(outline: FloatArray) -> FloatArray:
+    """The rotation, for rows of points, after which a drawing's best axis of symmetry stands, its heavier end below.
 
-    The ``outline`` are points as well, spread evenly and densely along the curves.
+    ``outline`` are points on the drawing, shape (n, 2), dense and about as far apart everywhere.
     """
     middle = outline - outline.mean(axis=0)
     tree, few = cKDTree(middle), middle[:: max(1, len(middle) // 300)]
@@ -180,6 +180,6 @@ def upright(points: FloatArray, outline: FloatArray) -> FloatArray:
     for steps in (np.linspace(0.0, np.pi, 90, endpoint=False), np.linspace(-0.035, 0.035, 29)):
         angle = min((angle + step for step in steps.tolist()), key=miss)
     c, s = np.sin(angle), np.cos(angle)
-    turned = (points - outline.mean(axis=0)) @ np.array([[c, s], [-s, c]])
-    below = turned[:, 1].min() + turned[:, 1].max() < 0.0
-    return np.asarray(-turned if below else turned)
+    turn = np.array([[c, s], [-s, c]])
+    height = (middle @ turn)[:, 1]
+    return -turn if height.min() + height.max() < 0.0 else turn
