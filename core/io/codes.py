@@ -34,15 +34,20 @@ _NAME = re.compile(r"(m?[KL]?\d+(?:\^\d)?(?:_|[an]_?)\d+)(?:\(0,0\))*")  # a kno
 _COLUMNS = range(4, 8)  # of Knoodle's: four edges, and perhaps the sign and two colours
 
 
-def _read(kind: str, source: Source) -> list[Polygon]:
-    """Polygons of the code in a file; raises CurveFileError."""
+def code_diagram(kind: str, source: Source) -> Diagram:
+    """The diagram of the code in a file, ``pd``, ``dt`` or ``gauss``; raises CurveFileError."""
     text = "\n".join(line.partition("#")[0] for line in source.lines)
     try:
-        return _polygons(drawn(diagram_from_code(text, kind)))
+        return diagram_from_code(text, kind)
     except CodeError as error:
         raise source.error(str(error), text.count("\n", 0, error.position) + 1) from error
     except CurveError as error:
         raise source.error(str(error)) from error
+
+
+def _read(kind: str, source: Source) -> list[Polygon]:
+    """Polygons of the code in a file; raises CurveFileError."""
+    return _polygons(drawn(code_diagram(kind, source)))
 
 
 read_pd, read_dt, read_gauss = (partial(_read, kind) for kind in ("pd", "dt", "gauss"))

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..base import BoolArray, CurveError, FloatArray, check_known, checked_fields, number
+from ..base import CurveError, FloatArray, check_known, checked_fields, number
 from ..collision import check_embedded
 from ..curve import Curve, arc_lengths
 from ..knots.diagrams.projection import plane_crossings, project, rotation
@@ -134,42 +134,38 @@ def seen(curves: Sequence[Curve], trials: int = 60, seed: int = 20231) -> list[D
         for curve, middle in zip(smooth, middles, strict=True):
             points, mesh = middle @ rotation(frame), curve.mesh
             view = project(mesh, points, plane_crossings(mesh, points, 1e-9), mesh.ends.ravel(), 1e-9)
-            if view is not None:
-                passes = (mesh.tails[view.crossings.edges] + view.crossings.at).T
-                drawings.append((Curve(points[:, :2], mesh), passes, view.heights[0] > view.heights[1]))
-        if len(drawings) == len(curves):
-            turn = upright(np.concatenate([curve.vertices for curve, *_ in drawings]))
-            found.append([_turned(*each, turn) for each in drawings])
+            if view is None:
+                break
+            passes = (mesh.tails[view.crossings.edges] + view.crossings.at).T
+            order = np.argsort(passes[:, 0])
+            over = (view.heights[0] > view.heights[1])[order]
+            drawings.append(Drawing(Curve(points[:, :2], mesh), np.empty((0, 2)), passes[order], over))
+        else:
+            found.append(drawings)
     if not found:
         raise CurveError("strands touch, or nearly do: no view of the curve shows which one is in front")
-    fewest = sorted(found, key=lambda views: sum(len(each.crossings) for each in views))[:6]
-    return max(fewest, key=room)
-
-
-def _turned(curve: Curve, passes: FloatArray, first_over: BoolArray, turn: FloatArray) -> Drawing:
-    curve = curve.with_vertices(curve.vertices @ turn)
-    tail = passes[:, 0].astype(np.intp)
-    part = (passes[:, 0] - tail)[:, None]
-    places = curve.vertices[tail] * (1.0 - part) + curve.vertices[curve.mesh.cycle[tail]] * part
-    return Drawing(curve, places, passes, first_over)
+    fewest = sorted(found, key=lambda views: sum(len(each.passes) for each in views))
+    best = max(fewest[:10], key=room)
+    turn = upright(np.concatenate([each.curve.vertices for each in best]))
+    return [replace(each, curve=each.curve.with_vertices(each.curve.vertices @ turn)) for each in best]
 
 
 def room(drawings: Sequence[Drawing]) -> float:
-    """The width of the widest strands with which drawings can be drawn, relative to their size, at most 1/30."""
+    """The width of the widest strands with which drawings can be drawn, relative to their size, at most 1/12."""
     sizes = [float(np.ptp(each.curve.vertices, axis=0).max()) for each in drawings]
-    return min(widest(each, size / 30.0, 1.5)[0] / size for each, size in zip(drawings, sizes, strict=True))
+    return min(widest(each, size / 12.0, 1.5)[0] / size for each, size in zip(drawings, sizes, strict=True))
 
 
 def widest(drawing: Drawing, width: float, gap: float) -> tuple[float, list[Strand]]:
     """The strands of a drawing, and their width: the given one, or less where they would be too near to each other.
 
-    Raises CurveError if the width would be less than a thousandth of the drawing's size.
+    The width is 0, and there are no strands, where it would be less than a thousandth of the drawing's size.
     """
     least = 1e-3 * float(np.ptp(drawing.curve.vertices, axis=0).max())
     while (strands := gaps_cut(drawing, width, gap)) is None:
         width *= 0.85
         if width < least:
-            raise CurveError("strands are too near to each other to be drawn; --layout draws the diagram anew")
+            return 0.0, []
     return width, strands
 
 
@@ -189,7 +185,9 @@ def gaps_cut(drawing: Drawing, width: float, gap: float) -> list[Strand] | None:
     cuts: list[list[tuple[float, float]]] = [[] for _ in lines]
     for passes, first_over in zip(drawing.passes.tolist(), drawing.first_over.tolist(), strict=True):
         parts = [int(mesh.component[int(at)]) for at in passes]
-        at = [np.interp(p - mesh.offsets[k], np.arange(len(arcs[k])), arcs[k]) for p, k in zip(passes, parts, strict=True)]
+        at = [
+            np.interp(p - mesh.offsets[k], np.arange(len(arcs[k])), arcs[k]) for p, k in zip(passes, parts, strict=True)
+        ]
         (k, here), (upper, there) = list(zip(parts, at, strict=True))[:: -1 if first_over else 1]
         above = cKDTree(points(upper, there + np.concatenate([-reach[:0:-1], reach])))
         clear = [above.query(points(k, here + way * reach))[0] >= need for way in (-1.0, 1.0)]
@@ -244,9 +242,11 @@ def figure(drawings: Sequence[Drawing], captions: Sequence[str] = (), pen: Pen =
         scale = (pen.size - pen.width) / (max(sizes) if alike else size)
         middle = corner + [0.5 * cell[0], below + margin + 0.5 * pen.size]
         points = (drawing.curve.vertices - 0.5 * (low + high)) * scale + middle
-        places = (drawing.crossings - 0.5 * (low + high)) * scale + middle
-        placed = replace(drawing, curve=drawing.curve.with_vertices(points), crossings=places)
+        placed = replace(drawing, curve=drawing.curve.with_vertices(points))
         width, strands = widest(placed, pen.width, pen.gap)
+        if not strands:
+            told = f" of {captions[number]}" if any(captions) else ""
+            raise CurveError(f"strands{told} are too near to each other to be drawn; draw the diagram with --layout")
         for strand in strands:
             sheet.strokes.extend(_strokes(placed, strand, width, pen))
         if pen.arrows:
@@ -254,7 +254,9 @@ def figure(drawings: Sequence[Drawing], captions: Sequence[str] = (), pen: Pen =
         if pen.numbers:
             sheet.labels.extend(_numbers(placed, strands, pen))
         if any(captions):
-            sheet.labels.append(Label((float(middle[0]), float(corner[1] + 0.45 * below)), captions[number], 0.5 * below))
+            sheet.labels.append(
+                Label((float(middle[0]), float(corner[1] + 0.45 * below)), captions[number], 0.5 * below)
+            )
     return sheet
 
 
@@ -295,12 +297,14 @@ def _heads(drawing: Drawing, width: float, pen: Pen) -> Iterator[Stroke]:
 
 
 def _numbers(drawing: Drawing, strands: Sequence[Strand], pen: Pen) -> Iterator[Label]:
-    """The number of each crossing, as near to it as strands leave room."""
-    height = 0.07 * pen.size
-    ink = cKDTree(np.concatenate([strand.points for strand in strands]))
+    """The number of each crossing, as near to it as strands, and numbers before, leave room."""
+    height, curve, taken = 0.07 * pen.size, drawing.curve, [strand.points for strand in strands]
     angles = 2.0 * np.pi * np.arange(24) / 24
     around = np.concatenate([r * height * np.column_stack([np.cos(angles), np.sin(angles)]) for r in (1.0, 1.3, 1.7)])
-    for number, place in enumerate(drawing.crossings, start=1):
-        free = np.minimum(ink.query(place + around)[0], 0.8 * height)
-        x, y = place + around[int(free.argmax())]
-        yield Label((float(x), float(y)), str(number), height)
+    for number, at in enumerate(drawing.passes[:, 0], start=1):
+        tail = int(at)
+        place = curve.vertices[tail] + (at - tail) * (curve.vertices[curve.mesh.cycle[tail]] - curve.vertices[tail])
+        free = np.minimum(cKDTree(np.concatenate(taken)).query(place + around)[0], 0.8 * height)
+        here = place + around[int(free.argmax())]
+        taken.append(here + 0.5 * height * np.array([[-0.5, 0.0], [0.0, 0.0], [0.5, 0.0]]))
+        yield Label((float(here[0]), float(here[1])), str(number), height)

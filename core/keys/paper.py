@@ -57,12 +57,16 @@ def tikz(figure: Figure) -> bytes:
     for stroke in figure.strokes:
         p = [f"({_number(x)},{_number(y)})" for x, y in stroke.controls.tolist()]
         curves = "".join(f"\n  .. controls {p[k]} and {p[k + 1]} .. {p[k + 2]}" for k in range(1, len(p), 3))
-        lines.append(f"\\draw[color={colour(stroke.colour)}, line width={_number(stroke.width)}bp{dashes}] {p[0]}{curves};")
+        lines.append(
+            f"\\draw[color={colour(stroke.colour)}, line width={_number(stroke.width)}bp{dashes}] {p[0]}{curves};"
+        )
     for head in figure.heads:
         corners = " -- ".join(f"({_number(x)},{_number(y)})" for x, y in head.points.tolist())
         lines.append(f"\\fill[color={colour(head.colour)}] {corners} -- cycle;")
     for label in figure.labels:
-        words = [f"$_{{{part}}}$" if low else _SPECIAL.sub(r"\\char`\\\g<0>{}", part) for part, low in _parts(label.text)]
+        words = [
+            f"$_{{{part}}}$" if low else _SPECIAL.sub(r"\\char`\\\g<0>{}", part) for part, low in _parts(label.text)
+        ]
         size = f"\\fontsize{{{_number(label.height)}bp}}{{{_number(label.height)}bp}}\\selectfont"
         lines.append(f"\\node at ({_number(label.place[0])},{_number(label.place[1])}) {{{size} {''.join(words)}}};")
     return "\n".join([*lines, "\\end{tikzpicture}", ""]).encode()

@@ -81,9 +81,7 @@ def relaxed(piece: Diagram) -> tuple[FloatArray, list[FloatArray]]:
     return x, edges
 
 
-def _at_rest(
-    piece: Diagram, x: FloatArray, edges: list[FloatArray], spans: FloatArray, tolerance: float
-) -> FloatArray:
+def _at_rest(piece: Diagram, x: FloatArray, edges: list[FloatArray], spans: FloatArray, tolerance: float) -> FloatArray:
     """Let the energy fall until its derivative's square is a part ``tolerance`` of it; spans are parameter lengths."""
     sizes = np.array([len(edge) - 1 for edge in edges])
     ends = np.cumsum(sizes)

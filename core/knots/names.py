@@ -8,11 +8,11 @@ from pathlib import Path
 
 from ..base import CurveError, MobiusFlowError, checked
 from ..curve import Curve
-from .braids import Word, braid_closure, checked_word, connected_sum, mirror, plat_diagram, torus_knot
-from .diagrams import PlanarCrossing
-from .diagrams.codes import gauss_text, is_code
+from .braids import Word, braid_closure, braid_diagram, checked_word, connected_sum, mirror, plat_diagram, torus_knot
+from .diagrams import Diagram, PlanarCrossing, diagram_of, is_least, shuffled_down, simplified, views
+from .diagrams.codes import diagram_from_code, is_code
 from .formulas import FORMULAS
-from .planar import coded_knot, diagram_knot
+from .planar import drawn, refined
 
 _LARGER = re.compile(r"(?P<kind>[kl]?)(?P<crossings>[1-9]\d?)_?(?P<sort>[an])_?0*(?P<number>[1-9]\d{0,5})", re.ASCII)
 _OTHERWISE = 'give its code, such as "DT: [4 6 2]", "PD[X[1,5,2,4], ...]" or "Gauss: 1 -2 3 -1 2 -3"'
@@ -113,16 +113,60 @@ def knot(name: str, vertices: int | None = None) -> Curve:
     if (braid := _BRAID.fullmatch(squeezed)) is not None:
         word, strands = _braid(braid, name)
         return braid_closure(word, vertices, strands=strands)
-    if (plat := _PLAT.fullmatch(squeezed)) is not None:
-        return coded_knot(gauss_text(plat_diagram(_numbers(plat, name))), vertices)
-    if is_code(name) and "#" not in name:
-        return coded_knot(name, vertices)
-    by_itself = re.sub(r"[\s_-]", "", _plain(name))
-    if by_itself in _BY_ITSELF:
+    if (by_itself := _joined(name)) in _BY_ITSELF:
         return _BY_ITSELF[by_itself](vertices)
-    if by_itself in _HARD:
-        return diagram_knot(HARD_UNKNOTS[_HARD[by_itself]], vertices)
+    if (diagram := _own_diagram(name)) is not None:
+        return refined(drawn(diagram), vertices)
     return braid_closure(braid_word(name), vertices)
+
+
+@checked
+def named_diagram(name: str) -> Diagram | None:
+    """The diagram of a name in the grammar of :func:`knot`; None for curves from formulas.
+
+    Codes, plats, braids and hard unknots are diagrams themselves; others have as few crossings as are found, which for
+    knots of the table are fewest.  Raises as `knot` does.
+    """
+    if _joined(name) in _BY_ITSELF:
+        return None
+    if (own := _own_diagram(name)) is not None:
+        return own
+    closure = braid_diagram(word := braid_word(name))
+    if _BRAID.fullmatch(_squeezed(name)):
+        return closure
+    bare, _ = _unmirrored(_plain(name))
+    entry = _TABLE.get(_squeezed(_WORDS.get(bare, bare)), "")
+    least = int(re.findall(r"\d+", entry)[0]) if entry else 0
+
+    def is_enough(diagram: Diagram) -> bool:
+        return is_least(diagram) or diagram.crossings <= least
+
+    best = shuffled_down(simplified(closure), is_enough)
+    if not is_enough(best) and entry:  # another beginning leads on
+        found = (shuffled_down(simplified(view), is_enough) for view in views(braid_closure(word), 12))
+        best = next(filter(is_enough, found), best)
+    return best
+
+
+def table_range(word: str) -> list[str]:
+    """The names from one to another in the order of the table, ``3_1..8_21``; raises MobiusFlowError."""
+    table = list(KNOTS)
+    first, last = (table_name(end) for end in word.split("..", 1))
+    low, high = table.index(first[0]), table.index(last[0])
+    if first[1] or last[1]:
+        raise MobiusFlowError(f"{word}: the table has no mirror images; name them one by one")
+    if low > high:
+        raise MobiusFlowError(f"{word}: {last[0]} comes before {first[0]} in the table; swap them")
+    return table[low : high + 1]
+
+
+def _own_diagram(name: str) -> Diagram | None:
+    """The diagram that a code, a plat or a hard unknot is; None for other names."""
+    if (plat := _PLAT.fullmatch(_squeezed(name))) is not None:
+        return plat_diagram(_numbers(plat, name))
+    if is_code(name) and "#" not in name and not _BRAID.fullmatch(_squeezed(name)):
+        return diagram_from_code(name)
+    return diagram_of(HARD_UNKNOTS[_HARD[_joined(name)]]) if _joined(name) in _HARD else None
 
 
 def table_name(name: str) -> tuple[str, bool]:
@@ -209,6 +253,10 @@ def _braid(match: re.Match[str], name: str) -> tuple[Word, int | None]:
     if word and match[0].startswith("{") and sorted(word) == sorted({side * abs(k) for k in word for side in (1, -1)}):
         raise UnknownKnotError(f"{name[:60]!r} may be a braid or a Gauss code; write braid(...) or Gauss: ...")
     return word, int(match["strands"]) if match.groupdict()["strands"] else None
+
+
+def _joined(name: str) -> str:
+    return re.sub(r"[\s_-]", "", _plain(name))
 
 
 def _squeezed(text: str) -> str:

@@ -33,13 +33,13 @@ def diagram_knot(code: Sequence[PlanarCrossing], vertices: int | None = None) ->
     >>> len(diagram_knot([(1, 5, 2, 4), (3, 1, 4, 6), (5, 3, 6, 2)]))
     22
     """
-    return _refined(drawn(diagram_of(code)), vertices)
+    return refined(drawn(diagram_of(code)), vertices)
 
 
 @checked
 def coded_knot(text: str, vertices: int | None = None, kind: str | None = None) -> Curve:
     """Make the knot or link of a PD, DT or Gauss code, read by `diagram_from_code`, as :func:`diagram_knot` does."""
-    return _refined(drawn(diagram_from_code(text, kind)), vertices)
+    return refined(drawn(diagram_from_code(text, kind)), vertices)
 
 
 def drawn(diagram: Diagram) -> Curve:
@@ -89,7 +89,8 @@ def _of_link(other: object) -> Curve | None:
 MAKERS.append(_of_link)
 
 
-def _refined(curve: Curve, vertices: int | None) -> Curve:
+def refined(curve: Curve, vertices: int | None) -> Curve:
+    """The drawing of a diagram with a number of vertices, if one is given; or CurveError."""
     if vertices is None:
         return curve
     if not len(curve) <= vertices <= MAX_VERTICES:

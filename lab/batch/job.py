@@ -15,9 +15,9 @@ from ... import __version__
 from ...core import MobiusFlowError, RelaxOptions
 from ...core.io import FORMATS
 from ...core.io.source import MAX_BYTES
-from ...core.knots import KNOTS, knot
+from ...core.knots import knot
 from ...core.knots.diagrams.codes import is_code
-from ...core.knots.names import table_name
+from ...core.knots.names import table_range
 
 CURVE, REPORT, TRAJECTORY = "curve.txt", "report.json", "trajectory.npz"
 STILL = ("avoid", "pins", "pin_tangents")  # options of a task, beside those of its relaxation
@@ -55,14 +55,7 @@ def inputs(words: Iterable[str]) -> list[Input]:
         elif os.path.dirname(word) or Path(word).suffix.lower() in FORMATS:
             raise MobiusFlowError(f"{word}: there is no such file")
         elif ".." in word:
-            table = list(KNOTS)
-            first, last = (table_name(end) for end in word.split("..", 1))
-            low, high = table.index(first[0]), table.index(last[0])
-            if first[1] or last[1]:
-                raise MobiusFlowError(f"{word}: the table has no mirror images; name them one by one")
-            if low > high:
-                raise MobiusFlowError(f"{word}: {last[0]} comes before {first[0]} in the table; swap them")
-            found += map(Input, table[low : high + 1])
+            found += map(Input, table_range(word))
         else:
             knot(word)  # which reports names that mean nothing
             found.append(Input(word.strip()))

@@ -1,0 +1,127 @@
+"""``mobius-flow draw``: diagrams of curves, trajectories, codes and named knots as SVG, PDF or TikZ."""
+
+import argparse
+import os
+from dataclasses import replace
+from pathlib import Path
+
+from ..core import CurveError, MobiusFlowError, OptionError
+from ..core.base.errors import wrong_suffix
+from ..core.io import FORMATS
+from ..core.io.codes import code_diagram
+from ..core.io.source import Source
+from ..core.keys.figure import COLOURS, LINES, Pen, figure, seen
+from ..core.keys.paper import PAPERS
+from ..core.keys.view import motion
+from ..core.knots import knot, knot_type
+from ..core.knots.drawings import Drawing
+from ..core.knots.layout import laid_out
+from ..core.knots.names import named_diagram, table_range
+from . import curves
+from .places import check_places, writing
+from .terminal import say_written
+
+_CODES = {".pd": "pd", ".dt": "dt", ".gauss": "gauss"}
+_EPILOG = """\
+examples:
+  mobius-flow draw 8_18 knot.svg
+  mobius-flow draw knot.txt knot.pdf --arrows --numbers
+  mobius-flow draw L6a4 "DT: [4 6 2]" "braid(1,-2,1,-2)" row.tex --columns 3
+  mobius-flow draw 3_1..10_165 poster.pdf --columns 18
+  mobius-flow draw path.npz film.svg --frames 8 --colours along
+
+Curves are seen from where the fewest strands cross, and of such views from where they are best apart; names and codes,
+and with --layout the simplified diagrams of curves, are laid out anew, with even and smooth strands. Strands become
+thinner where they would come too near to each other. Figures in TikZ are for \\input in a document that uses tikz.
+
+exit status: 0, or 2 on bad input or bad options, or where OUT cannot be written
+"""
+
+
+def add_draw(parser: argparse.ArgumentParser) -> None:
+    parser.description, parser.epilog = "Draw diagrams of curves, trajectories, codes and named knots.", _EPILOG
+    text = (
+        f"curve ({', '.join(FORMATS)}, or - for standard input), trajectory (.npz), code, name, or range of the table"
+    )
+    parser.add_argument("inputs", metavar="IN", nargs="+", help=text)
+    parser.add_argument("output", metavar="OUT", help=f"what to write, by suffix: {', '.join(PAPERS)}")
+    curves.add_format(parser)
+    text = "lay out the simplified diagrams of curves (default: draw a view)"
+    parser.add_argument("--layout", action="store_true", help=text)
+    text = "frames of a trajectory, about as far apart, 2 to 1000 (default: 6)"
+    parser.add_argument("--frames", type=int, default=6, metavar="N", help=text)
+    text = "of a sheet (default: as many as rows, or a row for a trajectory)"
+    parser.add_argument("--columns", type=int, metavar="N", help=text)
+    pen = Pen()
+    text = f"side of a diagram in points (default: {pen.size:g})"
+    parser.add_argument("--size", type=float, default=pen.size, metavar="PT", help=text)
+    text = f"of strands in points, where there is room (default: {pen.width:g})"
+    parser.add_argument("--width", type=float, default=pen.width, metavar="PT", help=text)
+    text = f"beside upper strands, in widths (default: {pen.gap:g})"
+    parser.add_argument("--gap", type=float, default=pen.gap, metavar="G", help=text)
+    text = f"{', '.join(COLOURS)} (default: {pen.colours})"
+    parser.add_argument("--colours", choices=COLOURS, default=pen.colours, metavar="C", help=text)
+    text = f"{', '.join(LINES)} (default: {pen.line})"
+    parser.add_argument("--line", choices=tuple(LINES), default=pen.line, metavar="L", help=text)
+    parser.add_argument("--arrows", action="store_true", help="show orientations")
+    parser.add_argument(
+        "--numbers", action="store_true", help="number crossings in the order in which they are reached"
+    )
+    text = "captions, between commas, or none (default: names, or numbers of frames, if there are several)"
+    parser.add_argument("--labels", metavar="A,B,…", help=text)
+    parser.set_defaults(run=_run)
+
+
+def _run(options: argparse.Namespace) -> int:
+    suffix = Path(options.output).suffix.lower()
+    if suffix not in PAPERS:
+        raise MobiusFlowError(f"{options.output}: {wrong_suffix(Path(options.output), PAPERS, 'drawings')}")
+    pen = Pen(**{name: getattr(options, name) for name in Pen.__dataclass_fields__})
+    check_places({path: path for path in options.inputs if os.path.exists(path)}, {"OUT": options.output})
+    drawings: list[Drawing] = []
+    captions: list[str] = []
+    for word in options.inputs:
+        here, names = _drawn(word, options)
+        drawings, captions = drawings + here, captions + names
+    is_film = len(options.inputs) == 1 and options.inputs[0].lower().endswith(".npz")
+    if options.labels is not None:
+        captions = [""] * len(drawings) if options.labels == "none" else options.labels.split(",")
+        if len(captions) != len(drawings):
+            raise OptionError(f"--labels has {len(captions)} captions for {len(drawings)} drawings; give as many")
+    elif len(drawings) == 1:
+        captions = [""]
+    if is_film and pen.columns is None:
+        pen = replace(pen, columns=len(drawings))
+    made = PAPERS[suffix](figure(drawings, captions, pen, alike=is_film))
+    with writing(options.output) as temporary:
+        temporary.write_bytes(made)
+    say_written(options.output)
+    return 0
+
+
+def _drawn(word: str, options: argparse.Namespace) -> tuple[list[Drawing], list[str]]:
+    """The drawings of an input, and their captions."""
+    suffix, stem = Path(word).suffix.lower(), Path(word).stem
+    is_file = word == curves.STREAM or suffix in FORMATS or os.path.isfile(word)
+    if suffix == ".npz":
+        if not 2 <= options.frames <= 1000:
+            raise OptionError(f"frames is {options.frames}; give 2 to 1000")
+        found = seen(motion(word, options.frames).curves)
+        return found, [str(number) for number in range(1, len(found) + 1)]
+    if suffix in _CODES and not options.format:
+        source = Source.load(Path(word))
+        try:
+            return [laid_out(code_diagram(_CODES[suffix], source))], [stem]
+        except CurveError as error:
+            raise source.error(str(error)) from error
+    if is_file:
+        with curves.measured(word, options.format) as curve:
+            if not options.layout:
+                return seen([curve]), [stem]
+            kind = knot_type(curve)
+            if kind.diagram is None:
+                raise CurveError(kind.refusal)
+            return [laid_out(kind.diagram)], [stem]
+    names = table_range(word) if ".." in word else [word]
+    diagrams = [(name, named_diagram(name)) for name in names]
+    return [seen([knot(name)])[0] if each is None else laid_out(each) for name, each in diagrams], names
