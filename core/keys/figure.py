@@ -112,7 +112,7 @@ class Strand(NamedTuple):
     along: FloatArray  # distance from where the component begins
 
 
-def seen(curves: Sequence[Curve], trials: int = 60, seed: int = 20231) -> list[Drawing]:
+def seen(curves: Sequence[Curve], trials: int = 200, seed: int = 20231) -> list[Drawing]:
     """Curves as seen from where the fewest strands cross in all of them, and of these where they are best apart.
 
     Corners are rounded first, by motions proved free of contact.  Raises CurveError for curves that are not in space or
@@ -139,13 +139,20 @@ def seen(curves: Sequence[Curve], trials: int = 60, seed: int = 20231) -> list[D
             passes = (mesh.tails[view.crossings.edges] + view.crossings.at).T
             order = np.argsort(passes[:, 0])
             over = (view.heights[0] > view.heights[1])[order]
-            drawings.append(Drawing(Curve(points[:, :2], mesh), np.empty((0, 2)), passes[order], over))
+            drawings.append(Drawing(Curve(points[:, :2], mesh), passes[order], over))
         else:
             found.append(drawings)
     if not found:
         raise CurveError("strands touch, or nearly do: no view of the curve shows which one is in front")
-    fewest = sorted(found, key=lambda views: sum(len(each.passes) for each in views))
-    best = max(fewest[:10], key=room)
+
+    def crossings(drawings: list[Drawing]) -> int:
+        return sum(len(each.passes) for each in drawings)
+
+    def merit(drawings: list[Drawing]) -> tuple[float, int, float]:
+        least = room(drawings)
+        return min(least, 0.02), -crossings(drawings), least  # thinner strands than 2 % are worse than more crossings
+
+    best = max(sorted(found, key=crossings)[:20], key=merit)
     turn = upright(np.concatenate([each.curve.vertices for each in best]))
     return [replace(each, curve=each.curve.with_vertices(each.curve.vertices @ turn)) for each in best]
 
@@ -182,31 +189,31 @@ def gaps_cut(drawing: Drawing, width: float, gap: float) -> list[Strand] | None:
         at = at % arcs[k][-1] if mesh.closed[k] else at
         return np.stack([np.interp(at, arcs[k], x) for x in lines[k].T], axis=1)
 
+    def located(at: float) -> tuple[int, float]:
+        k = int(mesh.component[int(at)])
+        return k, float(np.interp(at - mesh.offsets[k], np.arange(len(arcs[k])), arcs[k]))
+
     cuts: list[list[tuple[float, float]]] = [[] for _ in lines]
-    for passes, first_over in zip(drawing.passes.tolist(), drawing.first_over.tolist(), strict=True):
-        parts = [int(mesh.component[int(at)]) for at in passes]
-        at = [
-            np.interp(p - mesh.offsets[k], np.arange(len(arcs[k])), arcs[k]) for p, k in zip(passes, parts, strict=True)
-        ]
-        (k, here), (upper, there) = list(zip(parts, at, strict=True))[:: -1 if first_over else 1]
-        above = cKDTree(points(upper, there + np.concatenate([-reach[:0:-1], reach])))
-        clear = [above.query(points(k, here + way * reach))[0] >= need for way in (-1.0, 1.0)]
+    for (first, second), first_over in zip(drawing.passes.tolist(), drawing.first_over.tolist(), strict=True):
+        (k, below), (upper, above) = map(located, (second, first) if first_over else (first, second))
+        tree = cKDTree(points(upper, above + np.concatenate([-reach[:0:-1], reach])))
+        clear = [tree.query(points(k, below + way * reach))[0] >= need for way in (-1.0, 1.0)]
         if not (clear[0].any() and clear[1].any()):
             return None
-        cuts[k].append((here - reach[clear[0].argmax()], here + reach[clear[1].argmax()]))
+        cuts[k].append((below - reach[clear[0].argmax()], below + reach[clear[1].argmax()]))
     strands: list[Strand] = []
     for k, arc in enumerate(arcs):
-        here = sorted(cuts[k])
+        whole, own = arc, sorted(cuts[k])
         if mesh.closed[k]:
-            whole = np.concatenate([arc[:-1], arc[:-1] + arc[-1], [2.0 * arc[-1]]])
-            spans = [(a, b) for (_, a), (b, _) in pairwise([*here, *((b + arc[-1], a) for b, a in here[:1])])]
-            spans = spans or [(0.0, arc[-1])]
+            whole = np.concatenate([arc[:-1], arc + arc[-1]])
+            again = [(before + arc[-1], after) for before, after in own[:1]]
+            spans = [(a, b) for (_, a), (b, _) in pairwise([*own, *again])] or [(0.0, arc[-1])]
         else:
-            whole, marks = arc, [0.0, *(each for cut in here for each in cut), arc[-1]]
+            marks = [0.0, *(end for cut in own for end in cut), arc[-1]]
             spans = list(zip(marks[::2], marks[1::2], strict=True))
         near = 0.3 * arc[-1] / len(arc)  # vertices nearer than this to an end are left out
         for a, b in spans:
-            if b - a < 0.5 * width:
+            if b - a < 1.5 * width:  # a dot, rather than a strand
                 return None
             along = np.concatenate([[a], whole[(whole > a + near) & (whole < b - near)], [b]])
             strands.append(Strand(k, points(k, along), along))
@@ -235,17 +242,17 @@ def figure(drawings: Sequence[Drawing], captions: Sequence[str] = (), pen: Pen =
     rows = -(-len(drawings) // columns)
     sheet = Figure((columns * cell[0], rows * cell[1]), tuple(pen.width * each for each in LINES[pen.line]))
     sizes = [float(np.ptp(each.curve.vertices, axis=0).max()) for each in drawings]
-    for number, (drawing, size) in enumerate(zip(drawings, sizes, strict=True)):
-        row, column = divmod(number, columns)
+    for index, (drawing, size) in enumerate(zip(drawings, sizes, strict=True)):
+        row, column = divmod(index, columns)
         corner = np.array([column, rows - 1 - row]) * cell
         low, high = drawing.curve.vertices.min(axis=0), drawing.curve.vertices.max(axis=0)
         scale = (pen.size - pen.width) / (max(sizes) if alike else size)
-        middle = corner + [0.5 * cell[0], below + margin + 0.5 * pen.size]
+        middle = corner + np.array([0.5 * cell[0], below + margin + 0.5 * pen.size])
         points = (drawing.curve.vertices - 0.5 * (low + high)) * scale + middle
         placed = replace(drawing, curve=drawing.curve.with_vertices(points))
         width, strands = widest(placed, pen.width, pen.gap)
         if not strands:
-            told = f" of {captions[number]}" if any(captions) else ""
+            told = f" of {captions[index]}" if any(captions) else ""
             raise CurveError(f"strands{told} are too near to each other to be drawn; draw the diagram with --layout")
         for strand in strands:
             sheet.strokes.extend(_strokes(placed, strand, width, pen))
@@ -255,7 +262,7 @@ def figure(drawings: Sequence[Drawing], captions: Sequence[str] = (), pen: Pen =
             sheet.labels.extend(_numbers(placed, strands, pen))
         if any(captions):
             sheet.labels.append(
-                Label((float(middle[0]), float(corner[1] + 0.45 * below)), captions[number], 0.5 * below)
+                Label((float(middle[0]), float(corner[1] + 0.45 * below)), captions[index], 0.5 * below)
             )
     return sheet
 
@@ -285,7 +292,7 @@ def _heads(drawing: Drawing, width: float, pen: Pen) -> Iterator[Stroke]:
         arc, own = arc_lengths(line), mesh.slices[k]
         passes = drawing.passes[(drawing.passes >= own.start) & (drawing.passes < own.stop)] - own.start
         at = np.sort(np.interp(passes, np.arange(len(arc)), arc))
-        marks = np.concatenate([at[-1:] - arc[-1], at]) if closed and len(at) else np.array([0.0, *at, arc[-1]])
+        marks = np.array([at[-1] - arc[-1], *at] if closed and len(at) else [0.0, *at, arc[-1]])
         longest = int(np.diff(marks).argmax())
         middle = 0.5 * (marks[longest] + marks[longest + 1]) + width * np.array([-0.5, 0.0, 0.5])
         back, tip, ahead = (np.array([np.interp(s % arc[-1], arc, x) for x in line.T]) for s in middle)
@@ -298,13 +305,11 @@ def _heads(drawing: Drawing, width: float, pen: Pen) -> Iterator[Stroke]:
 
 def _numbers(drawing: Drawing, strands: Sequence[Strand], pen: Pen) -> Iterator[Label]:
     """The number of each crossing, as near to it as strands, and numbers before, leave room."""
-    height, curve, taken = 0.07 * pen.size, drawing.curve, [strand.points for strand in strands]
+    height, taken = 0.07 * pen.size, [strand.points for strand in strands]
     angles = 2.0 * np.pi * np.arange(24) / 24
     around = np.concatenate([r * height * np.column_stack([np.cos(angles), np.sin(angles)]) for r in (1.0, 1.3, 1.7)])
-    for number, at in enumerate(drawing.passes[:, 0], start=1):
-        tail = int(at)
-        place = curve.vertices[tail] + (at - tail) * (curve.vertices[curve.mesh.cycle[tail]] - curve.vertices[tail])
+    for index, place in enumerate(drawing.crossings, start=1):
         free = np.minimum(cKDTree(np.concatenate(taken)).query(place + around)[0], 0.8 * height)
         here = place + around[int(free.argmax())]
         taken.append(here + 0.5 * height * np.array([[-0.5, 0.0], [0.0, 0.0], [0.5, 0.0]]))
-        yield Label((float(here[0]), float(here[1])), str(number), height)
+        yield Label((float(here[0]), float(here[1])), str(index), height)

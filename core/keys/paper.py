@@ -7,7 +7,7 @@ from itertools import groupby
 from xml.sax.saxutils import escape
 
 from ..base import FloatArray
-from .figure import Figure, Label, Stroke
+from .figure import Figure
 
 _SPECIAL = re.compile(r"[#$%&_{}^~\\]")  # to TeX
 _SUBSCRIPT = re.compile(r"_(\d+)")
@@ -52,7 +52,7 @@ def tikz(figure: Figure) -> bytes:
         red, green, blue = _rgb(code)
         return f"{{rgb,1:red,{red:.3f};green,{green:.3f};blue,{blue:.3f}}}"
 
-    on_off = [f"{word} {_number(length)}bp" for word, length in zip(("on", "off"), figure.dashes)]
+    on_off = [f"{word} {_number(length)}bp" for word, length in zip(("on", "off"), figure.dashes, strict=False)]
     dashes = f", dash pattern={' '.join(on_off)}" if figure.dashes else ""
     for stroke in figure.strokes:
         p = [f"({_number(x)},{_number(y)})" for x, y in stroke.controls.tolist()]
@@ -103,7 +103,8 @@ def pdf(figure: Figure) -> bytes:
     objects = [
         b"<< /Type /Catalog /Pages 2 0 R >>",
         b"<< /Type /Pages /Kids [3 0 R] /Count 1 >>",
-        f"<< /Type /Page /Parent 2 0 R /MediaBox [0 0 {box}] /Contents 4 0 R /Resources << /Font << /F {font} >> >> >>".encode(),
+        f"<< /Type /Page /Parent 2 0 R /MediaBox [0 0 {box}] /Contents 4 0 R "
+        f"/Resources << /Font << /F {font} >> >> >>".encode(),
         f"<< /Length {len(content)} /Filter /FlateDecode >>\nstream\n".encode() + content + b"\nendstream",
     ]
     file, places = b"%PDF-1.4\n", list[int]()

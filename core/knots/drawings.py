@@ -6,6 +6,7 @@ the two strands have different heights: it is embedded, and has the drawn crossi
 
 from collections.abc import Collection
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -22,9 +23,17 @@ class Drawing:
     """Closed curves in the plane that cross themselves and each other clearly, two strands at a time, c times."""
 
     curve: Curve
-    crossings: FloatArray  #: their places, in the order in which they are reached; shape (c, 2)
-    passes: FloatArray  #: first and second edge there, each with the fraction of it as one number; shape (c, 2)
+    #: first and second edge at each crossing, in the order in which these are reached, each by its tail, with the
+    #: fraction of the edge, as one number; shape (c, 2)
+    passes: FloatArray
     first_over: BoolArray  #: whether the first is the upper one: from `of`, over and under alternate; shape (c,)
+
+    @cached_property
+    def crossings(self) -> FloatArray:
+        """The places of the crossings; shape (c, 2)."""
+        tail, cycle = self.passes[:, 0].astype(np.intp), self.curve.mesh.cycle
+        fraction = (self.passes[:, 0] - tail)[:, None]
+        return np.asarray(self.curve.vertices[tail] * (1.0 - fraction) + self.curve.vertices[cycle[tail]] * fraction)
 
     @classmethod
     @checked
@@ -79,7 +88,7 @@ class Drawing:
             fields = np.count_nonzero(left[meets] + fraction * (left[heads][meets] - left[meets]) > 0)
             upper.ravel()[mine] = (np.arange(len(mine)) + fields) % 2 == 0
         # the first crossing's first pass is an upper one
-        return cls(generic, points, passes, np.asarray(upper[:, 0] == upper[:1, 0]))
+        return cls(generic, passes, np.asarray(upper[:, 0] == upper[:1, 0]))
 
     @classmethod
     @checked

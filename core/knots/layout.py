@@ -12,7 +12,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 from scipy.spatial import cKDTree
 
-from ..base import CurveError, FloatArray
+from ..base import CurveError, FloatArray, IntArray
 from ..curve import Curve, arc_lengths
 from ..curve.refine import at_shares
 from .diagrams import Diagram
@@ -32,7 +32,7 @@ def laid_out(diagram: Diagram) -> Drawing:
     if not diagram.passes:
         raise CurveError("the diagram is empty; give one with at least one component")
     parts: list[FloatArray] = []
-    places, lower, upper, right, count = [np.empty((0, 2))], list[int](), list[int](), 0.0, 0
+    lower, upper, right, count = list[int](), list[int](), 0.0, 0
     for piece in diagram.pieces():
         if piece.crossings:
             points, edges = relaxed(piece)
@@ -41,47 +41,47 @@ def laid_out(diagram: Diagram) -> Drawing:
         else:
             angle = 2.0 * np.pi * np.arange(48) / 48
             points, edges = np.column_stack([np.cos(angle), np.sin(angle)]), [np.arange(49) % 48]
-        points = points + [right - points[:, 0].min(), -0.5 * (points[:, 1].min() + points[:, 1].max())]
+        points = points + np.array([right - points[:, 0].min(), -0.5 * (points[:, 1].min() + points[:, 1].max())])
         right = 1.0 + float(points[:, 0].max())
-        starts = count + np.cumsum([0, *(len(edge) - 1 for edge in edges)])  # the vertex of each pass
-        count = int(starts[-1])
-        lower += [int(starts[low]) for low, _ in piece.levels]
-        upper += [int(starts[up]) for _, up in piece.levels]
-        places.append(points[: piece.crossings])
+        sizes = np.array([len(edge) - 1 for edge in edges])
+        starts = count + np.cumsum(sizes) - sizes
+        lower.extend(int(starts[low]) for low, _ in piece.levels)
+        upper.extend(int(starts[high]) for _, high in piece.levels)
         rest = iter(edges)
-        for passes in piece.passes:
-            parts.append(points[np.concatenate([next(rest)[:-1] for _ in passes or [()]])])
-    passes = np.sort(np.column_stack([lower, upper]).reshape(-1, 2), axis=1)
-    order = np.argsort(passes[:, 0])  # crossings in the order in which they are reached
-    over = np.array(upper, dtype=int) == passes[:, 0]
-    curve = Curve.from_components(parts)
-    return Drawing(curve, np.concatenate(places)[order], passes[order].astype(float), over[order])
+        parts.extend(points[np.concatenate([next(rest)[:-1] for _ in part or [()]])] for part in piece.passes)
+        count += int(sizes.sum())
+    passes = np.column_stack([lower, upper]).reshape(-1, 2)
+    order = np.argsort(passes.min(axis=1))  # the order in which they are reached
+    over = passes.argmax(axis=1) == 0
+    return Drawing(Curve.from_components(parts), np.sort(passes, axis=1)[order].astype(float), over[order])
 
 
-def relaxed(piece: Diagram) -> tuple[FloatArray, list[FloatArray]]:
+def relaxed(piece: Diagram) -> tuple[FloatArray, list[IntArray]]:
     """Places of the crossings of a connected diagram, and then of other vertices; and the vertices on each edge."""
     grid = grid_drawing(piece)
     paths = [np.concatenate([path, grid[after][:1]]) for path, after in zip(grid, piece.next, strict=True)]
-    lengths = np.array([arc_lengths(path)[-1] for path in paths])
-    pieces = np.maximum(12, np.round(4.0 * lengths).astype(np.intp))  # as fine as the strands of the grid are apart
-    first = piece.crossings + np.cumsum(pieces - 1) - (pieces - 1)
-    edges = [
-        np.concatenate([[piece.sequence[k][0]], first[k] + np.arange(pieces[k] - 1), [piece.sequence[after][0]]])
-        for k, after in enumerate(piece.next)
-    ]
-    x = np.empty((int(first[-1] + pieces[-1] - 1), 2))
-    for edge, path in zip(edges, paths, strict=True):
-        x[edge] = at_shares(path, False, np.linspace(0.0, 1.0, len(edge)))
+    on_grid = np.array([arc_lengths(path)[-1] for path in paths])
     for power, tolerance in ((1.0, 1e-2), (0.5, 1e-2), (0.0, 1e-6), (None, 1e-6), (None, 1e-6)):
-        if power is None:
-            spans = np.array([arc_lengths(x[edge])[-1] for edge in edges])
+        if power is not None:
+            spans = on_grid**power
+            pieces = np.maximum(10, np.round(3.0 * on_grid))  # finer than the strands of the grid are apart
         else:
-            spans = lengths**power
+            spans = np.array([arc_lengths(path)[-1] for path in paths])
+            pieces = np.maximum(6, np.round(12.0 * spans / spans.mean()))
+        new = np.split(np.arange(int(pieces.sum()) - len(pieces)), np.cumsum(pieces.astype(np.intp) - 1)[:-1])
+        edges = [
+            np.concatenate([[crossing], piece.crossings + inner, [piece.sequence[after][0]]])
+            for (crossing, _), inner, after in zip(piece.sequence, new, piece.next, strict=True)
+        ]
+        x = np.empty((piece.crossings + sum(map(len, new)), 2))
+        for edge, path in zip(edges, paths, strict=True):
+            x[edge] = at_shares(path, False, np.linspace(0.0, 1.0, len(edge)))
         x = _at_rest(piece, x, edges, spans / spans.mean(), tolerance)
+        paths = [x[edge] for edge in edges]
     return x, edges
 
 
-def _at_rest(piece: Diagram, x: FloatArray, edges: list[FloatArray], spans: FloatArray, tolerance: float) -> FloatArray:
+def _at_rest(piece: Diagram, x: FloatArray, edges: list[IntArray], spans: FloatArray, tolerance: float) -> FloatArray:
     """Let the energy fall until its derivative's square is a part ``tolerance`` of it; spans are parameter lengths."""
     sizes = np.array([len(edge) - 1 for edge in edges])
     ends = np.cumsum(sizes)

@@ -10,7 +10,7 @@ from ..base import CurveError, MobiusFlowError, checked
 from ..curve import Curve
 from .braids import Word, braid_closure, braid_diagram, checked_word, connected_sum, mirror, plat_diagram, torus_knot
 from .diagrams import Diagram, PlanarCrossing, diagram_of, is_least, shuffled_down, simplified, views
-from .diagrams.codes import diagram_from_code, is_code
+from .diagrams.codes import check_count, diagram_from_code, is_code
 from .formulas import FORMULAS
 from .planar import drawn, refined
 
@@ -163,7 +163,8 @@ def table_range(word: str) -> list[str]:
 def _own_diagram(name: str) -> Diagram | None:
     """The diagram that a code, a plat or a hard unknot is; None for other names."""
     if (plat := _PLAT.fullmatch(_squeezed(name))) is not None:
-        return plat_diagram(_numbers(plat, name))
+        check_count(len(word := _numbers(plat, name)))
+        return plat_diagram(word)
     if is_code(name) and "#" not in name and not _BRAID.fullmatch(_squeezed(name)):
         return diagram_from_code(name)
     return diagram_of(HARD_UNKNOTS[_HARD[_joined(name)]]) if _joined(name) in _HARD else None

@@ -1,0 +1,153 @@
+"""Figures of diagrams: gaps that nothing touches, the views that are best to see, and files that others read."""
+
+import re
+import shutil
+import subprocess
+import zlib
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve, CurveError, OptionError
+from mobius_flow.core.keys.figure import COLOURS, INKS, LINES, Pen, figure, seen
+from mobius_flow.core.keys.paper import PAPERS
+from mobius_flow.core.knots import HARD_UNKNOTS, KNOTS, knot, smooth_knot
+from mobius_flow.core.knots.diagrams import diagram_of
+from mobius_flow.core.knots.layout import laid_out
+from mobius_flow.core.knots.names import named_diagram
+from scipy.spatial import cKDTree
+
+
+def along(stroke, count=6):
+    """Points on the Bézier curves of a stroke."""
+    p, t = stroke.controls, np.linspace(0.0, 1.0, count)[None, :, None]
+    a, b, c, d = (p[k : len(p) - 3 + k : 3, None] for k in range(4))
+    return ((1 - t) ** 3 * a + 3 * (1 - t) ** 2 * t * b + 3 * (1 - t) * t**2 * c + t**3 * d).reshape(-1, 2)
+
+
+def least_gap(sheet):
+    """The least space between strokes, which have round ends, in widths."""
+    points = [along(stroke) for stroke in sheet.strokes]
+    gaps = [np.inf]
+    for k, stroke in enumerate(sheet.strokes):
+        others = [each for i, each in enumerate(points) if i != k]
+        if others:
+            gaps.append(cKDTree(np.concatenate(others)).query(points[k])[0].min() / stroke.width - 1.0)
+    return min(gaps)
+
+
+NAMES = ("3_1", "6_3", "9_40", "10_1", "L6a4", "L7n1", "goeritz")
+
+
+@pytest.mark.parametrize(
+    "name", [*NAMES, *(pytest.param(name, marks=pytest.mark.slow) for name in KNOTS if name not in ("0_1", *NAMES))]
+)
+def test_nothing_touches_at_gaps(name):
+    diagram = named_diagram(name)
+    sheet = figure([laid_out(diagram)], pen=Pen(size=60.0, width=1.3))
+    assert len(sheet.strokes) == diagram.crossings
+    assert least_gap(sheet) > 0.7 * Pen().gap
+    points = np.concatenate([along(stroke) for stroke in sheet.strokes])
+    assert points.min() > 0.0
+    assert (points < sheet.size).all()
+    assert min(stroke.width for stroke in sheet.strokes) > 0.5
+
+
+def test_views_are_those_of_fewest_crossings_with_room_between():
+    for curve, crossings in ((knot("3_1"), 3), (knot("overhand"), 3), (smooth_knot("4_1"), 4), (knot("hopf"), 2)):
+        (drawing,) = seen([curve])
+        assert len(drawing.passes) == crossings
+        sheet = figure([drawing])
+        assert least_gap(sheet) > 0.7 * Pen().gap
+        assert all(stroke.width == Pen().width for stroke in sheet.strokes)
+
+
+def test_one_view_serves_a_motion_and_one_scale():
+    first = knot("3_1")
+    views = seen([first, first.with_vertices(0.5 * first.vertices)])
+    np.testing.assert_allclose(views[1].curve.vertices, 0.5 * views[0].curve.vertices, atol=1e-9)
+    strokes = figure(views, pen=Pen(columns=2), alike=True).strokes
+    large, small = (np.ptp(np.concatenate([s.points for s in half]), axis=0) for half in (strokes[:3], strokes[3:]))
+    np.testing.assert_allclose(small, 0.5 * large, rtol=0.1)
+
+
+def test_colours_arrows_and_numbers():
+    link = laid_out(named_diagram("L6a4"))
+    sheet = figure([link], ["L6a4"], Pen(arrows=True, numbers=True))
+    assert {stroke.colour for stroke in sheet.strokes} == {head.colour for head in sheet.heads} == set(INKS[:3])
+    assert [label.text for label in sheet.labels] == [*"123456", "L6a4"]
+    ink = cKDTree(np.concatenate([along(stroke) for stroke in sheet.strokes]))
+    assert min(ink.query(label.place)[0] for label in sheet.labels) > 2.5
+    assert {stroke.colour for stroke in figure([link], pen=Pen(colours="black")).strokes} == {INKS[0]}
+    assert len({stroke.colour for stroke in figure([link], pen=Pen(colours="along")).strokes}) > 40
+
+
+def test_dense_diagrams_have_thin_strands():
+    sheet = figure([laid_out(diagram_of(HARD_UNKNOTS["thistlethwaite"]))], pen=Pen(size=30.0))
+    assert 0.05 < sheet.strokes[0].width < 1.5
+    assert least_gap(sheet) > 0.7 * Pen().gap
+
+
+SHEET = figure(
+    [laid_out(named_diagram(name)) for name in ("3_1", "L2a1")],
+    ["3_1#m3_1 <&>", "50 % $x^2_1"],
+    Pen(arrows=True, numbers=True, line="dashed", colours="along"),
+)
+
+
+def test_svg_is_well_formed():
+    tree = ElementTree.fromstring(PAPERS[".svg"](SHEET))
+    paths = [each for each in tree.iter() if each.tag.endswith("path")]
+    assert len(paths) == len(SHEET.strokes) + len(SHEET.heads)
+    texts = ["".join(each.itertext()) for each in tree.iter() if each.tag.endswith("text")]
+    assert texts == ["1", "2", "3", "31#m31 <&>", "1", "2", "50 % $x^21"]
+
+
+def test_pdf_has_its_objects_where_it_says():
+    made = PAPERS[".pdf"](SHEET)
+    start = int(re.search(rb"startxref\n(\d+)\n%%EOF", made)[1])
+    places = [int(line[:10]) for line in made[start:].split(b"\n")[3:] if line.endswith(b"n ")]
+    assert [made[place:].split(b" ")[0] for place in places] == [b"1", b"2", b"3", b"4"]
+    length = int(re.search(rb"/Length (\d+)", made)[1])
+    content = zlib.decompress(made[made.index(b"stream\n") + 7 :][:length]).decode()
+    assert content.count("\nS\n") == len(SHEET.strokes)
+    assert content.count("BT ") == len(SHEET.labels)
+
+
+@pytest.mark.skipif(shutil.which("pdflatex") is None, reason="needs TeX")
+def test_tikz_compiles(tmp_path):
+    (tmp_path / "figure.tex").write_bytes(PAPERS[".tex"](SHEET))
+    page = r"\documentclass{article}\usepackage{tikz}\begin{document}\input{figure}\end{document}"
+    (tmp_path / "page.tex").write_text(page, encoding="utf-8")
+    words = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "page.tex"]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False)
+    assert done.returncode == 0, done.stdout[-2000:]
+
+
+@pytest.mark.parametrize(
+    ("fields", "said"),
+    [
+        ({"size": -1.0}, "size is -1.0"),
+        ({"width": float("nan")}, "width is nan"),
+        ({"colours": "red"}, "colours is 'red'"),
+        ({"line": "wavy"}, "line 'wavy' is unknown"),
+        ({"columns": 0}, "columns is 0"),
+    ],
+)
+def test_bad_pens(fields, said):
+    with pytest.raises((OptionError, CurveError), match=said):
+        Pen(**fields)
+
+
+def test_what_cannot_be_drawn():
+    with pytest.raises(CurveError, match="nothing to draw"):
+        figure([])
+    with pytest.raises(CurveError, match="has dimension 4"):
+        seen([Curve(np.eye(5)[:, :4])])
+    with pytest.raises(CurveError, match="too near to each other"):
+        figure([laid_out(named_diagram("10_1"))], pen=Pen(gap=100.0))
+
+
+def test_words_of_the_command_line_are_those_of_pens():
+    assert Pen().colours in COLOURS
+    assert Pen().line in LINES
