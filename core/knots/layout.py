@@ -1,11 +1,13 @@
 """A smooth drawing of a link diagram: charged elastic strands, pinned together at crossings, come to rest in the plane.
 
 With a parameter s along the strands, their energy is ½ ∫ |x′|² + 0.15 ∫ |x″|² + ∬ |x(s) − x(t)|⁻⁴ over pairs of points
-round the same face.  It falls in the metric of the first two terms, from the drawing on a grid, by steps in which the
-diagram stays: edges cross nowhere, and come to crossings in the same order round.  Lengths in the parameter are the
-grid's at first, then equal for all edges, which lets the drawing find its symmetry, and in the end those of the
-drawing itself, as if strands were rods under even tension.
+round the same face.  It falls from the drawing on a grid, in the metric of the first two terms; where it has come to
+rest is taken if the diagram has stayed: edges cross nowhere, and come to crossings in the same order round.  Lengths in
+the parameter are the grid's at first, then equal for all edges, which lets the drawing find its symmetry, and in the
+end those of the drawing itself, as if strands were rods under even tension.
 """
+
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
@@ -16,6 +18,7 @@ from ..base import CurveError, FloatArray, IntArray
 from ..curve import Curve, arc_lengths
 from ..curve.refine import at_shares
 from .diagrams import Diagram
+from .diagrams.projection import plane_crossings
 from .drawings import Drawing
 from .planar import grid_drawing
 
@@ -76,30 +79,64 @@ def relaxed(piece: Diagram) -> tuple[FloatArray, list[IntArray]]:
         x = np.empty((piece.crossings + sum(map(len, new)), 2))
         for edge, path in zip(edges, paths, strict=True):
             x[edge] = at_shares(path, False, np.linspace(0.0, 1.0, len(edge)))
-        x = _at_rest(piece, x, edges, spans / spans.mean(), tolerance)
-        paths = [x[edge] for edge in edges]
+        moved = at_rest(charged(piece, edges, spans / spans.mean()), x, tolerance)
+        if not _is_drawing(piece, moved, edges):
+            break
+        x, paths = moved, [moved[edge] for edge in edges]
     return x, edges
 
 
-def _at_rest(piece: Diagram, x: FloatArray, edges: list[IntArray], spans: FloatArray, tolerance: float) -> FloatArray:
-    """Let the energy fall until its derivative's square is a part ``tolerance`` of it; spans are parameter lengths."""
+def _is_drawing(piece: Diagram, x: FloatArray, edges: list[IntArray]) -> bool:
+    """Whether edges cross nowhere, and come to crossings in the order of the diagram."""
+    rest = iter(edges)
+    parts = [x[np.concatenate([next(rest)[:-1] for _ in part])] for part in piece.passes]
+    curve = Curve.from_components(parts)
+    around = np.array([[edges[dart // 2][-2 if dart % 2 else 1] for dart in darts] for darts in piece.darts])
+    leave = x[around] - x[: len(around), None]
+    angles = np.arctan2(leave[..., 1], leave[..., 0])
+    turns = (np.roll(angles, -1, axis=1) - angles) % (2.0 * np.pi)
+    ends = 1e-6  # of segments: they meet at crossings
+    crossing = plane_crossings(curve.mesh, curve.vertices, -ends).turn
+    return bool(not len(crossing) and (turns.sum(axis=1) < 6.5).all() and turns.min() > 0.1)
+
+
+class ChargedStrands(NamedTuple):
+    """The energy of strands x, shape (n, 2): ½ x·A x + Σ w |xᵢ − xⱼ|⁻⁴."""
+
+    elastic: Any  # A, sparse
+    mass: FloatArray  # parameter length at each vertex
+    pairs: IntArray  # i and j, shape (2, k)
+
+    def energy(self, x: FloatArray) -> float:
+        (i, j), mass = self.pairs, self.mass
+        repulsion = mass[i] * mass[j] * np.square(x[i] - x[j]).sum(axis=1) ** -2
+        return float(0.5 * np.sum(x * (self.elastic @ x)) + repulsion.sum())
+
+    def derivative(self, x: FloatArray) -> FloatArray:
+        (i, j), mass = self.pairs, self.mass
+        apart = x[i] - x[j]
+        force = (-4.0 * mass[i] * mass[j] * np.square(apart).sum(axis=1) ** -3)[:, None] * apart
+        push = [np.bincount(i, f, len(x)) - np.bincount(j, f, len(x)) for f in force.T]
+        return np.asarray(self.elastic @ x + np.column_stack(push))
+
+
+def charged(piece: Diagram, edges: list[IntArray], spans: FloatArray) -> ChargedStrands:
+    """The strands of a connected diagram with these vertices, and lengths in the parameter, on each of its edges."""
     sizes = np.array([len(edge) - 1 for edge in edges])
     ends = np.cumsum(sizes)
-    step = np.repeat(spans / sizes, sizes)
+    step, count = np.repeat(spans / sizes, sizes), piece.crossings + int((sizes - 1).sum())
     tails, heads = (np.concatenate([edge[part] for edge in edges]) for part in (slice(None, -1), slice(1, None)))
     after = np.arange(len(tails)) + 1
     after[ends - 1] = (ends - sizes)[piece.next]
     between = 0.5 * (step + step[after])
     rows = np.arange(len(tails))
     entries = np.concatenate([1.0 / step, -1.0 / step])
-    slope = sp.coo_array((entries, (np.tile(rows, 2), np.concatenate([heads, tails]))), (len(rows), len(x))).tocsr()
+    slope = sp.coo_array((entries, (np.tile(rows, 2), np.concatenate([heads, tails]))), (len(rows), count)).tocsr()
     bend = sp.diags_array(1.0 / between) @ (slope[after] - slope)
     elastic = slope.T @ sp.diags_array(step) @ slope + 0.3 * bend.T @ sp.diags_array(between) @ bend
-    mass = 0.5 * (np.bincount(tails, step, len(x)) + np.bincount(heads, step, len(x)))
+    mass = 0.5 * (np.bincount(tails, step) + np.bincount(heads, step))
     mass[: piece.crossings] *= 0.5  # which are on two strands, but one place
-    solve = splu((elastic + 0.01 * sp.diags_array(mass)).tocsc()).solve
-    # pairs of vertices round each face that are not next to each other, and of the segments after them
-    pairs, segments = [], []
+    pairs = []  # of vertices round each face that are not next to each other
     for face in piece.faces:
         ways = [(edges[dart // 2][:: -1 if dart % 2 else 1], spans[dart // 2]) for dart in face]
         walk = np.concatenate([way[:-1] for way, _ in ways])
@@ -108,39 +145,17 @@ def _at_rest(piece: Diagram, x: FloatArray, edges: list[IntArray], spans: FloatA
         apart = at[j] - at[i]
         far = np.minimum(apart, at[-1] - apart) > 0.16
         pairs.append(np.stack([walk[i], walk[j]])[:, far & (walk[i] != walk[j])])
-        ahead = np.roll(walk, -1)
-        four = np.stack([walk[i], ahead[i], walk[j], ahead[j]])
-        segments.append(four[:, (four[:2, None] != four[None, 2:]).all(axis=(0, 1))])
-    (i, j), (a, b, c, d) = np.concatenate(pairs, axis=1), np.concatenate(segments, axis=1)
-    weight = mass[i] * mass[j]
-    around = np.array([[edges[dart // 2][-2 if dart % 2 else 1] for dart in darts] for darts in piece.darts])
+    return ChargedStrands(elastic, mass, np.concatenate(pairs, axis=1))
 
-    def energy(x: FloatArray) -> float:
-        return float(0.5 * np.sum(x * (elastic @ x)) + weight @ np.square(x[i] - x[j]).sum(axis=1) ** -2)
 
-    def gradient(x: FloatArray) -> FloatArray:
-        apart = x[i] - x[j]
-        force = (-4.0 * weight * np.square(apart).sum(axis=1) ** -3)[:, None] * apart
-        push = [np.bincount(i, f, len(x)) - np.bincount(j, f, len(x)) for f in force.T]
-        return np.asarray(elastic @ x + np.column_stack(push))
-
-    def side(p: FloatArray, q: FloatArray, r: FloatArray) -> FloatArray:
-        (ux, uy), (vx, vy) = (q - p).T, (r - p).T
-        return np.asarray(ux * vy - uy * vx)
-
-    def is_kept(x: FloatArray) -> bool:
-        p, q, r, s = x[a], x[b], x[c], x[d]
-        crossing = (side(p, q, r) * side(p, q, s) < 0.0) & (side(r, s, p) * side(r, s, q) < 0.0)
-        leave = x[around] - x[: len(around), None]
-        angles = np.arctan2(leave[..., 1], leave[..., 0])
-        turns = (np.roll(angles, -1, axis=1) - angles) % (2.0 * np.pi)
-        return bool(not crossing.any() and (turns.sum(axis=1) < 6.5).all() and turns.min() > 0.3)
-
-    stretch = 0.5 * float(np.sum(x * (elastic @ x)))
+def at_rest(strands: ChargedStrands, x: FloatArray, tolerance: float) -> FloatArray:
+    """Let the energy fall until the square of its derivative is a part ``tolerance`` of it."""
+    energy, solve = strands.energy, splu((strands.elastic + 0.01 * sp.diags_array(strands.mass)).tocsc()).solve
+    stretch = 0.5 * float(np.sum(x * (strands.elastic @ x)))
     x = x * (2.0 * (energy(x) - stretch) / stretch) ** (1.0 / 6.0)  # the best scale
     value, size, way, last, before = energy(x), 0.1, np.zeros_like(x), np.zeros_like(x), 1.0
     for _ in range(1000):  # conjugate gradients (Polak and Ribière 1969)
-        derivative = gradient(x)
+        derivative = strands.derivative(x)
         steepest = -solve(derivative)
         norm = -float(np.sum(derivative * steepest))
         if norm < tolerance * value:
@@ -149,11 +164,7 @@ def _at_rest(piece: Diagram, x: FloatArray, edges: list[IntArray], spans: FloatA
         if -np.sum(derivative * way) < 0.1 * norm:
             way = steepest
         last, before, fall, reach = steepest, norm, float(np.sum(derivative * way)), float(np.abs(way).max())
-        while (
-            size * reach > 0.3
-            or not (lower := energy(trial := x + size * way)) <= value + 1e-4 * size * fall
-            or not is_kept(trial)
-        ):
+        while size * reach > 0.3 or not (lower := energy(trial := x + size * way)) <= value + 1e-4 * size * fall:
             size *= 0.5
             if size < 1e-9:
                 return x

@@ -13,6 +13,7 @@ from mobius_flow.core.keys.figure import COLOURS, INKS, LINES, Pen, figure, seen
 from mobius_flow.core.keys.paper import PAPERS
 from mobius_flow.core.knots import HARD_UNKNOTS, KNOTS, knot, smooth_knot
 from mobius_flow.core.knots.diagrams import diagram_of
+from mobius_flow.core.knots.drawings import Drawing
 from mobius_flow.core.knots.layout import laid_out
 from mobius_flow.core.knots.names import named_diagram
 from scipy.spatial import cKDTree
@@ -85,6 +86,20 @@ def test_colours_arrows_and_numbers():
 def test_dense_diagrams_have_thin_strands():
     sheet = figure([laid_out(diagram_of(HARD_UNKNOTS["thistlethwaite"]))], pen=Pen(size=30.0))
     assert 0.05 < sheet.strokes[0].width < 1.5
+    assert least_gap(sheet) > 0.7 * Pen().gap
+
+
+def ellipses(*axes):
+    angle = 2.0 * np.pi * np.arange(200) / 200
+    return Curve.from_components(
+        [np.column_stack([a * np.cos(angle), b * np.sin(angle), c * np.sin(2 * angle)]) for a, b, c in axes]
+    )
+
+
+@pytest.mark.parametrize("axes", [((1.0, 0.5, 0.1), (0.9, 0.55, -0.1)), ((1.0, 1.0, 0.0), (0.96, 0.96, 0.0))])
+def test_strands_that_cross_at_small_angles_or_run_side_by_side(axes):
+    sheet = figure([Drawing.seen(ellipses(*axes))])
+    assert sheet.strokes[0].width < Pen().width
     assert least_gap(sheet) > 0.7 * Pen().gap
 
 

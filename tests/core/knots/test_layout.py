@@ -5,12 +5,13 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from mobius_flow.core import CurveError
-from mobius_flow.core.knots import HARD_UNKNOTS, KNOTS
+from mobius_flow.core.knots import HARD_UNKNOTS, KNOTS, layout
 from mobius_flow.core.knots.braids import braid_diagram
 from mobius_flow.core.knots.diagrams import Diagram, diagram_of
 from mobius_flow.core.knots.diagrams.projection import plane_crossings
 from mobius_flow.core.knots.layout import laid_out, upright
 from mobius_flow.core.knots.names import named_diagram
+from taylor import taylor_slope
 
 LOOP = Diagram((((0, True), (0, False)),), (1,))
 DIAGRAMS = {
@@ -52,6 +53,34 @@ def test_a_layout_has_the_crossings_of_its_diagram_and_no_others(diagram):
     signs = {c + 100 * k: sign for k, (_, own) in enumerate(whole) for c, sign in enumerate(own)}
     assert read_off(drawing) == numbered(passes, signs)
     assert not len(plane_crossings(drawing.curve.mesh, drawing.curve.vertices, -1e-6).turn)
+
+
+@pytest.mark.parametrize("spoilt", [lambda x: x * [-1.0, 1.0], lambda x: np.random.default_rng(7).normal(size=x.shape)])
+def test_what_would_be_another_diagram_is_not_taken(spoilt, monkeypatch):
+    """A mirror image, or edges that cross: the drawing before it is kept, at worst that on the grid."""
+    right, diagram = layout.at_rest, named_diagram("4_1")
+    calls = []
+    for first in (0, 2):
+        calls.clear()
+        monkeypatch.setattr(
+            layout, "at_rest", lambda *a, k=first: (calls.append(1), right(*a) if len(calls) <= k else spoilt(a[1]))[1]
+        )
+        assert read_off(laid_out(diagram)) == numbered(diagram.passes, diagram.signs)
+        assert len(calls) == first + 1
+
+
+def test_the_derivative_of_the_energy():
+    diagram = named_diagram("4_1")
+    x, edges = layout.relaxed(diagram)
+    strands = layout.charged(diagram, edges, np.linspace(0.7, 1.3, len(edges)))
+    way = np.random.default_rng(11).normal(size=x.shape)
+    slope = taylor_slope(
+        lambda t: strands.energy(x + t * way), [strands.energy(x), np.sum(strands.derivative(x) * way)], largest=1e-3
+    )
+    assert slope == pytest.approx(2.0, abs=0.1)
+    assert np.sum(strands.derivative(layout.at_rest(strands, x, 1e-12)) ** 2) < 1e-6 * np.sum(
+        strands.derivative(x) ** 2
+    )
 
 
 def test_strands_are_smooth_and_even_and_cross_at_right_angles():
