@@ -207,7 +207,7 @@ def _said(options: argparse.Namespace, result: Result, start: Iterate) -> str:
     if not following and Path(options.output).suffix.lower() in written_formats():
         following = ["info", options.output]
     certified = "no contact on the whole path" if result.certified else "NO: contact is not ruled out everywhere"
-    if result.certified and result.last.radius and result.last.radius == start.radius:
+    if result.certified and result.last.radius:
         radii = ", ".join(f"{radius:.4g}" for radius in dict.fromkeys(result.last.radius))
         certified = f"a rope of radius {radii} on the whole path"
     rows = [

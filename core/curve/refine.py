@@ -118,8 +118,10 @@ def apportion(wanted: FloatArray, total: int) -> IntArray:
 
 
 def refined_alike(x: Curve, y: Curve, begins: tuple[float, ...]) -> tuple[Curve, Curve]:
-    """Two curves with the same components on one mesh, vertices at equal shares of length.
+    """Two curves with the same components on one mesh, vertices at nearly equal shares of length.
 
+    Vertices that are near to each other become one.  Others become points in the middle of the other curve's edges: the
+    arcs of a rope as thick as bends allow leave no room for them elsewhere.
     ``begins``: the share of the length of each component of ``y`` at which the first vertex of ``x`` lies.
     """
     parts: tuple[list[FloatArray], list[FloatArray]] = [], []
@@ -129,19 +131,23 @@ def refined_alike(x: Curve, y: Curve, begins: tuple[float, ...]) -> tuple[Curve,
         if closed:
             shares[0] = (shares[0] + begin + near) % 1.0 - near  # so that the first of all has a partner to merge with
         events = sorted((share, which, k) for which in (0, 1) for k, share in enumerate(shares[which].tolist()))
-        nodes: list[dict[int, int]] = []  # the vertex of each curve, if any, at each node
-        places: list[float] = []
+        nodes: list[tuple[list[float], list[int]]] = []  # share and vertex of each curve at each node, −1 for no vertex
         for share, which, k in events:
-            if nodes and which not in nodes[-1] and len(nodes[-1]) == 1 and share - places[-1] < near:
-                nodes[-1][which] = k
+            if nodes and nodes[-1][1][which] < 0 <= nodes[-1][1][1 - which] and share - nodes[-1][0][1 - which] < near:
+                nodes[-1][0][which], nodes[-1][1][which] = share, k
             else:
-                nodes.append({which: k})
-                places.append(share)
+                nodes.append(([share, share], [k if each == which else -1 for each in (0, 1)]))
+        places, vertices = (np.array(each).T for each in zip(*nodes, strict=True))
         for which, (curve, first) in enumerate(((x, begin), (y, 0.0))):
-            part, own = curve.components[component], np.array(places)
+            part, own, has = curve.components[component], places[which], vertices[which] >= 0
+            there, k = np.flatnonzero(has), np.cumsum(has)
+            # around each node are two vertices, the k-th and the next, perhaps of the round before or after
+            node = np.concatenate([there[-1:] - len(has), there, there[:1] + len(has)])
+            share = np.concatenate([own[there[-1:]] - 1.0, own[there], own[there[:1]] + 1.0])
+            along = 0.45 + 0.1 * (np.arange(len(has)) - node[k]) / (node[k + 1] - node[k])
+            own = np.where(has, own, share[k] + along * (share[k + 1] - share[k]))
             points = at_shares(part, closed, (own - first) % 1.0 if closed else own)
-            has = [node for node, vertices in enumerate(nodes) if which in vertices]
-            points[has] = part[[nodes[node][which] for node in has]]
+            points[has] = part[vertices[which][has]]
             parts[which].append(points)
     mesh = Mesh(tuple(map(len, parts[0])), x.mesh.closed)
     return Curve(np.concatenate(parts[0]), mesh), Curve(np.concatenate(parts[1]), mesh)

@@ -1,51 +1,77 @@
-"""Where two relaxed curves meet: Möbius images of both, aligned, and a straight way from one to the other.
+"""Where two relaxed curves meet: Möbius images of both, aligned, and a straight way from one to the other, as ropes.
 
 All Möbius images of a curve have the same energy.  The images that bend least are few, so that curves at the same
 minimum have one in common, up to a similarity.
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
-from itertools import pairwise, product
+from dataclasses import dataclass, replace
+from functools import cache
+from itertools import islice, pairwise, product
+from typing import ClassVar
 
 import numpy as np
 
 from ..base.types import FloatArray
-from ..collision import is_free, survives_rounding, walk
+from ..collision import is_rope, survives_rounding, walk
 from ..curve import Alignment, Curve, Freedom, Mesh, Obstacle, alignments, bending, refined_alike
 from ..driver.moves.balance import MoebiusImages, least_bending, turn
 from ..io.trajectory import Iterate
 
+Radius = tuple[float, ...] | None  # of each component as a rope; None if the curve is none
 
-def images(end: Iterate, obstacles: Sequence[Obstacle]) -> list[list[Iterate]]:
-    """The iterates from a curve at rest to each of its Möbius images that bend least and are reached; itself first."""
-    curve, ways = end.curve, [[end]]
+
+def min_radius(one: Radius, other: Radius) -> Radius:
+    return None if one is None or other is None else tuple(map(min, one, other))
+
+
+@dataclass(frozen=True, eq=False)
+class Image:
+    """A Möbius image of a curve at rest, or that itself, with motions there: one for each sign of the map, if any."""
+
+    end: Iterate
+    curve: Curve
+    motions: tuple[Callable[[float], FloatArray], ...] = ()  # from a share of the way to vertices
+    angle: float = 0.0  # by which half the sphere turns
+    step: ClassVar[float] = 0.02  # of that in a leg
+
+    def way(self, most: float) -> list[Iterate] | None:
+        """The iterates from the curve at rest as a rope of at most that radius, 0 for none; None if none is proved."""
+        radius = self.end.radius if most else None
+        thin = replace(self.end, radius=radius and tuple(min(each, most) for each in radius))
+        proved = (prove_legs(thin, self.end.curve, at, self.step / self.angle) for at in self.motions)
+        legs = next((legs for legs in proved if legs), None)
+        return [thin, *follow(thin, legs or ())] if legs or not self.motions else None
+
+
+def images(end: Iterate, obstacles: Sequence[Obstacle]) -> list[Image]:
+    """A curve at rest, and its Möbius images that bend least."""
+    curve, made = end.curve, [Image(end, end.curve)]
     if curve.mesh.all_closed and not obstacles:
         found = MoebiusImages(curve, curve.edge_lengths)
+
+        def motion(q: FloatArray) -> tuple[float, Callable[[float], FloatArray]]:
+            angle, map_of = turn(q)
+            return angle, lambda share: found.at(map_of(share * angle)).vertices
+
         # maps that rotate the sphere by more than 0.002 radians
         maps = [q for q in least_bending(found, curve.dimension) if np.linalg.norm(q[1:]) > 1e-3]
         for q in sorted(maps, key=lambda q: bending(found.at(q)))[:3]:
-            # each map with both its signs: the pole may come from either side
-            legs = _turn_sphere(curve, found, q) or _turn_sphere(curve, found, -q)
-            ways += [[end, *follow(end, legs)]] if legs else []
-    return ways
-
-
-def _turn_sphere(curve: Curve, found: MoebiusImages, q: FloatArray) -> list[FloatArray] | None:
-    """Ends of proved legs to the image of q; None if strands interfere."""
-    angle, map_of = turn(q)
-    return prove_legs(curve, lambda share: found.at(map_of(share * angle)).vertices, 0.02 / angle)
+            (angle, there), (_, around) = motion(q), motion(-q)  # the pole may come from either side
+            made.append(Image(end, curve.with_vertices(there(1.0)), (there, around), angle))
+    return made
 
 
 def meeting(
-    ours: Sequence[list[Iterate]], theirs: Sequence[list[Iterate]], obstacles: Sequence[Obstacle]
+    ours: Sequence[Image], theirs: Sequence[Image], obstacles: Sequence[Obstacle], gives_way: bool
 ) -> tuple[Alignment, list[Iterate] | None]:
-    """How one curve aligns with another, by the ways to their images, and the iterates to the other, renamed to match.
+    """How one curve aligns with another, by an image of each, and the iterates to the other, renamed to match.
 
-    Without a way that is free of contact the iterates are None, and the alignment is the best one.
+    The way is that of the thinner rope, or of one that gives way.  Without any the iterates are None, and the alignment
+    is the best one.
     """
     # similarities that may be tried: open components are held at their ends, and walls may be in the way
-    curve = ours[0][0].curve
+    curve = ours[0].end.curve
     tries = 8  # to join two curves, the best alignment first
     still = Freedom(np.zeros(3), fixed=np.zeros(3))
     freedoms: tuple[Freedom, ...] = (still,)
@@ -56,23 +82,31 @@ def meeting(
         start, end = curve.vertices[[0, -1]]
         freedoms = still, Freedom((end - start) / np.linalg.norm(end - start), fixed=start)
     pairs = [
-        (alignment, way, other)
-        for way, other in product(ours, theirs)
+        (alignment, one, other)
+        for one, other in product(ours, theirs)
         for freedom in freedoms
-        for alignment in alignments(way[-1].curve, other[-1].curve, freedom)[:tries]
+        for alignment in alignments(one.curve, other.curve, freedom)[:tries]
     ]
     # to save a leg of a Möbius map shapes may be further apart by so many radii of gyration
-    pairs.sort(key=lambda each: each[0].cost + 3e-4 * (len(each[1]) + len(each[2])))
-    for alignment, way, other in pairs[:tries]:
-        renamed = [rename(each, alignment) for each in other]
-        joint = _join(way[-1], renamed[-1], alignment, obstacles)
-        if joint is not None:
-            return alignment, [*way[1:], *joint, *run_back(renamed)]
+    pairs.sort(key=lambda each: each[0].cost + 3e-4 / Image.step * (each[1].angle + each[2].angle))
+    way_to = cache(Image.way)
+    thinner = min(max(each[0].end.radius or (0.0,)) for each in (ours, theirs))
+    for share in (1.0, 0.8, 0.6, 0.4, 0.2, 0.0) if gives_way and thinner else (1.0,):
+        reached = (
+            (alignment, way, [rename(each, alignment) for each in back])
+            for alignment, one, other in pairs
+            if (way := way_to(one, share * thinner)) and (back := way_to(other, share * thinner))
+        )
+        for alignment, way, back in islice(reached, tries):
+            radius = min_radius(way[-1].radius, back[-1].radius)
+            x, y = (replace(each[-1], radius=radius) for each in (way, back))
+            if joint := _join(x, y, alignment, obstacles):
+                return alignment, [*way[1:], *joint, *run_back(back)]
     return pairs[0][0], None
 
 
 def _join(x: Iterate, y: Iterate, alignment: Alignment, obstacles: Sequence[Obstacle]) -> list[Iterate] | None:
-    """The iterates from one aligned curve to another, that one included; None if they are not proved free."""
+    """The iterates from one aligned curve to another, that one included; None if they are not proved."""
     curve, ends = x.curve, x.curve.mesh.ends
 
     def turned(share: float) -> FloatArray:
@@ -81,14 +115,14 @@ def _join(x: Iterate, y: Iterate, alignment: Alignment, obstacles: Sequence[Obst
         return moved
 
     longest = 0.2  # radians in a leg
-    turning = prove_legs(curve, turned, longest / max(alignment.angle, longest), obstacles)
+    turning = prove_legs(x, curve, turned, longest / max(alignment.angle, longest), obstacles)
     if turning is None:
         return None
     start, goal = refined_alike(curve.with_vertices(turning[-1]), y.curve, alignment.begins)
     if not all(survives_rounding(each, obstacles) for each in (start, goal)):
         return None
     a, b = start.vertices, goal.vertices
-    legs = prove_legs(start, lambda t: b if t == 1.0 else a + t * (b - a), 0.125, obstacles)
+    legs = prove_legs(x, start, lambda t: b if t == 1.0 else a + t * (b - a), 0.125, obstacles)
     if legs is None:
         return None
     refined = change_mesh(y, start, tuple(start.mesh.ends.ravel().tolist()))
@@ -96,18 +130,21 @@ def _join(x: Iterate, y: Iterate, alignment: Alignment, obstacles: Sequence[Obst
 
 
 def prove_legs(
-    start: Curve, at: Callable[[float], FloatArray], stride: float, obstacles: Sequence[Obstacle] = ()
+    rope: Iterate, start: Curve, at: Callable[[float], FloatArray], stride: float, obstacles: Sequence[Obstacle] = ()
 ) -> list[FloatArray] | None:
-    """Ends of proved legs from a curve along a motion, which maps a share of it to vertices; None if one is not free.
+    """Ends of proved legs from a curve along a motion, which maps a share of it to vertices; None if one is not proved.
 
-    ``stride`` is the largest share of a leg; where legs are not free, they are halved.
+    The curve is a rope as an iterate is.  ``stride`` is the largest share of a leg; those not proved are halved.
     """
-    legs, reached = [start.vertices], 0.0
+    legs, reached, radius = [start.vertices], 0.0, None if rope.radius is None else np.array(rope.radius)
 
     def moved(share: float, stride: float) -> FloatArray | None:
         end = at(min(share + stride, 1.0))
-        return end if is_free(start.mesh, legs[-1], end, obstacles) else None
+        return end if is_rope(start.mesh, legs[-1], end, radius, obstacles) else None
 
+    end = at(1.0)
+    if not is_rope(start.mesh, end, end, radius, obstacles):  # as is soon told
+        return None
     for share, end in walk(moved, 1.0, stride, 5e-5):
         reached = share
         legs.append(end)
@@ -145,4 +182,5 @@ def rename(iterate: Iterate, alignment: Alignment) -> Iterate:
     closed = tuple(mesh.closed[k] for k in alignment.order)
     curve = Curve(iterate.curve.vertices[names], Mesh(sizes, closed))
     pins = tuple(np.flatnonzero(np.isin(names, iterate.pins)).tolist())
-    return replace(iterate, curve=curve, path=tuple(leg[names] for leg in iterate.path), pins=pins)
+    radius = None if iterate.radius is None else tuple(iterate.radius[k] for k in alignment.order)
+    return replace(iterate, curve=curve, path=tuple(leg[names] for leg in iterate.path), pins=pins, radius=radius)

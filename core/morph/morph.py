@@ -19,7 +19,7 @@ from ..knots import knot_type
 from ..knots.diagrams import Diagram, alexander, jones, signature, unsigned_linking
 from ..knots.exterior import floer
 from ..knots.knot_type import bracket_key
-from .meeting import change_mesh, images, meeting, rename, run_back
+from .meeting import Radius, change_mesh, images, meeting, min_radius, rename, run_back
 
 NAMES = ("the first curve", "the second curve")
 
@@ -45,15 +45,14 @@ def morph(
     there the way of ``a`` is joined to that of ``b``, run backwards.  The first iterate is ``a`` and the last one
     ``b``, bit for bit, with its vertices in their order, unless the shapes match only with components in another order
     or run through in opposite directions, which the outcome then says.  Open components are held at their ends, which
-    are in the same places in both.  Both avoid the obstacles of ``a``.
+    are in the same places in both.  Both avoid the obstacles of ``a``.  The curve is a rope all along, as thick as the
+    thinner of both; it gives way, and the outcome says so, unless the options give a radius.
 
     ``callback`` gets every iterate; a `Trajectory` of them all is what `verify` checks.  Raises NoMotionError if
     invariants say that there is no way, or none was found; CurveError or OptionError if the curves cannot be relaxed,
     or do not go together.
     """
     task, wanted = Task.of(a), options or RelaxOptions()
-    if not isinstance(wanted.radius, str):
-        raise OptionError("radius is kept by relaxations, but not by morphs; leave it out")
     return finish(morphing((task, Task.of(b)), wanted, NAMES), task, callback)
 
 
@@ -88,7 +87,7 @@ def moving(tasks: Sequence[Task], options: RelaxOptions, names: Sequence[str]) -
         if (a.vertices[a.mesh.ends] != b.vertices[b.mesh.ends]).any():
             places = f"open components begin or end in other places in {one} than in {other}"
             raise CurveError(f"{places}; move their ends together")
-    alone = replace(options, time_limit=None, balance=False, hops=0, radius="none")
+    alone = replace(options, time_limit=None, balance=False, hops=0)
     ways = [_Way(*each, tasks[0], alone) for each in zip(names, tasks, strict=True)]
     work = BLAS.bounding(_number(_chain(ways, alone, options.hops)))
     if options.time_limit is None:
@@ -98,7 +97,7 @@ def moving(tasks: Sequence[Task], options: RelaxOptions, names: Sequence[str]) -
 
 def _chain(ways: "Sequence[_Way]", options: RelaxOptions, hops: int) -> Relaxation:
     """The first way, what joins it to the second one, and that one backwards; so on from there."""
-    found: list[Alignment] = []
+    found, gives_way = list[Alignment](), isinstance(options.radius, str)
     yield from ways[0].iterates
     yield from ways[0].relaxed()
     for first, second in pairwise(ways):
@@ -106,7 +105,7 @@ def _chain(ways: "Sequence[_Way]", options: RelaxOptions, hops: int) -> Relaxati
         deque(second.relaxed(), maxlen=0)
         pair, obstacles = (first, second), first.task.obstacles
         shapes = [images(each.end, obstacles) for each in pair]
-        alignment, joint = meeting(shapes[0], shapes[1], obstacles)
+        alignment, joint = meeting(shapes[0], shapes[1], obstacles, gives_way)
         # coarse meshes may keep them apart: both go on on equally fine ones, the one of higher energy first, and hop
         higher = int(second.end.energy > first.end.energy)
         fine = replace(options, mesh="fixed", untangle="never", vertices=max(len(each.end.curve) for each in pair))
@@ -116,12 +115,12 @@ def _chain(ways: "Sequence[_Way]", options: RelaxOptions, hops: int) -> Relaxati
                 yield from further if k == 0 else ()
                 deque(further, maxlen=0)
                 shapes[k] = images(pair[k].end, obstacles)
-                alignment, joint = meeting(shapes[0], shapes[1], obstacles)
+                alignment, joint = meeting(shapes[0], shapes[1], obstacles, gives_way)
         if joint is None:
             apart = (
                 "no motion was found, though no invariant tells {one} and {other} apart: they come to rest at energies "
-                "{a:.6g} and {b:.6g}, in shapes that differ by {distance:.2g} times their size; more hops, or the term "
-                "bending=0.1, may lead both to the same shape"
+                "{a:.6g} and {b:.6g}, in shapes that differ by {distance:.2g} times their size; more hops, a thinner "
+                "rope, or the term bending=0.1, may lead both to the same shape"
             )
             facts = {"one": first.name, "other": second.name, "a": first.end.energy, "b": second.end.energy}
             raise NoMotionError(Message(apart, **facts, distance=alignment.distance))
@@ -131,19 +130,29 @@ def _chain(ways: "Sequence[_Way]", options: RelaxOptions, hops: int) -> Relaxati
         found.append(alignment)
     met = "became the other curve: relaxed shapes met, {distance:.2g} times their size apart"
     outcome = Outcome(Status.CONVERGED, (Message(met, distance=max(each.distance for each in found)),))
-    if all(each.as_given for each in found):
-        return outcome
-    return outcome.adding("in the end components have another order or direction than they were given in")
+    if not all(each.as_given for each in found):
+        outcome = outcome.adding("in the end components have another order or direction than they were given in")
+    threads = [each.name for each in ways if each.iterates[0].radius is None and options.radius == "keep"]
+    return outcome.adding("{name} is no rope, as a corner is too sharp", name=threads[0]) if threads else outcome
 
 
 def _number(work: Relaxation) -> Relaxation:
-    """The iterates of several runs as those of one."""
-    run, certified = WithOutcome(work), True
+    """The iterates of several runs as those of one rope, the thinnest so far; the outcome says if it gave way."""
+    run, certified, ends, thinnest = WithOutcome(work), True, list[Radius](), None
     for index, iterate in enumerate(run):
         certified &= iterate.certified
-        yield replace(iterate, index=index, certified=certified, strand_moves=None)
+        ends = [ends[0] if ends else iterate.radius, iterate.radius]
+        thinnest = min_radius(thinnest, iterate.radius) if index else iterate.radius
+        yield replace(iterate, index=index, certified=certified, strand_moves=None, radius=thinnest)
     assert run.outcome is not None, "the loop is through"
-    return run.outcome
+    one, other = ends
+    if one is None or other is None:
+        return run.outcome
+    if thinnest is None:
+        return run.outcome.adding("no way was found for a rope, only for a thread")
+    start, end = min(one + other), min(thinnest)
+    told = "the rope gave way from radius {start:.3g} to {end:.3g}, as it was in its own way"
+    return run.outcome if end == start else run.outcome.adding(told, start=start, end=end)
 
 
 class _Way:

@@ -27,7 +27,7 @@ def test_a_motion_is_written_as_relax_writes_one(curves, tmp_path, run):
     status, _, said = run("morph", a, b, outputs[0], "--report", outputs[1], "--trajectory", outputs[2], *QUICK)
     assert status == 0
     assert "met" in said
-    assert "no contact on the whole path" in said
+    assert "a rope of radius" in said
     assert (read_curve(outputs[0]).vertices == read_curve(b).vertices).all()
     assert verify(outputs[2]).accepted
     report = json.loads(outputs[1].read_text(encoding="utf-8"))

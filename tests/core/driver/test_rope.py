@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, CurveError, Obstacle, OptionError, RelaxOptions, Task, minimize, morph
+from mobius_flow.core import Curve, CurveError, Obstacle, OptionError, RelaxOptions, Task, minimize
 from mobius_flow.core.collision import Contact, is_rope, thickness
 from mobius_flow.core.curve.measures import bending_radii
 from mobius_flow.core.descent import NoStep, Step
@@ -187,11 +187,6 @@ def test_what_is_no_radius(radius: object) -> None:
 
 def test_strands_of_a_rope_move_as_its_radius_allows() -> None:
     assert kept(Task.of(knot("goeritz")), radius="keep", untangle="always", max_iterations=1) > 0.89
-
-
-def test_morphs_keep_no_radius_yet() -> None:
-    with pytest.raises(OptionError, match="not by morphs"):
-        morph(knot("3_1"), knot("3_1"), RelaxOptions(radius=0.1))
 
 
 def test_no_rope_is_thicker_for_its_length_than_a_hopf_links() -> None:

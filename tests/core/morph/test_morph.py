@@ -2,6 +2,7 @@
 
 import sys
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -16,15 +17,19 @@ from mobius_flow.core import (
     RelaxOptions,
     Status,
     Task,
+    minimize,
     morph,
     relax,
 )
 from mobius_flow.core.knots import knot, overhand, smooth_knot
 from mobius_flow.core.morph import morphing
-from mobius_flow.core.morph.meeting import meeting, run_back
+from mobius_flow.core.morph.meeting import meeting, prove_legs, run_back
 from tasks import check
 
 QUICK = RelaxOptions(tolerance=1e-3, mesh="fixed", untangle="never")
+COARSE = replace(QUICK, vertices=60)
+SQUARE = [[0.0, 0], [1, 0], [1, 1], [0, 1]]
+LARGER = Curve(3.0 + 1.1 * np.array(SQUARE))
 RECTANGLE = [[0.0, 0, 0], [3, 0, 0], [3, 1, 0], [0, 1, 0]]
 ZIGZAG = [[9.0, 9, 9], [10, 9, 9.5], [11, 9, 9], [11, 11, 8.5], [10, 10, 8], [9, 11, 9]]
 FAR = np.array([50.0, -20.0, 7.0])
@@ -121,7 +126,7 @@ def test_where_shapes_do_not_meet_both_go_on_with_equal_meshes_and_then_hop(miss
     module, asked = sys.modules["mobius_flow.core.morph.morph"], []
 
     def met(*shapes):
-        asked.append([len(ways[0][0].curve) for ways in shapes[:2]])
+        asked.append([len(found[0].end.curve) for found in shapes[:2]])
         alignment, joint = meeting(*shapes)
         return alignment, joint if len(asked) > misses else None
 
@@ -132,6 +137,56 @@ def test_where_shapes_do_not_meet_both_go_on_with_equal_meshes_and_then_hop(miss
     assert asked[0][0] < asked[0][1] == 300
     assert asked[2:] == [[300, 300]] * (misses - 1)
     assert np.array_equal(result.curve.vertices, knot("4_1", 300).vertices)
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "radius", "kept"),
+    [
+        (knot("4_1", 50), moved(knot("4_1", 60), 0.8), "keep", True),
+        (knot("L2a1", 40), moved(knot("L2a1", 50), 0.8), (0.1, 0.05), True),
+        (Curve(SQUARE), LARGER, "keep", True),
+        (knot("3_1", 40), moved(knot("3_1", 50), 0.2), "keep", False),
+    ],
+    ids=["knot", "link", "plane", "in its own way"],
+)
+def test_it_is_a_rope_as_thick_as_the_thinner_end(a, b, radius, kept):
+    """What gives way on one of the ways says so; legs are those of a rope for the independent check, too."""
+    result, iterates, verdict = proved(a, b, replace(COARSE, radius=radius))
+    ends = [minimize(each, replace(COARSE, radius=radius, max_iterations=0)).last.radius for each in (a, b)]
+    assert verdict.radius == result.last.radius
+    thinner = tuple(map(min, *ends))
+    if kept:
+        assert result.last.radius == pytest.approx(thinner)
+    else:
+        assert result.last.radius < thinner
+        assert "the rope gave way from radius" in result.message
+    assert all(one.radius >= other.radius for one, other in pairwise(iterates))
+
+
+@pytest.mark.parametrize(("share", "said"), [(0.8, "the rope gave way"), (0.0, "no way was found for a rope")])
+def test_where_no_way_is_found_for_the_rope_it_gives_way(share, said, monkeypatch):
+    """A radius that is asked for does not."""
+    asked = [0.0]
+
+    def refused(rope, *given):
+        radius = 0.0 if rope.radius is None else rope.radius[0]
+        asked.append(radius)
+        return None if radius > 1.01 * share * max(asked) else prove_legs(rope, *given)
+
+    monkeypatch.setattr(sys.modules["mobius_flow.core.morph.meeting"], "prove_legs", refused)
+    result, _, _ = proved(Curve(SQUARE), LARGER, COARSE)
+    assert said in result.message
+    assert (result.last.radius is None) is (share == 0.0)
+    asked[:] = [0.0]
+    with pytest.raises(NoMotionError, match="a thinner rope"):
+        morph(Curve(SQUARE), LARGER, replace(COARSE, radius=0.01))
+
+
+def test_a_corner_too_sharp_for_a_rope_is_told():
+    result, _, verdict = proved(Curve(SQUARE), Curve([[5.0, 5], [6, 5], [7, 7], [6, 6], [5, 7]]), COARSE)
+    assert "the second curve is no rope, as a corner is too sharp" in result.message
+    assert result.last.radius is None
+    assert not verdict.radius
 
 
 def test_every_leg_is_run_back():
