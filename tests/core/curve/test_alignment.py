@@ -3,10 +3,13 @@
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, Mesh
+from mobius_flow.core.collision import is_rope
 from mobius_flow.core.curve.alignment import Alignment, Freedom, alignments
+from mobius_flow.core.curve.measures import bending_radii
 from mobius_flow.core.curve.refine import refined_alike, subdivide
 from mobius_flow.core.knots import knot, smooth_knot
 from scipy.spatial.transform import Rotation
+from shapes import regular_polygon
 
 TURN = Rotation.from_rotvec([0.3, -1.1, 2.0])
 QUARTER = Rotation.from_euler("z", 90.0, degrees=True).as_matrix()
@@ -78,3 +81,11 @@ def test_a_common_mesh_has_the_vertices_of_both():
         assert {tuple(p) for p in given.vertices.tolist()} <= {tuple(p) for p in curve.vertices.tolist()}
         assert curve.length == pytest.approx(given.length, rel=1e-14)
     assert len(fine) <= len(x) + len(y)
+
+
+@pytest.mark.parametrize("count", [41, 57, 90, 200])
+def test_on_a_common_mesh_both_are_ropes_as_their_own_corners_allow(count):
+    x, y = regular_polygon(40), regular_polygon(count)
+    radius = np.array([0.9 * min(bending_radii(each).min() for each in (x, y))])
+    for curve in refined_alike(x, y, (0.37,)):
+        assert is_rope(curve.mesh, curve.vertices, curve.vertices, radius)

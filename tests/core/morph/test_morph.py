@@ -182,6 +182,18 @@ def test_where_no_way_is_found_for_the_rope_it_gives_way(share, said, monkeypatc
         morph(Curve(SQUARE), LARGER, replace(COARSE, radius=0.01))
 
 
+def test_legs_are_those_of_the_rope():
+    """A ring on its way to another may come near it, but not as a rope."""
+    ring = np.array(SQUARE) @ np.eye(2, 3)
+    near, still = (Curve.from_components([ring, ring + np.array([0.0, 0.0, z])]) for z in (0.1, 1.0))
+    start = next(relax(still, replace(QUICK, mesh="fixed", vertices=8)))
+    for radius, free in ((None, True), ((0.04, 0.04), True), ((0.06, 0.06), False)):
+        legs = prove_legs(
+            replace(start, radius=radius), still, lambda t: t * near.vertices + (1.0 - t) * still.vertices, 0.5
+        )
+        assert (legs is not None) is free
+
+
 def test_a_corner_too_sharp_for_a_rope_is_told():
     result, _, verdict = proved(Curve(SQUARE), Curve([[5.0, 5], [6, 5], [7, 7], [6, 6], [5, 7]]), COARSE)
     assert "the second curve is no rope, as a corner is too sharp" in result.message
