@@ -11,6 +11,8 @@ from ..core.base import check_known, counted
 from ..core.curve.refine import closed_far_away
 from ..core.driver.info import Info, info, measure
 from ..core.energies import ENERGIES
+from ..core.knots.closures import closures
+from ..core.knots.diagrams.homfly import homfly_text
 from ..core.knots.exterior import FLOER
 from . import curves
 from .terminal import Item, command, emit, report
@@ -28,6 +30,7 @@ examples:
   mobius-flow info knot.txt
   mobius-flow info start.obj relaxed.obj --json
   mobius-flow knot 10_132 - | mobius-flow info -
+  mobius-flow info protein.pdb --closures 100
 
 The type is identified by simplifying a diagram and computing polynomial invariants: 3_1 is the right-handed trefoil,
 m3_1 its mirror image, # stands for a sum, and ⊔ separates parts that come apart.  Thickness is the smaller of the least
@@ -64,6 +67,9 @@ def add_info(parser: argparse.ArgumentParser) -> None:
     curves.add_input(parser, "curves", "inputs", "+")
     text = "close open components: their ends go straight away from the centre and are joined far out"
     parser.add_argument("--close", action="store_true", help=text)
+    text = "also close open components in N random directions, and tell how often each type comes out"
+    parser.add_argument("--closures", type=int, metavar="N", help=text)
+    parser.add_argument("--seed", type=int, default=0, metavar="S", help="of these directions (default: 0)")
     parser.add_argument("--json", action="store_true", help="print JSON, a list if there are several inputs")
     parser.set_defaults(run=_info)
 
@@ -76,12 +82,15 @@ def _info(options: argparse.Namespace) -> int:
     found = []
     for path in options.inputs:
         with curves.measured(path, options.format) as curve:
-            found.append((path, info(closed_far_away(curve) if options.close else curve)))
+            types = (
+                {} if options.closures is None else dict(closures(curve, options.closures, options.seed).most_common())
+            )
+            found.append((path, info(closed_far_away(curve) if options.close else curve), types))
     if options.json:
-        described = [_as_json(path, each) for path, each in found]
+        described = [{**_as_json(path, each), "closures": types or None} for path, each, types in found]
         emit(json.dumps(described if len(described) > 1 else described[0]))
     else:
-        rows = ((path, _rows(path, each, options.close)) for path, each in found)
+        rows = ((path, _rows(path, each, options.close, types)) for path, each, types in found)
         emit("\n\n".join(report((path, ""), each, sys.stdout, 1) for path, each in rows))
     return 0
 
@@ -105,6 +114,7 @@ def _as_json(path: str, found: Info) -> Mapping[str, object]:
             "genus": kind.floer and kind.floer.genus,
             "fibered": kind.floer and kind.floer.fibered,
             "group": kind.group and kind.group._asdict(),
+            "homfly": None if kind.homfly is None else [[*powers, c] for powers, c in sorted(kind.homfly.items())],
             "jones": None if kind.jones is None else [[power / 2, c] for power, c in kind.jones.items()],
         },
         "energies": {**found.energies, "objective": rest and rest.objective},
@@ -128,11 +138,17 @@ def _as_json(path: str, found: Info) -> Mapping[str, object]:
     }
 
 
-def _rows(path: str, found: Info, closed: bool) -> Iterator[tuple[str, Item]]:
+def _rows(path: str, found: Info, closed: bool, types: Mapping[str, int]) -> Iterator[tuple[str, Item]]:
     """What is known of a curve, and in the end what tells more about it."""
     sizes = f" ({', '.join(map(str, found.components))} vertices)"
     yield "components", f"{counted(len(found.components), 'component')}{sizes}"
     yield "type", found.type.sentence
+    if types:
+        count = sum(types.values())
+        shares = ", ".join(f"{name} {100 * number / count:.3g} %" for name, number in types.items())
+        yield "closures", f"{shares} of {count}"
+    if found.type.homfly and len(text := homfly_text(found.type.homfly)) < 100:
+        yield "HOMFLY polynomial", text
     if found.type.floer is not None:
         yield "genus", f"{found.type.floer.genus}{', fibered' * found.type.floer.fibered} (by {FLOER})"
     if found.type.group is not None:

@@ -23,6 +23,7 @@ from .diagrams import (
     unsigned_linking,
     views,
 )
+from .diagrams.homfly import Polynomial, homfly
 from .diagrams.invariants import alexander, doubled_bracket, jones, times
 from .exterior import CENSUS, FLOER, Floer, KnotGroup, floer, group, names_by_census, names_by_exterior
 from .names import AMPHICHEIRAL, KNOTS, braid_word
@@ -142,6 +143,11 @@ class KnotType:
         """Coefficients of the Jones polynomial by powers of √t; None where it was not computed."""
         found = jones(self.diagram) if self.diagram else None
         return None if found is None else dict(found)
+
+    @cached_property
+    def homfly(self) -> Polynomial | None:
+        """Coefficients of the HOMFLY polynomial by powers of v and z; None where it was not computed."""
+        return homfly(self.diagram) if self.diagram else None
 
     @cached_property
     def floer(self) -> Floer | None:
@@ -275,7 +281,9 @@ def _factor_type(factor: Diagram, effort: Effort) -> KnotType:
             compare(floer, FLOER)
     names = [name for name in names if name in known] if known else names
     if not names and not known and (larger := names_by_census(factor)):
-        return KnotType(larger, False, factor, (CENSUS,))
+        # which of the mirror images it is: their brackets tell, unless they are equal
+        fitting = tuple(name for name in larger if invariant_of(name, bracket_key) == bracket)
+        return KnotType(fitting or larger, False, factor, (CENSUS, *([JONES] if fitting else [])))
     return KnotType(tuple(names), factor.crossings <= complete or bool(known), factor, tuple(evidence))
 
 
