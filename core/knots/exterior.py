@@ -67,7 +67,8 @@ def floer(knot: Diagram) -> Floer | None:
 def names_by_census(knot: Diagram) -> tuple[str, ...]:
     """The knots of SnapPy's census, of up to 15 crossings, whose complement is this one's; empty without SnapPy.
 
-    A complement belongs to one knot and its mirror image (Gordon and Luecke 1989).
+    A complement belongs to one knot and its mirror image (Gordon and Luecke 1989).  Isometries tell them apart: they
+    keep orientations or reverse them, and if there are both kinds, the two images are the same.
     """
     if not 0 < knot.crossings <= 150 or len(knot.passes) > 1:
         return ()
@@ -75,9 +76,18 @@ def names_by_census(knot: Diagram) -> tuple[str, ...]:
         from snappy import Link
     except ImportError:
         return ()
-    exterior = Link(list(map(list, knot.planar_code))).exterior()
-    names = [each.name() for each in exterior.identify()] if exterior.num_tetrahedra() <= 60 else []
-    return tuple(f"{m}{name}" for name in names if re.fullmatch(r"K\d+[an]\d+", name) for m in ("", "m"))
+    exterior, names = Link(list(map(list, knot.planar_code))).exterior(), list[str]()
+    if exterior.num_tetrahedra() > 60:
+        return ()
+    found = {name for each in exterior.identify() if re.fullmatch(r"K\d+[an]\d+", name := each.name())}
+    for name in sorted(found):
+        try:
+            isometries = exterior.is_isometric_to(Link(name).exterior(), return_isometries=True)
+            kept = {bool(m[0, 0] * m[1, 1] > m[0, 1] * m[1, 0]) for each in isometries for m in each.cusp_maps()}
+            names.append(name if True in kept else f"m{name}")
+        except RuntimeError:  # isometries are not found
+            names += [name, f"m{name}"]
+    return tuple(names)
 
 
 def names_by_exterior(knot: Diagram) -> tuple[tuple[str, ...], str]:

@@ -281,9 +281,7 @@ def _factor_type(factor: Diagram, effort: Effort) -> KnotType:
             compare(floer, FLOER)
     names = [name for name in names if name in known] if known else names
     if not names and not known and (larger := names_by_census(factor)):
-        # which of the mirror images it is: their brackets tell, unless they are equal
-        fitting = tuple(name for name in larger if invariant_of(name, bracket_key) == bracket)
-        return KnotType(fitting or larger, False, factor, (CENSUS, *([JONES] if fitting else [])))
+        return KnotType(larger, False, factor, (CENSUS,))
     return KnotType(tuple(names), factor.crossings <= complete or bool(known), factor, tuple(evidence))
 
 

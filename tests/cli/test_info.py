@@ -5,17 +5,18 @@ import sys
 from importlib.machinery import ModuleSpec
 from types import ModuleType, SimpleNamespace
 
+import numpy as np
 import pytest
 from mobius_flow.core.knots import KnotType
 from mobius_flow.core.knots.exterior import names_by_census
 
 KEYS = {
     "input", "components", "vertices", "type", "energies", "length", "thickness", "ropelength", "writhe",
-    "average_crossing_number", "edges", "gap", "gradient_norm", "at_rest", "index", "smooth", "symmetry",
+    "average_crossing_number", "edges", "gap", "gradient_norm", "at_rest", "index", "smooth", "symmetry", "closures",
 }  # fmt: skip
 TYPE_KEYS = {
     "name", "names", "proved", "evidence", "crossings", "linking_numbers", "alexander", "determinant", "jones",
-    "genus", "fibered", "group",
+    "homfly", "genus", "fibered", "group",
 }  # fmt: skip
 
 
@@ -43,6 +44,7 @@ def test_json(trefoil, tmp_path, run):
     assert set(one) == KEYS
     assert set(one["type"]) == TYPE_KEYS
     assert one["type"]["jones"] == [[1, 1], [3, 1], [4, -1]]
+    assert one["type"]["homfly"] == [[2, 0, 2], [2, 2, 1], [4, 0, -1]]
     assert one["type"]["determinant"] == 3
     assert found[1]["type"]["linking_numbers"] == [1]
     assert found[1]["components"] == 2
@@ -111,13 +113,21 @@ def test_arcs_have_no_type_until_they_are_closed(tmp_path, run):
     assert told.endswith(f"next                    mobius-flow info '{path}' --close\n")
     told = run("info", path, "--close")[1]
     assert " 3_1 (proved" in told
+    assert "HOMFLY polynomial       (2v² − v⁴) + v² z²\n" in told
     assert "next " not in told
+    assert "closures                3_1 100 % of 4\n" in run("info", path, "--closures", "4")[1]
+    assert json.loads(run("info", path, "--closures", "4", "--seed", "2", "--json")[1])["closures"] == {"3_1": 4}
 
 
 @pytest.mark.parametrize("installed", [False, True])
 def test_larger_knots_are_named_by_snappy(installed, tmp_path, run, monkeypatch):
     """By one that knows a single knot."""
-    exterior = SimpleNamespace(num_tetrahedra=lambda: 9, identify=lambda: [SimpleNamespace(name=lambda: "K11n34")])
+    reversing = SimpleNamespace(cusp_maps=lambda: [np.array([[-1, 0], [0, 1]])])
+    exterior = SimpleNamespace(
+        num_tetrahedra=lambda: 9,
+        identify=lambda: [SimpleNamespace(name=lambda: "K11n34")],
+        is_isometric_to=lambda _, return_isometries: [reversing],
+    )
     snappy = ModuleType("snappy")
     snappy.__spec__ = ModuleSpec("snappy", None)
     snappy.Link = lambda code: SimpleNamespace(exterior=lambda **_: exterior)
@@ -128,5 +138,5 @@ def test_larger_knots_are_named_by_snappy(installed, tmp_path, run, monkeypatch)
     assert run("knot", "DT: [4 8 -12 2 16 -6 20 18 10 22 14]", tmp_path / "k.txt")[0] == 0
     told = run("info", tmp_path / "k.txt")[1]
     names_by_census.cache_clear()
-    assert ("K11n34 or mK11n34 (not proved; it fits its complement" in told) is installed
+    assert (" mK11n34 (not proved; it fits its complement" in told) is installed
     assert ("pip install snappy" in told) is not installed

@@ -2,11 +2,12 @@
 
 import sys
 
+import numpy as np
 import pytest
-from mobius_flow.core.knots import HARD_UNKNOTS, KNOTS, braid_word, exterior
+from mobius_flow.core.knots import HARD_UNKNOTS, KNOTS, braid_word, coded_knot, exterior, knot_type
 from mobius_flow.core.knots.braids import braid_diagram, connected_sum
 from mobius_flow.core.knots.diagrams import diagram_of
-from mobius_flow.core.knots.exterior import GENUS, GROUP, KnotGroup, floer, group, names_by_exterior
+from mobius_flow.core.knots.exterior import CENSUS, GENUS, GROUP, KnotGroup, floer, group, names_by_exterior
 from mobius_flow.core.knots.knot_type import type_of_diagram
 
 GENERA = {"3_1": 1, "4_1": 1, "5_1": 2, "7_4": 1, "8_19": 3, "10_132": 2}
@@ -79,3 +80,28 @@ def test_only_three_knots_are_fibered_of_genus_one():
     long = braid_diagram((*braid_word("3_1"), *[letter for k in range(5) for letter in (2, -2)]))
     assert type_of_diagram(long).names in (("3_1",), ())
     assert floer(braid_diagram(connected_sum(KNOTS["3_1"], KNOTS["3_1"]))).genus == 2
+
+
+@pytest.mark.parametrize(
+    ("name", "others"),  # the last but one is its own mirror image; of the last not even the Jones polynomial tells
+    [("K11a300", ()), ("K11n34", ()), ("K12n725", ()), ("K13a4000", ()), ("K13n5000", ()), ("K12a1229", ("mK12a1229",)),
+     ("K12n571", ())],
+)  # fmt: skip
+def test_knots_beyond_ten_crossings_have_names_of_their_mirror_images_too(name, others):
+    snappy = pytest.importorskip("snappy")
+    link = snappy.Link(name)
+    for each, expected in ((link, name), (link.mirror(), name if others else f"m{name}")):
+        curve = coded_knot(str([list(map(int, edges)) for edges in each.PD_code()]))
+        found = knot_type(curve)
+        assert (found.names, found.proved, found.evidence) == ((expected,), False, (CENSUS,))
+
+
+@pytest.mark.slow
+def test_two_hundred_knots_beyond_ten_crossings():
+    snappy = pytest.importorskip("snappy")
+    rng = np.random.default_rng(20)
+    for kind, last in (("K11a", 366), ("K11n", 185), ("K12a", 1287), ("K12n", 888), ("K13a", 4877), ("K13n", 4500)):
+        for number in rng.integers(1, last, size=34, endpoint=True):
+            name = f"{kind}{number}"
+            code = [list(map(int, edges)) for edges in snappy.Link(name).PD_code()]
+            assert knot_type(coded_knot(str(code))).names == (name,)
