@@ -2,10 +2,10 @@
 
 import signal
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import ExitStack
+from contextlib import closing
 from dataclasses import dataclass, field
 from functools import partial
 from itertools import chain, pairwise
@@ -142,18 +142,21 @@ def audit(
     names = np.arange(1, len(first.points) + 1) if first.names is None else first.names
     report = Audit(topology, names, start, start, [start.step])
     try:
-        for leg, (result, end) in enumerate(_legs(chain([start], frames), topology, processes)):
-            try:
-                found = result()
-            except (CurveError, BrokenProcessPool) as error:
-                told = error if isinstance(error, CurveError) else "a process was killed, perhaps for want of memory"
-                raise CurveError(f"{source}frame {leg + 1}: {told}") from error
-            found["leg"] = leg
-            report.found.append(found)
-            report.steps.append(end.step)
-            report.last = end
-            if callback is not None:
-                callback(report)
+        with closing(_legs(chain([start], frames), topology, processes)) as legs:
+            for leg, (result, end) in enumerate(legs):
+                try:
+                    found = result()
+                except (CurveError, BrokenProcessPool) as error:
+                    told = (
+                        error if isinstance(error, CurveError) else "a process was killed, perhaps for want of memory"
+                    )
+                    raise CurveError(f"{source}frame {leg + 1}: {told}") from error
+                found["leg"] = leg
+                report.found.append(found)
+                report.steps.append(end.step)
+                report.last = end
+                if callback is not None:
+                    callback(report)
     except CurveError as error:
         if not report.found:
             raise
@@ -165,25 +168,30 @@ def audit(
 
 def _legs(
     frames: Iterator[Placed], topology: Topology, processes: int
-) -> Iterator[tuple[Callable[[], Passings], Placed]]:
+) -> Generator[tuple[Callable[[], Passings], Placed], None, None]:
     """Yield of each leg, in order, what gives its contacts, and its end; several are worked at in advance."""
     few = 2_000  # edges whose legs take less time than starting processes does
-    with ExitStack() as stack:
-        pool: ProcessPoolExecutor | None = None
-        if processes > 1 and len(topology.tails) > few:
-            quiet = signal.signal, (signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent
-            pool = ProcessPoolExecutor(processes, get_context("spawn"), *quiet)
-            stack.callback(pool.shutdown, wait=False, cancel_futures=True)
-        waiting: deque[tuple[Callable[[], Passings], Placed]] = deque()
-        failure: CurveError | None = None
+    pool: ProcessPoolExecutor | None = None
+    if processes > 1 and len(topology.tails) > few:
+        quiet = signal.signal, (signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent
+        pool = ProcessPoolExecutor(processes, get_context("spawn"), *quiet)
+    waiting: deque[tuple[Callable[[], Passings], Placed]] = deque()
+    failure: CurveError | None = None
+    try:
         try:
             for number, (before, after) in enumerate(pairwise(frames)):
                 work = partial(passings, before, after, topology.beads, topology.tails, number == 0)
                 waiting.append((work if pool is None else pool.submit(work).result, after))
                 if len(waiting) > processes:
                     yield waiting.popleft()
-        except CurveError as error:
+        except CurveError as error:  # which comes when its turn has come
             failure = error
         yield from waiting
         if failure is not None:
             raise failure
+    finally:
+        if pool is not None:
+            workers = list(pool._processes.values())  # which `terminate_workers` of Python 3.14 ends, too
+            pool.shutdown(wait=False, cancel_futures=True)
+            for each in workers:
+                each.terminate()

@@ -115,14 +115,18 @@ def placed(read: Iterator[Snapshot], topology: Topology, cell: FloatArray | None
         if first.names is not None and each.names is not None and (lost := np.setdiff1d(first.names, each.names)).size:
             raise CurveError(f"{where} lacks bead {lost[0]}, which the first one has; none may come or go")
         points, sides = each.points[beads], each.cell if cell is None else cell
-        wrong = np.flatnonzero(~np.isfinite(points).all(axis=1))
+        wrong = np.flatnonzero(~(np.abs(points) < 1e60).all(axis=1))  # so that products of lengths are finite
         if wrong.size:
             bead = beads[wrong[0]] + 1 if first.names is None else first.names[beads[wrong[0]]]
-            raise CurveError(f"{where}: bead {bead} is not finite: {points[wrong[0]].tolist()}")
-        if not np.isfinite(sides).all() or np.linalg.matrix_rank(sides) < np.count_nonzero(sides.any(axis=1)):
+            raise CurveError(f"{where}: bead {bead} is not finite, or too far away: {points[wrong[0]].tolist()}")
+        if not np.ptp(points, axis=0).any():
+            raise CurveError(f"{where}: all beads are in one place")
+        if not (np.abs(sides) < 1e60).all() or np.linalg.matrix_rank(sides) < np.count_nonzero(sides.any(axis=1)):
             raise CurveError(f"{where}: the box is flat, or not finite: {sides.tolist()}")
 
         to_boxes = dual(sides)
+        if np.abs(points @ to_boxes).max() > 1 << 31:
+            raise CurveError(f"{where}: there are beads that are more than 2³¹ boxes away")
         bonds = np.diff(points, axis=0)
         bonds[starts[1:-1] - 1] = 0.0  # from chain to chain
         hops = np.round(bonds @ to_boxes).astype(np.intp)

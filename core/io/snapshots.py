@@ -60,7 +60,7 @@ class _Lines:
 
     def count(self, line: str) -> int:
         """The number of atoms that a line, the last one read, gives."""
-        if not re.fullmatch(r"\s*[0-9]{1,9}\s*", line):
+        if not re.fullmatch(r"\s*[1-9][0-9]{0,8}\s*", line):
             self.fail(f"{line.strip()[:30]!r} is not a number of atoms")
         return int(line)
 

@@ -128,12 +128,16 @@ def _near(ends: FloatArray, clearance: float) -> Iterator[tuple[IntArray, IntArr
     squares = np.einsum("tcem,tcem->tce", ends - centre, ends - centre).max(axis=(0, 1))
     radius = np.sqrt(squares) * (1.0 + 2.0**-40) + (4.0 * clearance + 2.0**-48)
     order = np.argsort(-radius, kind="stable")
-    centre, radius, first = centre[order], radius[order], 0
+    centre, radius, first, total = centre[order], radius[order], 0, 0
     while first < len(order):  # a class of edges of about the same size, with all that are smaller
         last = int(np.searchsorted(-radius, -radius[first] / 1.4, side="right"))
         rest, width = cKDTree(centre[first:]), 2.0 * radius[first]
         some = cKDTree(centre[first:last:16])
-        parts = 1 + 16 * int(some.count_neighbors(rest, width)) // (1 << 21)  # which bounds the memory
+        count = 16 * int(some.count_neighbors(rest, width))
+        total += count
+        if total > max(1000 * len(order), 1 << 24):  # it would take minutes or hours
+            raise CurveError("edges come near too many others; frames are too far apart, or beads too near together")
+        parts = 1 + count // (1 << 21)  # which bounds the memory
         for part in np.array_split(np.arange(first, last), parts):
             found = cKDTree(centre[part]).sparse_distance_matrix(rest, width, output_type="ndarray")
             i, j = part[found["i"]], first + found["j"]

@@ -106,6 +106,7 @@ def nan(points: Array) -> Array:
     [
         (lambda points: points[:-1], "frame 2 has 23 beads and the first one 24; none may come or go"),
         (nan, "frame 2: bead 2 is not finite"),
+        (lambda points: 0.0 * points, "frame 2: all beads are in one place"),
         (lambda points: points[:, :2], "frame 2 has shape (24, 2); frames are arrays"),
         (lambda points: [["x"]], "frame 2 is no array of numbers"),
     ],
@@ -114,6 +115,12 @@ def test_what_was_found_is_kept_when_a_trajectory_breaks_off(spoil: Callable[[Ar
     report = audit([HOPF, APART, spoil(APART), HOPF], 12)
     assert len(report.found) == len(report.passings) == 1
     assert said in report.problem
+
+
+def test_a_heap_of_beads_is_refused() -> None:
+    heap = 1e-9 * np.random.default_rng(0).normal(size=(9_000, 3))
+    with pytest.raises(MobiusFlowError, match="frame 1: edges come near too many others"):
+        audit([heap, heap], 200)
 
 
 @pytest.mark.parametrize(
@@ -127,6 +134,7 @@ def test_what_was_found_is_kept_when_a_trajectory_breaks_off(spoil: Callable[[Ar
         ({"chains": 12, "box": "x"}, "box"),
         ({"chains": 12, "box": [1, np.nan, 1]}, "frame 0: the box is flat, or not finite"),
         ({"chains": 12, "box": [[1, 0, 0], [1, 0, 0], [0, 0, 1]]}, "frame 0: the box is flat"),
+        ({"chains": 12, "box": [1e-30] * 3}, "more than 2³¹ boxes away"),
         ({"chains": 12, "box": [1, 1, 1]}, "neighbours on chain 1 are 0.5176 apart, half the box or more"),
     ],
 )
