@@ -111,21 +111,19 @@ def _contacts(found: Audit) -> list[dict[str, Any]]:
 def _as_json(found: Audit, meetings: Rows, contacts: Rows) -> str:
     """All that is known, under names that scripts can rely on."""
 
-    def told(kind: KnotType | None) -> object:
-        return None if kind is None else {"name": str(kind), "names": kind.names, "proved": kind.proved}
+    def plain(kind: KnotType) -> object:
+        return {"name": str(kind), "names": kind.names, "proved": kind.proved}
 
-    types = ({when: told(each[when]) for when in ("before", "after")} for each in meetings)
-    return json.dumps(
-        {
-            "legs": len(found.found),
-            "problem": found.problem or None,
-            "chains": [len(beads) for beads in found.topology.chains],
-            "closed": found.topology.closed,
-            "steps": found.steps,
-            "meetings": [each | kinds for each, kinds in zip(meetings, types, strict=True)],
-            "contacts": contacts,
-        }
-    )
+    described = {
+        "legs": len(found.found),
+        "problem": found.problem or None,
+        "chains": [len(beads) for beads in found.topology.chains],
+        "closed": found.topology.closed,
+        "steps": found.steps,
+        "meetings": meetings,
+        "contacts": contacts,
+    }
+    return json.dumps(described, default=plain)
 
 
 def _as_text(found: Audit, meetings: Rows, contacts: Rows) -> str:

@@ -65,10 +65,8 @@ def passings(before: Placed, after: Placed, beads: IntArray, tails: IntArray, fr
     ends = points + np.einsum("tcea,tam->tcem", lattice, cells)
     exponent = -int(np.frexp(np.abs(ends).max())[1])  # coordinates are at most 1 in size, and images' somewhat more
     ends, number, image = _with_images(np.ldexp(ends, exponent), np.ldexp(cells, exponent))
-    terms = (
-        np.abs(np.ldexp(points, exponent)).max() + (np.abs(lattice).max() + 3) * np.abs(np.ldexp(cells, exponent)).sum()
-    )
-    clearance = 4 * 2.0**-53 * float(terms) if cells.any() else 0.0  # in which nothing is rounded without a box
+    size = np.abs(points).max() + (np.abs(lattice).max() + 3) * np.abs(cells).sum()
+    clearance = float(np.ldexp(size, exponent - 50)) if cells.any() else 0.0  # bounds what was rounded
 
     found = []
     bead, box = beads[corners], lattice[0]
@@ -76,11 +74,9 @@ def passings(before: Placed, after: Placed, beads: IntArray, tails: IntArray, fr
         keep = (i < len(tails)) & (number[i] != number[j])  # pairs of images are the same as others
         keep[keep] = ~_apart(ends, i[keep], j[keep], clearance)
         i, j = i[keep], j[keep]
-        a, b, shift = i, number[j], image[j]
-        shared = np.zeros(len(i), dtype=bool)
-        for p, q in product((0, 1), repeat=2):
-            shared |= (bead[p, a] == bead[q, b]) & (box[p, a] == box[q, b] + shift).all(axis=1)
-        i, j = i[~shared], j[~shared]
+        for p, q in product((0, 1), repeat=2):  # ends that are no common one
+            keep = (bead[p, i] != bead[q, number[j]]) | (box[p, i] != box[q, number[j]] + image[j]).any(axis=1)
+            i, j = i[keep], j[keep]
         start, end = np.concatenate([ends[:, :, i], ends[:, :, j]], axis=1).reshape(2, -1, 3)
         left = doubtful(start, end, np.arange(4 * len(i)).reshape(4, -1), clearance)[0]
         for a, b, shift in zip(i[left].tolist(), number[j[left]].tolist(), image[j[left]], strict=True):
