@@ -6,11 +6,13 @@ from dataclasses import replace
 from pathlib import Path
 
 from ..core import CurveError, MobiusFlowError, OptionError
+from ..core.base import declared
 from ..core.base.errors import wrong_suffix
 from ..core.io import FORMATS
 from ..core.io.codes import code_diagram
 from ..core.io.source import Source
-from ..core.keys.figure import COLOURS, LINES, Pen, figure, seen
+from ..core.keys.arcs import seen
+from ..core.keys.figure import Pen, figure
 from ..core.keys.paper import PAPERS
 from ..core.keys.view import motion
 from ..core.knots import knot, knot_type
@@ -18,6 +20,7 @@ from ..core.knots.drawings import Drawing
 from ..core.knots.layout import laid_out
 from ..core.knots.names import named_diagram, table_range
 from . import curves
+from .options import add_option
 from .places import check_places, writing
 from .terminal import say_written
 
@@ -50,23 +53,8 @@ def add_draw(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--layout", action="store_true", help=text)
     text = "frames of a trajectory, about as far apart, 2 to 1000 (default: 6)"
     parser.add_argument("--frames", type=int, default=6, metavar="N", help=text)
-    text = "of a sheet (default: as many as rows, or a row for a trajectory)"
-    parser.add_argument("--columns", type=int, metavar="N", help=text)
-    pen = Pen()
-    text = f"side of a diagram in points (default: {pen.size:g})"
-    parser.add_argument("--size", type=float, default=pen.size, metavar="PT", help=text)
-    text = f"of strands in points, where there is room (default: {pen.width:g})"
-    parser.add_argument("--width", type=float, default=pen.width, metavar="PT", help=text)
-    text = f"beside upper strands, in widths (default: {pen.gap:g})"
-    parser.add_argument("--gap", type=float, default=pen.gap, metavar="G", help=text)
-    text = f"{', '.join(COLOURS)} (default: {pen.colours})"
-    parser.add_argument("--colours", choices=COLOURS, default=pen.colours, metavar="C", help=text)
-    text = f"{', '.join(LINES)} (default: {pen.line})"
-    parser.add_argument("--line", choices=tuple(LINES), default=pen.line, metavar="L", help=text)
-    parser.add_argument("--arrows", action="store_true", help="show orientations")
-    parser.add_argument(
-        "--numbers", action="store_true", help="number crossings in the order in which they are reached"
-    )
+    for each in declared(Pen):
+        add_option(parser, each)
     text = "captions, between commas, or none (default: names, or numbers of frames, if there are several)"
     parser.add_argument("--labels", metavar="A,B,…", help=text)
     parser.set_defaults(run=_run)

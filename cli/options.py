@@ -35,19 +35,24 @@ def add_to(parser: argparse.ArgumentParser, *, without: Collection[str] = ()) ->
         if chosen := [offered[name] for name in names if name in offered]:
             group = parser.add_argument_group(title) if title == COMMON else further(parser, title)
             for option in chosen:
-                declared_as: dict[str, Any] = {"dest": option.name, "default": option.default}
-                text = option.phrase
-                if option.kind is bool:
-                    declared_as["action"] = "store_true"
-                elif option.repeated:
-                    text += "; may be given several times"
-                    declared_as |= {"metavar": option.metavar, "action": "append", "default": []}
-                else:
-                    text += f"; one of {', '.join(option.choices)}" if option.choices else ""
-                    text += f" (default: {option.automatic or '%(default)s'})"
-                    declared_as |= {"metavar": option.metavar, "type": option.kind}
-                group.add_argument(flag(option), help=text, **declared_as)
+                add_option(group, option)
     parser.set_defaults(offered=list(offered))
+
+
+def add_option(group: argparse._ActionsContainer, option: Option) -> None:
+    """Add an option as it is declared."""
+    declared_as: dict[str, Any] = {"dest": option.name, "default": option.default}
+    text = option.phrase
+    if option.kind is bool:
+        declared_as["action"] = "store_true"
+    elif option.repeated:
+        text += "; may be given several times"
+        declared_as |= {"metavar": option.metavar, "action": "append", "default": []}
+    else:
+        text += f"; one of {', '.join(option.choices)}" if option.choices else ""
+        text += f" (default: {option.automatic or '%(default)s'})"
+        declared_as |= {"metavar": option.metavar, "type": option.kind}
+    group.add_argument(flag(option), help=text, **declared_as)
 
 
 def from_arguments(arguments: argparse.Namespace) -> RelaxOptions:
