@@ -29,7 +29,7 @@ from .curves.session import Report, Session
 from .curves.splines import SOURCE, Reference, depth, radii, stretch
 from .curves.strands import KINDS
 from .curves.surroundings import Surroundings
-from .live.requirements import BAKED, CLEARABLE, POLYGONS, READABLE, RELAXABLE, TUBED, UNEDITED, idle, require
+from .live.requirements import BAKED, CLEARABLE, ENTERABLE, POLYGONS, READABLE, TUBED, UNEDITED, idle, require
 from .pictures import staging
 from .pictures.movie import Filming
 from .properties import DEFAULTS, check, key_options, relax_options
@@ -200,7 +200,7 @@ def begin(
     """
     bpy.context.view_layer.update()  # of where objects are that a script has just moved
     require(
-        idle() or RELAXABLE.of(objects) or READABLE.of(goals),
+        idle() or ENTERABLE.of(objects) or READABLE.of(goals),
         BAKED.of(objects) if continues else None,
         UNEDITED.of(objects),
         None if sample_splines else POLYGONS.of(objects),

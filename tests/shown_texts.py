@@ -10,7 +10,7 @@ from mobius_flow.core.knots import KNOTS
 ADDON = Path(registration.__file__).parent
 CORE = ADDON.parent / "core"
 _MARKS = {
-    "Check": 0,
+    "_refused": 1,
     "Condition": 0,
     "Message": 0,
     "adding": 0,

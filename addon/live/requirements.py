@@ -1,7 +1,7 @@
 """Requirements of operators on curves and scenes: a failed one gives a sentence, and a remedy if there is one."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
@@ -40,29 +40,8 @@ class Refusal:
 
 
 Requirement = Callable[[bpy.types.Context], Refusal | None]
+_Examine = Callable[[bpy.types.Object], Iterator[Refusal]]
 _Choice = Callable[[bpy.types.Context], list[bpy.types.Object]]
-
-
-@dataclass(frozen=True)
-class Check:
-    """A requirement on a curve object: where ``failure`` finds something, the sentence says so.
-
-    What is found fills in ``field`` in the sentence or, if it is a mapping, several fields. ``together`` marks
-    what is required only of curves that are relaxed together, ``any_kind`` what is of objects of other kinds, too.
-    """
-
-    sentence: str
-    failure: Callable[[bpy.types.Object], Any]
-    remedy: Remedy | None = None
-    field: str = ""
-    together: bool = False
-    any_kind: bool = False
-
-    def refusal(self, obj: bpy.types.Object) -> Refusal | None:
-        if not (self.any_kind or obj.type == "CURVE") or not (found := self.failure(obj)):
-            return None
-        values = found if isinstance(found, Mapping) else {self.field: found}
-        return Refusal(Message(self.sentence, name=obj.name, **values), self.remedy)
 
 
 @dataclass(frozen=True)
@@ -107,10 +86,13 @@ def curves_at_hand(context: bpy.types.Context) -> list[bpy.types.Object]:
 
 
 class Curves:
-    """The requirement that there are curve objects, all of which pass some checks, while nothing is being relaxed."""
+    """The requirement that there are curve objects, all of which pass examinations, while nothing is being relaxed.
 
-    def __init__(self, *checks: Check, among: _Choice = selected_curves) -> None:
-        self.checks, self._among = checks, among
+    ``others``: those that objects of other kinds have to pass.
+    """
+
+    def __init__(self, *curves: _Examine, others: Sequence[_Examine] = (), among: _Choice = selected_curves) -> None:
+        self._curves, self._others, self._among = curves, others, among
 
     def __call__(self, context: bpy.types.Context) -> Refusal | None:
         objects = self._among(context)
@@ -127,10 +109,12 @@ class Curves:
         remedy = Remedy.TO_CURVE if obj.mode == "OBJECT" and convertible(context) else None
         return Refusal(Message(sentence, name=obj.name, type=kind), remedy)
 
-    def of(self, objects: Sequence[bpy.types.Object]) -> Refusal | None:
-        several = len(objects) > 1
-        checks = [check for check in self.checks if several or not check.together]
-        return next((refusal for obj in objects for check in checks if (refusal := check.refusal(obj))), None)
+    def of(self, objects: Sequence[bpy.types.Object], several: bool | None = None) -> Refusal | None:
+        """The first refusal of an object; ``several``: whether others are relaxed together with them."""
+        several = len(objects) > 1 if several is None else several
+        pairs = ((obj, each) for obj in objects for each in (self._curves if obj.type == "CURVE" else self._others))
+        found = (refusal for obj, examine in pairs if several or examine is not _moved for refusal in examine(obj))
+        return next(found, None)
 
 
 def first(context: bpy.types.Context, requirements: Sequence[Requirement]) -> Refusal | None:
@@ -183,175 +167,149 @@ def container(context: bpy.types.Context) -> bpy.types.Object | None:
     return outer if all((low <= least).all() and (most <= high).all() for least, most in boxes) else None
 
 
-def _short_spline(obj: bpy.types.Object) -> dict[str, int] | None:
+def _refused(obj: bpy.types.Object, sentence: str, remedy: Remedy | None = None, **values: Any) -> Refusal:
+    return Refusal(Message(sentence, name=obj.name, **values), remedy)
+
+
+def _edited(obj: bpy.types.Object) -> Iterator[Refusal]:
+    if obj.mode != "OBJECT":
+        yield _refused(obj, "'{name}' is being edited; go back to Object Mode first", Remedy.OBJECT_MODE)
+
+
+def _shared(obj: bpy.types.Object) -> Iterator[Refusal]:
+    if obj.library or obj.data.library:
+        sentence = "'{name}' is linked from another file; make it local first (Object > Relations > Make Local)"
+        yield _refused(obj, sentence, Remedy.MAKE_LOCAL)
+    if obj.override_library or obj.data.override_library:
+        sentence = "'{name}' is a library override; make it local first (Object > Relations > Make Local)"
+        yield _refused(obj, sentence, Remedy.MAKE_LOCAL)
+    if obj.data.users - obj.data.use_fake_user > 1:
+        sentence = (
+            "'{name}' shares its curve data '{data}' with other objects; make it single-user first "
+            "(Object > Relations > Make Single User)"
+        )
+        yield _refused(obj, sentence, Remedy.SINGLE_USER, data=obj.data.name)
+
+
+def _unreadable(obj: bpy.types.Object) -> Iterator[Refusal]:
+    if obj.data.dimensions != "3D":
+        sentence = "'{name}' is a 2D curve; set its Shape to 3D first (Object Data properties)"
+        yield _refused(obj, sentence, Remedy.MAKE_3D)
+    if not obj.data.splines:
+        yield _refused(obj, "'{name}' has no splines; give it at least one poly spline")
     for number, spline in enumerate(obj.data.splines, 1):
         fewest = 3 if spline.use_cyclic_u and spline.type != "BEZIER" else 2
-        if len(spline.bezier_points if spline.type == "BEZIER" else spline.points) < fewest:
-            return {"number": number, "fewest": fewest}
-    return None
+        if len(splines.control_points(spline)) < fewest:
+            sentence = "Spline {number} of '{name}' has fewer than {fewest} points; give it more, or delete it"
+            yield _refused(obj, sentence, number=number, fewest=fewest)
 
 
-def _smooth_spline(obj: bpy.types.Object) -> dict[str, Any] | None:
-    numbered = enumerate(obj.data.splines, 1)
-    return next(({"number": k, "kind": splines.kind(each)} for k, each in numbered if each.type != "POLY"), None)
+def _keyed(obj: bpy.types.Object) -> Iterator[Refusal]:
+    """Keys of somebody else's; a curve that was baked, and has no keys any more, is like any other."""
+    own, keys = obj.data.animation_data, obj.data.shape_keys
+    moving = own and (own.action or own.nla_tracks)
+    driven = own and any(each.data_path.startswith("splines") for each in own.drivers)
+    if bake.is_baked(obj.data) or not (keys or moving or driven):
+        return
+    yield from _changed(obj)
+    if keys:
+        yield _refused(obj, "'{name}' has shape keys; remove them or relax a copy without them", Remedy.COPY)
+    if moving:
+        sentence = "The curve data of '{name}' is animated; remove the animation or relax a copy without it"
+        yield _refused(obj, sentence, Remedy.COPY)
+    sentence = "Points of '{name}' are driven; remove the drivers or relax a copy without them"
+    yield _refused(obj, sentence, Remedy.COPY)
 
 
-def _unless_baked(failure: Callable[[bpy.types.Object], Any]) -> Callable[[bpy.types.Object], Any]:
-    return lambda obj: not bake.is_baked(obj.data) and failure(obj)
+def _changed(obj: bpy.types.Object) -> Iterator[Refusal]:
+    if bake.was_baked(obj.data) and not bake.is_baked(obj.data):
+        sentence = "'{name}' has other keys or points than it was baked with; undo that, or relax a copy"
+        yield _refused(obj, sentence, Remedy.COPY)
 
 
-def _is_flat(obj: bpy.types.Object) -> bool:
+def _unkeyed(obj: bpy.types.Object) -> Iterator[Refusal]:
+    if obj.type != "CURVE" or not bake.was_baked(obj.data):
+        yield _refused(obj, "'{name}' has no keys of Möbius Flow; press Relax first")
+
+
+def _rekeyed(obj: bpy.types.Object) -> Iterator[Refusal]:
+    if bake.is_baked(obj.data) and bake.is_edited(obj.data):
+        sentence = "Keys of '{name}' were edited; undo that, or remove the keys to relax the curve as it is"
+        yield _refused(obj, sentence, Remedy.COPY)
+
+
+def _deformed(obj: bpy.types.Object) -> Iterator[Refusal]:
+    if deformer := what_deforms(obj):
+        sentence = (
+            "{deformer} moves its points, so that strands may be seen to cross; remove it, or relax a copy without it"
+        )
+        yield _refused(obj, sentence, Remedy.COPY, deformer=deformer)
+
+
+def _flat(obj: bpy.types.Object) -> Iterator[Refusal]:
     matrix = np.array(obj.matrix_world, dtype=np.float64)
     scales = np.linalg.svd(matrix[:3, :3], compute_uv=False) if np.isfinite(matrix).all() else np.zeros(3)
-    return not scales[2] > 1e-6 * scales[0]  # matrices of smaller ratios cannot be inverted in 32 bits
+    if not scales[2] > 1e-6 * scales[0]:  # matrices of smaller ratios cannot be inverted in 32 bits
+        yield _refused(obj, "'{name}' is scaled to nothing in some direction; give it a scale other than 0")
 
 
-_OBJECT_MODE = Check(
-    "'{name}' is being edited; go back to Object Mode first",
-    lambda obj: obj.mode != "OBJECT",
-    Remedy.OBJECT_MODE,
-    any_kind=True,
-)
-_OWN = (
-    Check(
-        "'{name}' is linked from another file; make it local first (Object > Relations > Make Local)",
-        lambda obj: obj.library or obj.data.library,
-        Remedy.MAKE_LOCAL,
-    ),
-    Check(
-        "'{name}' is a library override; make it local first (Object > Relations > Make Local)",
-        lambda obj: obj.override_library or obj.data.override_library,
-        Remedy.MAKE_LOCAL,
-    ),
-    Check(
-        "'{name}' shares its curve data '{data}' with other objects; make it single-user first "
-        "(Object > Relations > Make Single User)",
-        lambda obj: obj.data.name if obj.data.users - obj.data.use_fake_user > 1 else None,
-        Remedy.SINGLE_USER,
-        "data",
-    ),
-)
-_SPLINES = (
-    Check(
-        "'{name}' is a 2D curve; set its Shape to 3D first (Object Data properties)",
-        lambda obj: obj.data.dimensions != "3D",
-        Remedy.MAKE_3D,
-    ),
-    Check("'{name}' has no splines; give it at least one poly spline", lambda obj: not obj.data.splines),
-    Check("Spline {number} of '{name}' has fewer than {fewest} points; give it more, or delete it", _short_spline),
-)
-_KEYS = (
-    Check(
-        "'{name}' has shape keys; remove them or relax a copy without them",
-        _unless_baked(lambda obj: obj.data.shape_keys),
-        Remedy.COPY,
-    ),
-    Check(
-        "The curve data of '{name}' is animated; remove the animation or relax a copy without it",
-        _unless_baked(lambda obj: (own := obj.data.animation_data) and (own.action or own.nla_tracks)),
-        Remedy.COPY,
-    ),
-    Check(
-        "Points of '{name}' are driven; remove the drivers or relax a copy without them",
-        _unless_baked(
-            lambda obj: (
-                (own := obj.data.animation_data) and any(each.data_path.startswith("splines") for each in own.drivers)
+def _moved(obj: bpy.types.Object) -> Iterator[Refusal]:
+    """What keeps curves from being relaxed together, but not one alone."""
+    if mover := what_moves(obj):
+        sentence = (
+            "'{name}' is moved by {mover}, and curves relaxed together must keep their places; "
+            "remove that, or relax each curve alone"
+        )
+        yield _refused(obj, sentence, Remedy.COPY, mover=mover)
+
+
+def _unfit(obj: bpy.types.Object) -> Iterator[Refusal]:
+    if not bevel.can_fit(obj.data):
+        yield _refused(
+            obj, "'{name}' has a profile, taper, extrusion, offset or point radii of its own; remove them first"
+        )
+
+
+def _thin(obj: bpy.types.Object) -> Iterator[Refusal]:
+    if obj.type == "CURVE" and not splines.depth(obj.data):
+        sentence = (
+            "'{name}' has no bevel depth; set it to the rope's radius first (Object Data properties, Geometry > Bevel)"
+        )
+        yield _refused(obj, sentence)
+    if obj.type == "MESH" and "radius" not in obj.data.attributes:
+        yield _refused(obj, "'{name}' has no thickness; give its points an attribute named radius first")
+
+
+def _smooth(obj: bpy.types.Object) -> Iterator[Refusal]:
+    for number, spline in enumerate(obj.data.splines, 1):
+        if spline.type != "POLY":
+            sentence = (
+                "Spline {number} of '{name}' is a {kind} spline; convert it to Poly first "
+                "(Edit Mode, Curve > Set Spline Type > Poly), or set Sample Splines"
             )
-        ),
-        Remedy.COPY,
-    ),
-)
-_UNCHANGED = Check(
-    "'{name}' has other keys or points than it was baked with; undo that, or relax a copy",
-    _unless_baked(lambda obj: bake.was_baked(obj.data)),
-    Remedy.COPY,
-)
-_OWN_KEYS = (
-    # a curve that was baked, and has no keys any more, is like any other
-    replace(_UNCHANGED, failure=lambda obj: _UNCHANGED.failure(obj) and any(each.failure(obj) for each in _KEYS)),
-    *_KEYS,
-)
-_BAKED = (
-    _UNCHANGED,
-    Check(
-        "'{name}' has no keys of Möbius Flow; press Relax first",
-        lambda obj: obj.type != "CURVE" or not bake.was_baked(obj.data),
-        any_kind=True,
-    ),
-)
-_UNKEYED = Curves(_OBJECT_MODE, *_OWN, *_OWN_KEYS)
+            yield _refused(obj, sentence, Remedy.TO_POLY, number=number, kind=splines.kind(spline))
 
-_RELAXABLE = (
-    *(_OBJECT_MODE, *_OWN, *_SPLINES, *_OWN_KEYS),
-    Check(
-        "{deformer} moves its points, so that strands may be seen to cross; remove it, or relax a copy without it",
-        what_deforms,
-        Remedy.COPY,
-        "deformer",
-    ),
-    Check("'{name}' is scaled to nothing in some direction; give it a scale other than 0", _is_flat, any_kind=True),
-    Check(
-        "'{name}' is moved by {mover}, and curves relaxed together must keep their places; "
-        "remove that, or relax each curve alone",
-        what_moves,
-        Remedy.COPY,
-        "mover",
-        together=True,
-        any_kind=True,
-    ),
-)
+
+_RELAXABLE = (_edited, _shared, _unreadable, _keyed, _deformed, _flat, _moved)
 RELAXABLE = Curves(*_RELAXABLE)
-ENTERABLE = Curves(*_RELAXABLE, among=relaxed_together)
-READABLE = Curves(_OBJECT_MODE, *_SPLINES)
-FILMABLE = Curves(*READABLE.checks, among=shown_curves)
-PAINTABLE = Curves(*READABLE.checks, *_OWN)
-FITTABLE = Curves(
-    *PAINTABLE.checks,
-    Check(
-        "'{name}' has a profile, taper, extrusion, offset or point radii of its own; remove them first",
-        lambda obj: not bevel.can_fit(obj.data),
-    ),
-)
-TUBED = Curves(
-    Check(
-        "'{name}' has no bevel depth; set it to the rope's radius first (Object Data properties, Geometry > Bevel)",
-        lambda obj: not splines.depth(obj.data),
-    ),
-    Check(
-        "'{name}' has no thickness; give its points an attribute named radius first",
-        lambda obj: obj.type == "MESH" and "radius" not in obj.data.attributes,
-        any_kind=True,
-    ),
-    among=relaxed_together,
-)
-PINNABLE = Curves(*_OWN, among=curves_at_hand)
-BAKED = Curves(*_BAKED)
-CLEARABLE = Curves(*_BAKED, _OBJECT_MODE, *_OWN)
-UNEDITED = Curves(
-    Check(
-        "Keys of '{name}' were edited; undo that, or remove the keys to relax the curve as it is",
-        lambda obj: bake.is_baked(obj.data) and bake.is_edited(obj.data),
-        Remedy.COPY,
-    )
-)
-POLYGONS = Curves(
-    Check(
-        "Spline {number} of '{name}' is a {kind} spline; convert it to Poly first "
-        "(Edit Mode, Curve > Set Spline Type > Poly), or set Sample Splines",
-        _smooth_spline,
-        Remedy.TO_POLY,
-    ),
-    among=relaxed_together,
-)
+ENTERABLE = Curves(*_RELAXABLE, others=(_edited, _flat, _moved), among=relaxed_together)
+READABLE = Curves(_edited, _unreadable, others=(_edited,))
+FILMABLE = Curves(_edited, _unreadable, among=shown_curves)
+PAINTABLE = Curves(_edited, _unreadable, _shared)
+FITTABLE = Curves(_edited, _unreadable, _shared, _unfit)
+TUBED = Curves(_thin, others=(_thin,), among=relaxed_together)
+PINNABLE = Curves(_shared, among=curves_at_hand)
+BAKED = Curves(_changed, _unkeyed, others=(_unkeyed,))
+CLEARABLE = Curves(_changed, _unkeyed, _edited, _shared, others=(_unkeyed,))
+UNEDITED = Curves(_rekeyed)
+POLYGONS = Curves(_smooth, among=relaxed_together)
+_CLOSABLE, _POSSIBLE = Curves(_edited, _shared, _keyed), Curves(*_RELAXABLE, _smooth)
 
 
 def needing(objects: Sequence[bpy.types.Object], remedy: Remedy) -> Iterator[bpy.types.Object]:
     """Yield the curve objects whose first refusal has this remedy, examining each in its turn."""
-    several = len(objects) > 1
-    checks = [*RELAXABLE.checks, *POLYGONS.checks]
-    alone = Curves(*(replace(check, together=check.together and not several) for check in checks))
     for obj in objects:
-        refusal = alone.of([obj])
+        refusal = _POSSIBLE.of([obj], several=len(objects) > 1)
         if refusal is not None and refusal.remedy is remedy:
             yield obj
 
@@ -360,5 +318,5 @@ def closable(objects: Sequence[bpy.types.Object]) -> Iterator[bpy.types.Object]:
     """Yield the curve objects with open splines that may be closed: a baked curve's keys are made for open ones."""
     for obj in objects:
         is_open = not all(spline.use_cyclic_u for spline in obj.data.splines)
-        if is_open and not bake.is_baked(obj.data) and not _UNKEYED.of([obj]):
+        if is_open and not bake.is_baked(obj.data) and not _CLOSABLE.of([obj]):
             yield obj
