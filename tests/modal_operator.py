@@ -23,6 +23,8 @@ class Operator:
     begin = CURVE_OT_mobius_flow_relax.begin
     listen = CURVE_OT_mobius_flow_relax.listen
     session = CURVE_OT_mobius_flow_relax.session
+    moving = CURVE_OT_mobius_flow_relax.moving
+    more = CURVE_OT_mobius_flow_relax.more
     fail = CURVE_OT_mobius_flow_relax.fail
     sample_splines = True
 

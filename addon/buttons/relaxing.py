@@ -115,9 +115,13 @@ class Relaxing(Listening, Button):
         """The objects that get keys."""
         return relaxed_together(context)
 
+    def more(self, _context: bpy.types.Context) -> dict[str, Any]:
+        """What `begin` is told besides."""
+        return {}
+
     def session(self, context: bpy.types.Context, values: dict[str, Any]) -> Session:
         """Begin to relax the selected curves; raises MobiusFlowError."""
-        return begin(relaxed_together(context), values, self.continues, self.sample_splines)
+        return begin(self.moving(context), values, self.continues, self.sample_splines, **self.more(context))
 
     def values(self, context: bpy.types.Context) -> dict[str, Any]:
         """The settings: those given to the operator, and the scene's; raises MobiusFlowError."""
@@ -160,9 +164,8 @@ hidden, which would be in the same place (Alt H)"""
     def moving(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         return _in_turn(context)[:1]
 
-    def session(self, context: bpy.types.Context, values: dict[str, Any]) -> Session:
-        moving, *between = _in_turn(context)
-        return begin([moving], values, False, self.sample_splines, [*between, context.active_object])
+    def more(self, context: bpy.types.Context) -> dict[str, Any]:
+        return {"goals": [*_in_turn(context)[1:], context.active_object]}
 
 
 class CURVE_OT_mobius_flow_grab(Relaxing, bpy.types.Operator):
@@ -209,10 +212,9 @@ moved as little as that allows; ends and pins stay in place. Where two curves me
     )
     free_ends: BoolProperty(name="Free Ends", description="Hold ends only if they are pinned", options={"SKIP_SAVE"})
 
-    def session(self, context: bpy.types.Context, values: dict[str, Any]) -> Session:
+    def more(self, _context: bpy.types.Context) -> dict[str, Any]:
         over, lengths = None if self.over == "AUTO" else self.over.lower(), "keep" if self.keep_lengths else "free"
-        ropes = {"over": over, "lengths": lengths, "free_ends": self.free_ends}
-        return begin(relaxed_together(context), values, False, self.sample_splines, ropes=ropes)
+        return {"ropes": {"over": over, "lengths": lengths, "free_ends": self.free_ends}}
 
 
 class CURVE_OT_mobius_flow_tighten(Relaxing, bpy.types.Operator):
@@ -230,8 +232,8 @@ keep the motion as keyframes"""
         options={"SKIP_SAVE"},
     )
 
-    def session(self, context: bpy.types.Context, values: dict[str, Any]) -> Session:
-        return begin(relaxed_together(context), values, False, self.sample_splines, starts=self.starts)
+    def more(self, _context: bpy.types.Context) -> dict[str, Any]:
+        return {"starts": self.starts}
 
 
 class CURVE_OT_mobius_flow_pack(Relaxing, bpy.types.Operator):

@@ -33,6 +33,16 @@ def unpin(spline: bpy.types.Spline, chosen: BoolArray) -> None:
     _mark(spline, chosen & marked(spline), 1.0)
 
 
+def pin_only(objects: Sequence[bpy.types.Object], vertices: Sequence[int]) -> None:
+    """Pin these points, counted through all splines of all objects, and no others."""
+    first = 0
+    for spline in [spline for obj in objects for spline in obj.data.splines]:
+        chosen = np.isin(np.arange(first, first + len(spline.points)), vertices)
+        first += len(chosen)
+        pin(spline, chosen)
+        unpin(spline, ~chosen)
+
+
 def ends(spline: bpy.types.Spline) -> BoolArray:
     """The first and the last point of an open spline, none of a closed one; (points,)."""
     found = np.zeros(len(control_points(spline)), dtype=bool)

@@ -26,10 +26,9 @@ from ...core.keys.tube import eased, rope_radii
 from ...core.separate import SeparateOptions
 from ...core.tighten import TightenOptions
 from ..engine.worker import begun, in_common_space
-from . import bake, bevel
+from . import bake, bevel, pins
 from .goals import Goals
 from .member import Member
-from .pins import pin, pinned_vertices, unpin
 from .sizes import placement
 from .splines import coordinates, stretch
 from .strands import read_link
@@ -99,7 +98,7 @@ class Session:
 
     `requirements` accept the objects, and their transforms are evaluated. They show stand-ins until all is written, or
     until `discard`. Where the run ``continues``, baked curves are relaxed on from the ends of their animations, and
-    keys are added to theirs. ``pins``: points that are pinned besides the marked ones, counted from 0 through all
+    keys are added to theirs. ``pinned``: points that are pinned besides the marked ones, counted from 0 through all
     splines of all objects; ``pin_tangents``: whether the neighbours of pinned points in the refined curve are, too.
     ``goals``: curve objects that the link is to become, one after the other; by default it is relaxed alone.
     ``ropes``: how it is separated, or pulled tight, instead.
@@ -116,7 +115,7 @@ class Session:
         key_options: KeyOptions,
         continues: bool = False,
         surroundings: Surroundings = NOTHING,
-        pins: Sequence[int] = (),
+        pinned: Sequence[int] = (),
         pin_tangents: bool = False,
         goals: Sequence["bpy.types.Object"] = (),
         ropes: SeparateOptions | TightenOptions | None = None,
@@ -130,10 +129,10 @@ class Session:
         self._begin(objects)
         try:
             self.goals = Goals(goals, self.curve)
-            pins = tuple(sorted({*pins, *pinned_vertices(objects, self.curve.mesh)}))
-            obstacles, tangents = surroundings.obstacles, pin_tangents and bool(pins)
-            self.task = Task(curve=self.curve, obstacles=obstacles, pins=pins, pin_tangents=tangents)
-            if pins or obstacles:
+            held = tuple(sorted({*pinned, *pins.pinned_vertices(objects, self.curve.mesh)}))
+            obstacles, tangents = surroundings.obstacles, pin_tangents and bool(held)
+            self.task = Task(curve=self.curve, obstacles=obstacles, pins=held, pin_tangents=tangents)
+            if held or obstacles:
                 key_options.check_place()
             if obstacles and options.balance:
                 raise OptionError(Message("Balance does not go with what is avoided; leave it out, or avoid nothing"))
@@ -148,13 +147,13 @@ class Session:
             self.options, self.job, first, size = options, ropes or options, None, None
             if continues:  # the keys that are there have as many points as the curves have now
                 self.options = self.job = replace(options, vertices=len(self.curve), mesh="fixed", untangle="never")
-                first = np.concatenate([coordinates(spline) for spline in self._splines])
+                first = np.concatenate([coordinates(spline) for obj in objects for spline in obj.data.splines])
                 size = self.members[0].size
         except BaseException:
             self.discard()
             raise
         # what of the size stays constant, or changes evenly between goals
-        stays = pins or obstacles or self.options.grow != 1.0
+        stays = held or obstacles or self.options.grow != 1.0
         stays = stays or not (isinstance(self.options.radius, str) or self._shape_keys)  # points alone are scaled
         # a taper may leave no radii at points, which make up for the size
         stays = stays or any(o.data.taper_object and o.data.taper_radius_mode == "OVERRIDE" for o in objects)
@@ -230,10 +229,6 @@ class Session:
     def objects(self) -> list[bpy.types.Object]:
         """Those that are still there."""
         return [obj for member in self.members if (obj := member.object) is not None]
-
-    @property
-    def _splines(self) -> list[bpy.types.Spline]:
-        return [spline for obj in self.objects for spline in obj.data.splines]
 
     def lost(self) -> Message | None:
         """Say what was done to one of the objects, or to what they avoid, that makes it impossible to go on.
@@ -311,7 +306,7 @@ class Session:
         key = self.motion.shown if there is None else there
         self._move(self.motion.start, key.points, self._radii(Keys((key,), 0))[0] if self._fits else None)
         if there is None:
-            self._mark_pins()
+            self._repin()
 
     def _move(self, start: Curve, frame: Frame, radius: float | None) -> None:
         """Move all points, (n, 3) in each object's own coordinates; ``start``: the start with as many vertices.
@@ -322,8 +317,8 @@ class Session:
             self._make_polygons(start)
         self._shown = start, frame, radius
         for member, vertices, scale in zip(self.members, self.link.slices(start.mesh), self.link.scales, strict=True):
-            fits = radius is not None and member.fits(self._key_options)
-            member.move(frame[vertices], radius / scale if fits and radius is not None else None)
+            own = radius / scale if radius is not None and member.fits(self._key_options) else None
+            member.move(frame[vertices], own)
 
     def _make_polygons(self, refined: Curve) -> None:
         """Give all splines the points of the refined link; their positions are left open."""
@@ -331,19 +326,14 @@ class Session:
         for member, drawn, part in parts:
             member.make_polygons(drawn, part)
 
-    def _mark_pins(self) -> None:
+    def _repin(self) -> None:
         """Let the points where the last iterate, which may have fewer vertices, has pins be the pinned ones."""
         if not self._repinned or (last := self.motion.last) is None:
             return
         shown = self.link.to_common(self.motion.start.mesh, self.motion.shown.points)
         seen = self.link.to_stored(last.curve.mesh, self.motion.size.of(last.curve.vertices))
-        pins = self.link.to_common(last.curve.mesh, seen)[list(last.pins)]
-        vertices, first = [int(np.linalg.norm(shown - place, axis=1).argmin()) for place in pins], 0
-        for spline in self._splines:
-            chosen = np.isin(np.arange(first, first + len(spline.points)), vertices)
-            first += len(chosen)
-            pin(spline, chosen)
-            unpin(spline, ~chosen)
+        places = self.link.to_common(last.curve.mesh, seen)[list(last.pins)]
+        pins.pin_only(self.objects, [int(np.linalg.norm(shown - place, axis=1).argmin()) for place in places])
 
     @property
     def in_view(self) -> Curve | None:
@@ -414,7 +404,7 @@ class Session:
         keys, frames, course, radii = prepared
         options, mesh, objects = self._key_options, self.motion.start.mesh, self.objects
         self._make_polygons(self.motion.start)
-        self._mark_pins()
+        self._repin()
         for member, vertices, scale in zip(self.members, self.link.slices(mesh), self.link.scales, strict=True):
             own = None if radii is None else radii / scale
             yield from member.writing(keys.part(vertices), frames, options, own)

@@ -41,15 +41,11 @@ class Refresh:
         self._every, self._clock = every, clock
         self._shown: float | None = None
         self._next = clock()
-        self._waited = False  # whether the next iterate is the first one after a pause
-
-    def wait(self) -> None:
-        """Let the very next iterate be shown, whatever follows it."""
-        self._waited = True
+        self.waited = False  # whether the very next iterate is to be shown, the first one after a pause
 
     def shown(self) -> None:
         """Note that an iterate is being shown; Blender draws it before it sends the next event."""
-        self._shown, self._waited = self._clock(), False
+        self._shown, self.waited = self._clock(), False
 
     def drawn(self) -> None:
         """Note that an event has come: what was shown last has been drawn."""
@@ -60,7 +56,7 @@ class Refresh:
 
     def ends_batch(self, index: int) -> bool:
         """Whether an iterate must be shown before the next one is taken in."""
-        return self._waited or (self._every > 0 and index % self._every == 0)
+        return self.waited or (self._every > 0 and index % self._every == 0)
 
     def due(self, index: int) -> bool:
         """Whether an iterate, the last one taken in, is to be shown now."""
@@ -77,24 +73,12 @@ class KeyWriter:
     slice = 0.02  # seconds of writing at a time
 
     def __init__(self, session: Session, proof: Proof) -> None:
-        self._session = session
-        self._proof = proof
-        self._thread = threading.Thread(target=self._prepare, name="Möbius Flow keys", daemon=True)
-        self._abandoned = False
+        self._session, self._proof = session, proof
+        self.abandoned = False  # which ends the thread at its next proof
         self._prepared: Prepared | None = None
-        self._pieces: Iterator[Report | None] | None = None
-
-    def start(self) -> None:
+        self.pieces: Iterator[Report | None] | None = None  # once some keys have been written, though perhaps not all
+        self._thread = threading.Thread(target=self._prepare, name="Möbius Flow keys", daemon=True)
         self._thread.start()
-
-    def abandon(self) -> None:
-        """End the thread at its next proof; harmless if there is none."""
-        self._abandoned = True
-
-    @property
-    def has_begun(self) -> bool:
-        """Whether some keys have been written, though perhaps not all."""
-        return self._pieces is not None
 
     def advance(self, seconds: float | None = None) -> Report | None:
         """Write for a time, by default a moment, if the keys are ready, and report once all are written."""
@@ -102,16 +86,16 @@ class KeyWriter:
             return None
         if self._prepared is None:
             raise MobiusFlowError("The keys could not be prepared; all is as it was")
-        self._pieces = self._pieces or self._session.bake(self._prepared)
+        self.pieces = self.pieces or self._session.bake(self._prepared)
         until = time.perf_counter() + (self.slice if seconds is None else seconds)
-        for report in self._pieces:
+        for report in self.pieces:
             if report is not None or time.perf_counter() >= until:
                 return report
         return None
 
     def _prepare(self) -> None:
         def prove(*motion: Any) -> bool:
-            if self._abandoned:
+            if self.abandoned:
                 raise _AbandonedError
             return self._proof(*motion)
 
@@ -158,7 +142,7 @@ class LiveRun:
         except BaseException:
             self.session.discard()
             raise
-        self._keys = KeyWriter(self.session, self._worker.is_rope)
+        self._keys: KeyWriter | None = None
 
     @property
     def objects(self) -> list[bpy.types.Object]:
@@ -199,7 +183,7 @@ class LiveRun:
         """Stop, or go on with the next iterate; during a pause the worker waits too."""
         if self.endures:
             self._show()
-            self._refresh.wait()
+            self._refresh.waited = True
             self.time_left.restart()
             self.state = RunState.PAUSED if self.state is RunState.RUNNING else RunState.RUNNING
             self._worker.tell("pause", self.state is RunState.PAUSED)
@@ -255,7 +239,7 @@ class LiveRun:
             self.session.outcome = Outcome(Status.INTERRUPTED, (reason,))
         self.state = RunState.FINISHING
         self._worker.close()
-        self._keys.start()
+        self._keys = KeyWriter(self.session, self._worker.is_rope)
 
     def cancel(self, message: str = Message("Cancelled; all is as it was")) -> None:
         if not self.state.over:
@@ -269,7 +253,6 @@ class LiveRun:
     def recover(self) -> None:
         """Keep what a cancelled run had reached; raises MobiusFlowError if the curves have changed since."""
         self.session.reopen()
-        self._keys = KeyWriter(self.session, self._worker.is_rope)
         self.state, self.message, self.failed, self.shown = RunState.RUNNING, "", False, None
         self.trouble, self._left = [], None
         self.keep()
@@ -282,7 +265,7 @@ class LiveRun:
 
     def complete(self) -> None:
         """Finish writing keys once begun: a saved file must not hold half of them."""
-        if self.state is RunState.FINISHING and self._keys.has_begun:
+        if self._keys is not None and self._keys.pieces is not None and self.state is RunState.FINISHING:
             self._advance(math.inf)
 
     def _advance(self, seconds: float | None = None) -> None:
@@ -297,7 +280,7 @@ class LiveRun:
                     self.message = Message("{ended}, {more}", ended=ended, more=more)
             elif self.state is RunState.RUNNING:
                 self._take()
-            elif self.state is RunState.FINISHING:
+            elif self._keys is not None:
                 self.report = self._keys.advance(seconds)
                 if self.report is not None and self.last is not None:
                     self.trouble = self.session.spots(self.report.outcome.place, self.last.curve)
@@ -355,7 +338,8 @@ class LiveRun:
         """End, putting the curves back or not; return whether all are as they were."""
         self.state, self.message, self.drag = state, message, None
         self._worker.close()
-        self._keys.abandon()
+        if self._keys is not None:
+            self._keys.abandoned = True
         self.on_end()
         restored = discard and self.session.discard()
         self._left = {obj.session_uid: digest(obj.data) for obj in self.session.objects}

@@ -37,7 +37,7 @@ def test_what_is_shown_at_once():
     assert [index for index in range(10) if refresh.ends_batch(index)] == [0, 3, 6, 9]
     assert not any(Refresh().ends_batch(index) for index in range(10))
     refresh = Refresh(clock=lambda: -1.0)
-    refresh.wait()
+    refresh.waited = True
     assert refresh.ends_batch(7)
     assert refresh.due(7)
     refresh.shown()
@@ -47,7 +47,6 @@ def test_what_is_shown_at_once():
 def started(session, proof):
     """A writer whose thread is at its end."""
     writer = KeyWriter(session, proof)
-    writer.start()
     writer._thread.join(PATIENCE)
     return writer
 
@@ -78,8 +77,7 @@ def test_an_abandoned_thread_ends_at_its_next_proof():
         went_on.append(True)
 
     writer = KeyWriter(SimpleNamespace(prepare=prepare), lambda *_: proved.append(True))
-    writer.start()
-    writer.abandon()
+    writer.abandoned = True
     gate.set()
     writer._thread.join(PATIENCE)
     assert not writer._thread.is_alive()

@@ -3,8 +3,8 @@
 import bpy
 import numpy as np
 from case import Steps, picture, until
-from hands import addon, button, core, here, open_sidebar, window
-from scene import clear, is_, look, obj, reaches, run, undone
+from hands import addon, button, core, here, key, open_sidebar, window
+from scene import clear, endless, is_, look, obj, reaches, run, undone
 
 
 def copies() -> list[bpy.types.Object]:
@@ -25,6 +25,7 @@ def is_back() -> bool:
 
 def by_hand(name: str, data: bpy.types.ID) -> Steps:
     show(data)
+    endless()
     with here():
         bpy.ops.ed.undo_push(message="Before")
     yield from open_sidebar()
@@ -35,11 +36,12 @@ def by_hand(name: str, data: bpy.types.ID) -> Steps:
     yield from reaches(3)
     (copy,) = copies()
     assert copy.type == obj("Source").type
-    yield from button("curve.mobius_flow_cancel")
+    yield from key("ESC")
     yield from until(lambda: run() is None and is_back(), "the source")
-    yield from button("curve.mobius_flow_grab")
+    with here():
+        bpy.ops.curve.mobius_flow_grab("INVOKE_DEFAULT")
     yield from reaches(5)
-    yield from button("curve.mobius_flow_stop")
+    yield from key("RET")
     yield from is_("done")
     assert len(copies()) == 1
     assert obj().data.shape_keys is not None, "the carrier is active"
