@@ -10,7 +10,8 @@ from typing import Any
 import bpy
 import numpy as np
 
-from ...core.base.types import FloatArray
+from ...core import MobiusFlowError
+from ...core.base import FloatArray, Message
 from ...core.keys.key_options import Output, Timing
 from ...core.keys.motion import Keys
 from ...core.keys.placement import Frame
@@ -105,12 +106,14 @@ def blocks(data: bpy.types.Curve) -> dict[str, bpy.types.ID]:
     return {kind: block for kind, block in found.items() if block is not None}
 
 
-def end_of(data: bpy.types.Curve) -> Frame:
-    """Points of a curve at the last of its keys, (n, 3); the stored points may be those of another frame."""
+def keyed_points(data: bpy.types.Curve) -> list[Frame]:
+    """Points of a curve at each of its keys, (n, 3)."""
     if data.shape_keys:
-        return key_points(data.shape_keys.key_blocks[-1])
-    last = [curve.keyframe_points[-1].co[1] for curve in coordinate_curves(data)]
-    return np.array(last, dtype=np.float32).reshape(-1, 3)
+        return [key_points(block) for block in data.shape_keys.key_blocks]
+    columns = [read(curve.keyframe_points, "co", 2)[:, 1] for curve in coordinate_curves(data)]
+    if len({len(column) for column in columns}) > 1:
+        raise MobiusFlowError(Message("Keys of '{name}' were edited; undo that, or Bake Again", name=data.name))
+    return list(np.stack(columns, axis=1).reshape(len(columns[0]), -1, 3))
 
 
 def there_and_back(frames: FloatArray, values: FloatArray, timing: Timing) -> tuple[FloatArray, FloatArray]:

@@ -47,7 +47,7 @@ class Member:
         self._show(original.copy())
         if self._baked and self._continues:
             bake.forget(obj)
-            write_points(obj.data, keyframes.end_of(original))
+            write_points(obj.data, keyframes.keyed_points(original)[-1])
         elif self._baked:
             bake.clear(obj)
         self._shape = shape(obj.data)

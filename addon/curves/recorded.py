@@ -15,7 +15,7 @@ from ...core.curve import Mesh, along, interpolated
 from ...core.driver.words import in_blenders_words, named, spline_names
 from ...core.keys.placement import Frame, Link, Measure, Similarity, Turn, orthonormal
 from . import bake, pins
-from .keyframes import coordinate_curves, fcurves_of
+from .keyframes import coordinate_curves, fcurves_of, keyed_points
 from .moving import what_moves
 from .sizes import placement, resume, suspend
 from .splines import depth, key_points, mesh_of, radii, read, stretch, write_points
@@ -185,16 +185,6 @@ def keep_size(objects: Sequence[bpy.types.Object], measure: Measure, reference: 
             bake.scale_bevel(obj.data, changes[-1].factor)
             bake.update(obj.data)
     return BakedKeys(objects)
-
-
-def keyed_points(data: bpy.types.Curve) -> list[Frame]:
-    """Points of a curve at each of its keys, (n, 3)."""
-    if data.shape_keys:
-        return [key_points(block) for block in data.shape_keys.key_blocks]
-    columns = [read(curve.keyframe_points, "co", 2)[:, 1] for curve in coordinate_curves(data)]
-    if len({len(column) for column in columns}) > 1:
-        raise MobiusFlowError(Message("Keys of '{name}' were edited; undo that, or Bake Again", name=data.name))
-    return list(np.stack(columns, axis=1).reshape(len(columns[0]), -1, 3))
 
 
 def _move_keys(data: bpy.types.Curve, frames: Sequence[Frame]) -> None:

@@ -114,15 +114,11 @@ def read_link(objects: Sequence[bpy.types.Object]) -> tuple[Curve, Link]:
     return Curve.from_components(world, [flag for strands in each for flag in strands.closed]), link
 
 
-def chosen_edges(mesh: bpy.types.Mesh) -> BoolArray:
-    """The edges of a mesh that are curves, (edges,): those selected, or all where there are no faces."""
-    return read(mesh.edges, "select", dtype=bool) if mesh.polygons else np.ones(len(mesh.edges), dtype=bool)
-
-
-def has_loops(mesh: bpy.types.Mesh) -> bool:
-    """Whether a mesh has edges that are curves, none of which branches; cheap enough for every redraw."""
-    ends = read(mesh.edges, "vertices", 2, np.int32)[chosen_edges(mesh)]
-    return bool(len(ends)) and int(np.bincount(ends.ravel()).max()) <= 2
+def line_edges(mesh: bpy.types.Mesh) -> BoolArray:
+    """Which edges of a mesh are curves, (edges,): those selected, or all without faces; none if these branch."""
+    chosen = read(mesh.edges, "select", dtype=bool) if mesh.polygons else np.ones(len(mesh.edges), dtype=bool)
+    ends = read(mesh.edges, "vertices", 2, np.int32)[chosen]
+    return np.asarray(chosen & bool((np.bincount(ends.ravel()) <= 2).all()))
 
 
 def _read(obj: bpy.types.Object, own: bool) -> Strands:
@@ -137,10 +133,11 @@ def _read(obj: bpy.types.Object, own: bool) -> Strands:
             _draw(data, source.data)
         elif own:
             made += [mesh := obj.data.copy(), shown := bpy.data.objects.new("Sampled", mesh)]
-            if len(mesh.edges) and not has_loops(mesh):
-                sentence = "Edges of '{name}' branch; take out those that are not of a loop or a path"
+            chosen = line_edges(mesh)
+            if len(chosen) and not chosen.any():
+                sentence = "Edges of '{name}' branch, or none is selected beside faces; choose loops or paths"
                 raise CurveError(Message(sentence, name=obj.name))
-            _give(mesh, {"mobius_flow_chosen": Attribute("BOOLEAN", "EDGE", chosen_edges(mesh))})
+            _give(mesh, {"mobius_flow_chosen": Attribute("BOOLEAN", "EDGE", chosen)})
         _check_count(obj, data)
         made.append(bare := bpy.data.objects.new("Sampled", data))
         add_nodes(bare, _NODES, shown)

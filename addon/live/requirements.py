@@ -13,7 +13,7 @@ from ...core.base.messages import Message
 from ..curves import bake, bevel, splines
 from ..curves.moving import what_deforms, what_moves
 from ..curves.splines import box
-from ..curves.strands import KINDS, has_loops
+from ..curves.strands import KINDS, line_edges
 from ..curves.surroundings import CARRIER, TUBE_OF, WITHOUT_SHAPE
 from . import registry
 
@@ -77,7 +77,7 @@ def relaxed_together(context: bpy.types.Context) -> list[bpy.types.Object]:
     chosen = [obj for obj in context.selected_objects if obj.type in KINDS and CARRIER not in obj]
     lines = [obj for obj in chosen if obj.type != "MESH" or (obj.data.edges and not obj.data.polygons)]
     found = [*selected_curves(context), *lines]
-    return found or [obj for obj in chosen if has_loops(obj.data)]
+    return found or [obj for obj in chosen if obj.type == "MESH" and line_edges(obj.data).any()]
 
 
 def curves_at_hand(context: bpy.types.Context) -> list[bpy.types.Object]:

@@ -119,7 +119,7 @@ def test_baked_apart_they_go_on_together():
         obj.select_set(True)
         bpy.context.view_layer.objects.active = obj
         relax(max_iterations=count)
-    ends = [keyframes.end_of(obj.data) for obj in pair]
+    ends = [keyframes.keyed_points(obj.data)[-1] for obj in pair]
     for obj in pair:
         obj.select_set(True)
     go_on(max_iterations=2, timing="ITERATE")
@@ -146,10 +146,10 @@ def test_an_animation_without_motion_goes_on(keyframes_as):
     go_on(max_iterations=3, timing="ITERATE")
     assert last_frame(obj) == 4
     again(max_iterations=400, keyframes=keyframes_as, timing="ITERATE")
-    end, shown = last_frame(obj), keyframes.end_of(obj.data)
+    end, shown = last_frame(obj), keyframes.keyed_points(obj.data)[-1]
     go_on(max_iterations=400, tolerance=0.01)  # there is nothing left to do
     assert last_frame(obj) == end
-    np.testing.assert_array_equal(keyframes.end_of(obj.data), shown)
+    np.testing.assert_array_equal(keyframes.keyed_points(obj.data)[-1], shown)
 
 
 def test_what_was_thinned_goes_on_thinned():

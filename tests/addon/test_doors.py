@@ -220,7 +220,7 @@ BAD = {
     dot: "Spline 2 of 'Source' has fewer than 2 points; give it more, or delete it",
     far: " of spline 2 of 'Source' is not finite, or further away than anything; repair or delete it",
     fur: "'Source' has 100000 curves, and at most 1000 are relaxed together; make an object of a few",
-    branch: "Edges of 'Source' branch; take out those that are not of a loop or a path",
+    branch: "Edges of 'Source' branch, or none is selected beside faces; choose loops or paths",
     edit: "'Source' is being edited; go back to Object Mode first",
     flat: "'Source' is scaled to nothing in some direction; give it a scale other than 0",
 }

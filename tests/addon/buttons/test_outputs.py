@@ -6,7 +6,7 @@ import pytest
 from baked_curves import KEYED
 from blender_scenes import add_curve, add_hopf_link, add_trefoil, contents, evaluated, in_world, relax
 from mobius_flow.addon.curves import bevel, splines
-from mobius_flow.addon.curves.keyframes import end_of
+from mobius_flow.addon.curves.keyframes import keyed_points
 from mobius_flow.addon.curves.surroundings import near
 from mobius_flow.core import Curve
 from mobius_flow.core.energies.moebius import moebius_by_length
@@ -96,7 +96,7 @@ def test_it_is_as_thick_as_the_curve_is_drawn_or_as_fits_a_line():
 def test_attributes_are_of_the_end_and_points_those_of_every_key():
     add_hopf_link(20)
     relax(max_iterations=6, vertices=60)
-    link = Curve.from_components(np.split(end_of(bpy.context.object.data).astype(np.float64), 2))
+    link = Curve.from_components(np.split(keyed_points(bpy.context.object.data)[-1].astype(np.float64), 2))
     mesh = tube(sides=6).data
     assert len(mesh.vertices) == 60 * 6
     assert {len(block.data) for block in mesh.shape_keys.key_blocks} == {360}
@@ -183,7 +183,7 @@ def test_smooth_splines_are_where_it_is_said(kind, place, capfd):
     assert (spline.type, spline.use_cyclic_u) == (kind, True)
     assert len(spline.bezier_points if kind == "BEZIER" else spline.points) == 20
     drawn = in_world(made, np.concatenate(splines.sampled(made)))
-    polygon = in_world(curve, end_of(curve.data))
+    polygon = in_world(curve, keyed_points(curve.data)[-1])
     distance = np.linalg.norm(drawn[:, None] - polygon, axis=-1).min(axis=1).max()
     assert distance < 0.12 * curve.scale.x
 

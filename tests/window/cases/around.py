@@ -143,7 +143,7 @@ def pinned_ends() -> Steps:
     yield from button("curve.mobius_flow_relax")
     yield from is_("done")
     assert pinned() == 2
-    for frame in addon("curves.recorded").keyed_points(obj().data):
+    for frame in addon("curves.keyframes").keyed_points(obj().data):
         np.testing.assert_array_equal(frame[[0, -1]], arc[[0, -1]])
     assert not obj().data.splines[0].use_cyclic_u
     yield from look_down()
