@@ -26,7 +26,7 @@ from ...core.keys.tube import eased, rope_radii
 from ...core.separate import SeparateOptions
 from ...core.tighten import TightenOptions
 from ..engine.worker import begun, in_common_space
-from . import bake, bevel, pins
+from . import bake, bevel, doors, pins
 from .goals import Goals
 from .member import Member
 from .sizes import placement
@@ -416,6 +416,8 @@ class Session:
         self.goals.hide(objects)
         played = bake.scene_range(objects)
         shown = keys.keys[-1].size.factor * stretch(objects[0])
+        after = [each for obj in objects for each in obj.modifiers]
+        after += [each for obj in objects if (copy := doors.copy_of(obj)) for each in copy.modifiers[1:]]
         yield Report(
             names=self.names,
             outcome=self.outcome,
@@ -427,6 +429,6 @@ class Session:
             scene_range=played,
             certified=keys.certified,
             radius=None if radii is None else float(radii[-1]) * shown,
-            modified=any(each.show_viewport or each.show_render for obj in objects for each in obj.modifiers),
+            modified=any(each.show_viewport or each.show_render for each in after),
             avoided=self.surroundings.names,
         )

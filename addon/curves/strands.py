@@ -4,7 +4,7 @@ Whatever is no curve object goes through hair curves, which Blender's nodes make
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import bpy
@@ -24,6 +24,7 @@ KINDS = {"CURVES", "GREASEPENCIL", "MESH"}  # of objects that are read besides c
 _MOST = 1000  # strands of one of them: a relaxation would never get anywhere with a fur of 100,000 hairs
 _NODES = "Möbius Flow Strands"
 _LAYER, _VERTEX = "mobius_flow_layer", "mobius_flow_vertex"  # attributes: number of a stroke's layer, and of a point
+_USUAL = {"radius": 0.01, "opacity": 1.0, "fill_opacity": 1.0, "aspect_ratio": 1.0, "u_scale": 1.0}  # of strokes
 _FIELDS: dict[str, tuple[str, int, Any]] = {  # of types of attributes: where values are, numbers of each, what they are
     "FLOAT": ("value", 1, np.float32),
     "FLOAT2": ("vector", 2, np.float32),
@@ -65,7 +66,10 @@ class Strands:
         """
         if obj.type == "CURVE":
             frames = sampled(obj) if smooth_splines(obj.data) else [coordinates(each) for each in obj.data.splines]
-            found = cls(frames, tuple(bool(spline.use_cyclic_u) for spline in obj.data.splines))
+            found = cls(
+                [each.astype(np.float64) for each in frames],
+                tuple(bool(spline.use_cyclic_u) for spline in obj.data.splines),
+            )
         else:
             found = cls((), ()) if what_deforms(obj) else _read(obj, True)
             found = found if found.components else _read(obj, False)
@@ -83,7 +87,7 @@ class Strands:
                     " or delete it"
                 )
                 raise CurveError(Message(sentence, point=bad[0] + 1, spline=k, name=obj.name))
-        return replace(found, components=[each.astype(np.float64) for each in found.components])
+        return found
 
     @property
     def mesh(self) -> Mesh:
@@ -156,9 +160,9 @@ def _read(obj: bpy.types.Object, own: bool) -> Strands:
     for name in ("curve_type", "mobius_flow_poly", "mobius_flow_chosen"):  # all are polygons now
         attributes.pop(name, None)
     if "radius" not in attributes:  # as thick as Blender draws them; edges of meshes have no thickness
-        radii = np.full(sum(sizes), 0.0 if obj.type == "MESH" else 0.01, dtype=np.float32)
+        radii = np.full(sum(sizes), 0.0 if obj.type == "MESH" else _USUAL["radius"], dtype=np.float32)
         attributes["radius"] = Attribute("FLOAT", "POINT", radii)
-    components = np.split(attributes["position"].values, np.cumsum(sizes)[:-1])
+    components = np.split(attributes["position"].values.astype(np.float64), np.cumsum(sizes)[:-1])
     closed = attributes["cyclic"].values if "cyclic" in attributes else np.zeros(len(sizes), dtype=bool)
     worn = obj if own else obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
     materials = [each and each.original for each in worn.data.materials]
@@ -181,7 +185,8 @@ def _draw(data: Any, source: Any) -> None:
     """Make hair curves of the strokes that are shown, in the object's coordinates."""
     drawings = _drawings(source)
     sizes = {k: np.diff(read(each.curve_offsets, "value", dtype=np.int32)) for k, each in drawings.items()}
-    data.add_curves([int(size) for each in sizes.values() for size in each])
+    if sizes:
+        data.add_curves(np.concatenate(list(sizes.values())).tolist())
     every = {k: _attributes(each) for k, each in drawings.items()}
     for k, attributes in every.items():
         kind, domain, points = attributes["position"]
@@ -191,13 +196,13 @@ def _draw(data: Any, source: Any) -> None:
     shapes = {name: each for attributes in every.values() for name, each in attributes.items()}
     for name, (kind, domain, values) in shapes.items():
         counts = {k: len(sizes[k]) if domain == "CURVE" else int(sizes[k].sum()) for k in every}
-        blank = {k: np.zeros((count, *values.shape[1:]), dtype=values.dtype) for k, count in counts.items()}
-        parts = [each[name].values if name in each else blank[k] for k, each in every.items()]
+        usual = np.full_like(values[:1], _USUAL.get(name, 0))  # in layers that have no such attribute
+        parts = [each[name].values if name in each else usual.repeat(counts[k], axis=0) for k, each in every.items()]
         shapes[name] = Attribute(kind, domain, np.concatenate(parts))
     types = shapes.pop("curve_type").values if "curve_type" in shapes else np.ones(len(data.curves))
     shapes["mobius_flow_poly"] = Attribute("BOOLEAN", "CURVE", types == 1)  # the nodes set that in all versions
     for number, name in ((0, "CATMULL_ROM"), (2, "BEZIER"), (3, "NURBS")):
-        if (types == number).any():
+        if (types == number).any() and hasattr(data, "set_types"):
             data.set_types(type=name, indices=np.flatnonzero(types == number).tolist())
     _give(data, shapes)
 
@@ -228,7 +233,6 @@ def copied(source: bpy.types.Object, strands: Strands, drawn: Curve, refined: Cu
         data, layers = source.data.copy(), attributes.pop(_LAYER).values
         points = layers.repeat(sizes)
         for k, layer in enumerate(data.layers):
-            was = _drawings(source.data)[k].attributes if (layers == k).any() and strands.own else None
             for frame in list(layer.frames):
                 layer.frames.remove(frame.frame_number)
             layer.translation = layer.rotation = (0.0, 0.0, 0.0)
@@ -236,9 +240,8 @@ def copied(source: bpy.types.Object, strands: Strands, drawn: Curve, refined: Cu
             if (layers == k).any():
                 drawing = layer.frames.new(min(bpy.context.scene.frame_start, 0)).drawing
                 drawing.add_strokes([size for size, of in zip(sizes, layers, strict=True) if of == k])
-                own = {name: each for name, each in attributes.items() if was is None or name in was or name == _VERTEX}
                 chosen = {"POINT": points == k, "CURVE": layers == k}
-                _give(drawing, {n: Attribute(t, d, v[chosen[d]]) for n, (t, d, v) in own.items()})
+                _give(drawing, {n: Attribute(t, d, v[chosen[d]]) for n, (t, d, v) in attributes.items()})
                 drawing.tag_positions_changed()
         return data
     if source.type == "MESH" and strands.own:

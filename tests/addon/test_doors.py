@@ -204,6 +204,12 @@ def branch():
     add_edges().data = mesh
 
 
+def blank():
+    data = KINDS["strokes"]().data
+    data.layers.remove(data.layers[0])
+    data.layers[0].hide = True
+
+
 def edit():
     add_loop()
     bpy.ops.object.mode_set(mode="EDIT")
@@ -221,6 +227,7 @@ BAD = {
     far: " of spline 2 of 'Source' is not finite, or further away than anything; repair or delete it",
     fur: "'Source' has 100000 curves, and at most 1000 are relaxed together; make an object of a few",
     branch: "Edges of 'Source' branch, or none is selected beside faces; choose loops or paths",
+    **({blank: "'Source' shows no curves; draw some, or see what its modifiers do"} if STROKES else {}),
     edit: "'Source' is being edited; go back to Object Mode first",
     flat: "'Source' is scaled to nothing in some direction; give it a scale other than 0",
 }
@@ -241,6 +248,29 @@ def test_edges_without_a_thickness_are_no_ropes():
     add_loop()
     with pytest.raises(RuntimeError, match="'Source' has no thickness; give its points an attribute named radius"):
         bpy.ops.curve.mobius_flow_separate()
+
+
+@pytest.mark.skipif(not STROKES, reason="this Blender has other strokes")
+def test_layers_without_an_attribute_have_its_usual_value():
+    source = KINDS["strokes"]()
+    first, second = (layer.frames[0].drawing for layer in source.data.layers)
+    second.attributes.remove(second.attributes["radius"])
+    first.attributes.new("opacity", "FLOAT", "POINT").data.foreach_set("value", np.full(len(KNOT), 0.5, np.float32))
+    second.set_types(type="NURBS") if hasattr(second, "set_types") else None
+    read = Strands.of(source)
+    size = len(read.components[0])
+    for name, usual in (("radius", 0.01), ("opacity", 1.0)):
+        np.testing.assert_allclose(read.attributes[name].values[size:], usual)
+    bpy.ops.curve.mobius_flow_relax(**FEW)
+    assert points(copy_of(bpy.context.object), "opacity", "value", 1)[-1] == 1.0
+
+
+def test_modifiers_come_after_the_motion():
+    source = add_edges()
+    source.modifiers.new("Skin", "SKIN")
+    report = Relaxation(source).relax(**FEW)
+    assert report.modified
+    assert [each.type for each in copy_of(bpy.context.object).modifiers] == ["NODES", "SKIN"]
 
 
 def test_a_curve_object_that_is_selected_too_leaves_solids_alone():
