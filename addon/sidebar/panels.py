@@ -155,7 +155,11 @@ class VIEW3D_PT_mobius_flow_shape(SubPanel, bpy.types.Panel):
             button("fit_tube", "MESH_CAPSULE", Message("Constant"), constant=True),
         ),
         button("color_components", "COLOR"),
-        column(button("tube_mesh", "OUTLINER_OB_MESH"), button("smooth_curve", "CURVE_BEZCURVE")),
+        column(
+            button("tube_mesh", "OUTLINER_OB_MESH"),
+            button("smooth_curve", "CURVE_BEZCURVE"),
+            button("draw_diagram", "GREASEPENCIL"),
+        ),
         column(
             button("keep_size", "FULLSCREEN_EXIT"),
             row(button("lay_flat", "AXIS_TOP"), button("face_camera", "CAMERA_DATA")),
