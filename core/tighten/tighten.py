@@ -296,13 +296,13 @@ class _Rope:
     def pulled(self, exact: bool) -> Iterator[Iterate]:
         """The steps of an interior point, with forces as the last one had them, on half as many vertices."""
         curve, last = self.curve.with_vertices((self.curve.vertices - self.center) / self.unit), self.point
-        mu, margin = (0.007 * curve.length / len(curve), 0.3) if last is None else (0.25 * last.mu, last.margin)
+        mu, margin = (0.03 * (curve.length / len(curve)) ** 2, 0.3) if last is None else (0.05 * last.mu, 0.45 * last.margin)
 
         def placed(vertices: FloatArray) -> FloatArray:
             return np.asarray(self.center + self.unit * vertices)
 
         self.point = point = InteriorPoint(curve, mu, lambda vertices: self.proves(placed(vertices)), margin)
-        for share in point.run(GAP if exact else 0.01, exact):
+        for share in point.run(GAP if exact else None):
             if share > 0.0:
                 path = [placed(point.curve.vertices)]
                 longer = curve.component_lengths - point.curve.component_lengths
