@@ -2,14 +2,16 @@
 
     minimise  f = Σ √(m Σ ℓ²)  over components of m edges,  subject to  c ≥ 0  (`contacts`)
 
-f is the length where edges are equally long, and makes them so.  Steps are Newton's for  ∇f = Σ z ∇c  and  z c = μ:
+f is the length where edges are equally long, and makes them so.  Steps are Newton's for  ∇f = Σ z ∇c  and  z = −B'(c):
 
-    (D²f − Σ z D²c + Σ (z/c) ∇c ∇cᵀ + δ D²f) dx = −∇f + Σ (μ/c) ∇c,    dz = μ/c − z − (z/c) ⟨∇c, dx⟩,
+    (D²f − Σ z D²c + Σ k ∇c ∇cᵀ + δ D²f) dx = −∇f − Σ B' ∇c,    dz = −B' − z − k ⟨∇c, dx⟩,
 
-where δ makes the matrix definite, and more where steps are too long.  Of a step so much is taken that the barrier
-function f − μ Σ log c falls enough, no c loses nearly all of itself, no vertex moves more than half a radius, and the
-motion is proved.  μ falls as soon as the rope is centred, that is, when steps promise little more (Nocedal and Wright,
-*Numerical Optimization*, chapter 19).
+with the barrier  B(c) = −μ (log(c/h) − 2 (c/h − 1) + ((c/h)² − 1)/2)  up to the margin h and 0 from there on, smoothly,
+as a logarithm would depend on what is listed, and  k = z/c + B'' + B'/c.  Where the matrix is not definite, negative
+eigenvalues change their signs (saddle-free Newton); δ shortens steps that are far too long.  Of a step so much is taken
+that f + Σ B falls enough, no c loses most of itself, no vertex moves more than half a radius, and the motion is proved.
+μ and h fall once the rope is well centred, that is, when steps promise very little: polygons' contacts are notched, and
+ropes that come to a small μ in a hurry are caught in notches (Nocedal and Wright, *Numerical Optimization*, ch. 19).
 """
 
 from collections.abc import Callable, Iterator
@@ -28,8 +30,8 @@ from ..solve.symmetric import factorised
 from .contacts import Contacts
 
 CENTRED = 0.001  # decrease that Newton's step promises, in μ for each constraint, below which μ falls
-PATIENCE = 15  # steps
-WEIGHT = 0.03  # of the barrier
+PATIENCE = 15  # steps that bring as little: then it falls, too
+FALL = 0.2  # of μ
 LONGEST = 0.5  # that a vertex moves at once, in radii: strands cannot change places
 LEAST_MARGIN = 0.005
 
@@ -45,40 +47,47 @@ class InteriorPoint:
     curve: Curve
     mu: float
     proved: Callable[[FloatArray], bool]
-    margin: float = 0.3  # of distances beyond 2, up to which strands are constraints
+    margin: float = 0.3  # of distances beyond 2, at which the barrier begins
     gap: float = field(default=np.inf, init=False)
     residual: float = field(default=np.inf, init=False)
 
     def __post_init__(self) -> None:
-        self.contacts = Contacts.near(self.curve, 1.5 * self.margin)
-        self.forces = self._aims(self.contacts.values(self.curve.vertices))[0]
-        self._listed, self._delta = self.curve.vertices, 0.0
-        self._depth = 1.0
+        self._delta, self._depth = 0.0, 1.0
         self._free = ~holds(self.curve.mesh, self.curve.mesh.ends.ravel())
+        self._list(Contacts.near(self.curve, 1.5 * self.margin))
 
-    def run(self, gap: float | None = None, most: int = 400) -> Iterator[float]:
-        """Yield the share of Newton's step that was taken, until the rope is centred, and the gap this small."""
+    def run(self, gap: float | None, most: int = 400) -> Iterator[float]:
+        """Yield the share of Newton's step that was taken, until the gap and a tenth of the residual are small.
+
+        Without a gap it ends as soon as the rope is centred, and μ falls only with the squares of edges.
+        """
         merits: list[float] = []
+        weight = self.mu / float(np.mean(self.curve.edge_lengths)) ** 2
         for _ in range(most):
             check_time()
             share, decrement = self.step()
             little = CENTRED * self.mu * len(self.forces)
-            merits.append(self.excess + self._walls(self.contacts.values(self.curve.vertices)))
+            merits.append(self.merit)
             still = len(merits) > PATIENCE and merits[-1] > merits[-1 - PATIENCE] - little
             least = self.mu if gap is None else 0.5 * gap * self.curve.length / len(self.forces)
-            if gap is None:
-                self.mu = min(self.mu, WEIGHT * float(np.mean(self.curve.edge_lengths)) ** 2)
-                if decrement < little or still:
-                    return
-            elif self.gap <= gap and (self.residual <= 10.0 * gap or (still and self.mu <= least)):
+            centred = decrement < little or still
+            if gap is None and centred:
+                return
+            if gap is not None and self.gap <= gap and (self.residual <= 10.0 * gap or (still and self.mu <= least)):
                 return
             yield share
-            if self.mu > least and (decrement < little or still):
-                fall = max(0.2, least / self.mu)
-                self.mu *= fall
-                self.margin = max(LEAST_MARGIN, self.margin * fall**0.5)
+            if gap is None:
+                self.mu = min(self.mu, weight * float(np.mean(self.curve.edge_lengths)) ** 2)
+            elif self.mu > least and centred:
+                fall = max(FALL, least / self.mu)
+                self.mu, self.margin = fall * self.mu, max(LEAST_MARGIN, fall**0.5 * self.margin)
                 self._list()
-                merits = []
+                merits.clear()
+
+    @property
+    def merit(self) -> float:
+        """The length and the barrier function: what comes down at one μ."""
+        return self.excess + self._walls(self.contacts.values(self.curve.vertices))
 
     @property
     def excess(self) -> float:
@@ -91,14 +100,13 @@ class InteriorPoint:
     def step(self) -> tuple[float, float]:
         """Take a step; the share of Newton's that is taken, and by how much the barrier function was to fall."""
         x, mesh = self.curve.vertices, self.curve.mesh
-        moved = float(np.linalg.norm(x - self._listed, axis=1).max())
-        if moved > 0.2 * self.margin:
+        if np.linalg.norm(x - self._listed, axis=1).max() > 0.2 * self.margin:
             self._list()
-        contacts, z, mu = self.contacts, self.forces, self.mu
+        contacts, z = self.contacts, self.forces
         jet = contacts.jet(EdgePairs.of(mesh, x, contacts.i, contacts.j))
         c, first = jet.value, jet.first
-        aim, stiff = self._aims(jet.value)
-        k = z / c + stiff
+        push = self._push(c)
+        k = z / c + 2.0 * np.sqrt(self.mu * push / c) / self.margin
         # f = Σ w ℓ²/2 with these weights, to first order; elsewhere it is less
         squares = np.add.reduceat(self.curve.edge_lengths**2, mesh.edge_offsets[:-1])
         weight = np.sqrt(mesh.edge_counts / squares)
@@ -107,10 +115,10 @@ class InteriorPoint:
         residual = (slope - contacts.sum_of(first, z))[self._free]
         self.residual = float(np.linalg.norm(residual) / np.linalg.norm(slope))
         self.gap = float(z @ c) / self.curve.length
-        right = contacts.sum_of(first, aim) - slope
+        right = contacts.sum_of(first, push) - slope
         solve = self._factorised(contacts.hessian(x, first, z, k))
         dx = solve(right)
-        decrement, dz = float(np.sum(right * dx)), aim - z - k * contacts.along(first, dx)
+        decrement, dz = float(np.sum(right * dx)), push - z - k * contacts.along(first, dx)
 
         def taken(share: float) -> tuple[FloatArray, float, FloatArray] | None:
             """Where a share of the step leads, if that may be: vertices, the barrier function, and all c."""
@@ -141,69 +149,64 @@ class InteriorPoint:
             self._delta = max(4.0 * self._delta, 1e-4)
         there, _, values = found
         self.curve = self.curve.with_vertices(there)
-        shrinking = dz < 0.0
-        most = min(1.0, 0.98 * float((-z[shrinking] / dz[shrinking]).min(initial=np.inf)))
-        aim = self._aims(values)[0]
-        self.forces = np.clip(z + most * dz, aim / 20.0, 20.0 * aim)
+        push = self._push(values)
+        self.forces = np.clip(z + dz, push / 20.0, 20.0 * push)  # one by one: some of those far away always vanish
         return share, decrement
 
-    def _aims(self, c):
-        """B' and B''-part."""
-        share = np.clip(1.0 - c / self.margin, 0.0, None)
-        return self.mu * share**2 / c, 2.0 * self.mu * share / (self.margin * c)
+    def _push(self, c: FloatArray) -> FloatArray:
+        """−B', the forces of a centred rope."""
+        return self.mu * np.clip(1.0 - c / self.margin, 0.0, None) ** 2 / c
 
-    def _barrier(self, vertices: FloatArray) -> tuple[float, FloatArray]:
-        """f + B, with f as about the present rope, and all c."""
-        values = self.contacts.values(vertices)
-        if np.linalg.norm(vertices - self._listed, axis=1).max() > 0.25 * self.margin:
-            there = Contacts.near(self.curve.with_vertices(vertices), self.margin).values(vertices)
-        else:
-            there = values
-        if not ((there > 0.0).all() and (values > 0.0).all()):
-            return np.inf, values
-        return 0.5 * float(np.sum(vertices * (self._elastic @ vertices))) + self._walls(there), values
-
-    def _walls(self, values: FloatArray) -> float:
-        x = np.minimum(values / self.margin, 1.0)
+    def _walls(self, c: FloatArray) -> float:
+        """Σ B; infinite on walls and behind them."""
+        if not (c > 0.0).all():
+            return np.inf
+        x = np.minimum(c / self.margin, 1.0)
         return -self.mu * float((np.log(x) - 2.0 * (x - 1.0) + 0.5 * (x * x - 1.0)).sum())
 
-    def _list(self) -> None:
+    def _barrier(self, vertices: FloatArray) -> tuple[float, FloatArray]:
+        """f + Σ B, with f as about the present rope, over all c, and those listed."""
+        values = self.contacts.values(vertices)
+        walls = self._walls(values)
+        if np.isfinite(walls) and np.linalg.norm(vertices - self._listed, axis=1).max() > 0.25 * self.margin:
+            walls = self._walls(Contacts.near(self.curve.with_vertices(vertices), self.margin).values(vertices))
+        return 0.5 * float(np.sum(vertices * (self._elastic @ vertices))) + walls, values
+
+    def _list(self, contacts: Contacts | None = None) -> None:
         """List the constraints again; those that remain keep their forces."""
-        old, n = self.contacts, self.curve.mesh.edges
-        self.contacts = new = Contacts.near(self.curve, 1.5 * self.margin)
-        forces = self._aims(new.values(self.curve.vertices))[0]
-        before, after = (each.i[: each.strands] * n + each.j[: each.strands] for each in (old, new))
-        _, here, there = np.intersect1d(before, after, assume_unique=True, return_indices=True)
-        forces[there] = self.forces[here]
-        forces[new.strands :] = self.forces[old.strands :]
-        self.forces, self._listed = forces, self.curve.vertices
+        new, n = contacts or Contacts.near(self.curve, 1.5 * self.margin), self.curve.mesh.edges
+        forces = self._push(new.values(self.curve.vertices))
+        if contacts is None:
+            old = self.contacts
+            before, after = (each.i[: each.strands] * n + each.j[: each.strands] for each in (old, new))
+            _, here, there = np.intersect1d(before, after, assume_unique=True, return_indices=True)
+            forces[there] = self.forces[here]
+            forces[new.strands :] = self.forces[old.strands :]
+        self.contacts, self.forces, self._listed = new, forces, self.curve.vertices
 
     def _factorised(self, hessian: sp.csr_array) -> Callable[[FloatArray], FloatArray]:
-        """Solve with Newton's matrix, whose negative eigenvalues change sign, as they do in saddle-free Newton steps."""
+        """Solve with Newton's matrix, whose negative eigenvalues change their signs."""
         elastic = sp.kron(self._elastic, sp.eye_array(3), format="csr")
         free = np.flatnonzero(np.repeat(self._free, 3))
         ridge = 1e-6 * elastic.diagonal().mean() * sp.eye_array(elastic.shape[0], format="csr")  # holds it in its place
         metric = sp.csc_array((elastic + 1e4 * ridge)[free][:, free])
         matrix = sp.csc_array((hessian + elastic + ridge)[free][:, free]) + self._delta * metric
-        factor = factorised(matrix)
+        definite = factor = factorised(matrix)
         negative = int(np.sum(factor.U.diagonal() < 0.0))
-        self.negative = negative
-        lowest, modes = np.zeros(0), np.zeros((len(free), 0))
+        lowest, modes = np.ones(0), np.zeros((len(free), 0))
         if negative:
-            while True:
-                shifted = factorised(sp.csc_array(matrix + self._depth * metric))
-                if (shifted.U.diagonal() > 0.0).all():
-                    break
+            while not ((definite := factorised(matrix + self._depth * metric)).U.diagonal() > 0.0).all():
                 self._depth *= 4.0
-            inverse = LinearOperator(matrix.shape, matvec=shifted.solve, dtype=float)
-            lowest, modes = eigsh(matrix, negative, metric, sigma=-self._depth, OPinv=inverse, tol=1e-3, v0=np.ones(len(free)))
-            kept = lowest < 0.0
-            lowest, modes = lowest[kept], modes[:, kept]
+            inverse, start = LinearOperator(matrix.shape, definite.solve, dtype=float), np.ones(len(free))
+            found = eigsh(matrix, negative, metric, sigma=-self._depth, OPinv=inverse, tol=1e-6, v0=start)
+            lowest, modes = found[0][found[0] < 0.0], found[1][:, found[0] < 0.0]
             self._depth = max(1e-3, 1.1 * -float(lowest.min(initial=0.0)))
 
         def solved(right: FloatArray) -> FloatArray:
             found, g = np.zeros_like(right), right[self._free].ravel()
             x = factor.solve(g) - modes @ (2.0 / lowest * (modes.T @ g))
+            if negative and x @ g <= 0.0:  # too near to singular for that
+                x = definite.solve(g)
             found[self._free] = x.reshape(-1, 3)
             return found
 

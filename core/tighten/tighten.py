@@ -31,12 +31,14 @@ from ..driver.prepare import rope_radius
 from ..driver.relax import within
 from ..io.trajectory import Iterate
 from .contacts import Contacts
-from .interior_point import InteriorPoint
+from .interior_point import FALL, InteriorPoint
 
 COARSE = 100  # vertices that find the shape, up to twice as many
 MOST = 20_000  # of vertices, starts and seeds
 GAP = 1e-6  # of forces times clearances, relative to the length, at rest
 ROOM = 1e-6  # of the radius, which motions are proved with: between their ends strands come a little nearer
+WEIGHT = 0.03  # of the barrier, in squares of edges
+FINAL = 3  # starts that go on to the end
 SHRINK = 0.95  # of the size at least is left at once, where nothing touches
 
 
@@ -144,23 +146,19 @@ def _tightened(start: Task, unit: float, coarse: int, wanted: TightenOptions) ->
         for iterate in flow:
             yield from rope.follow(iterate.path, iterate.gradient_norm, iterate.step_size)
     yield from rope.thinned(coarse)
-    done = len(rope.curve) >= wanted.vertices
     if wanted.starts == 1:
-        yield from rope.shrunk()
-        yield from rope.pulled(done)
+        yield from rope.pulled(wanted.vertices)
+        yield from rope.refined(wanted.vertices)
     else:
-        trials = []
+        trials = list[tuple[_Rope, list[Iterate]]]()
         for k in range(wanted.starts):
             trial = _Rope(rope.last, unit)
-            trials.append((trial, [*(trial.stirred(rng) if k else ()), *trial.shrunk(), *trial.pulled(done)]))
+            trials.append((trial, [*(trial.stirred(rng) if k else ()), *trial.pulled(wanted.vertices)]))
+        trials = sorted(trials, key=lambda each: each[0].promise)[:FINAL]
+        for trial, way in trials:
+            way += trial.refined(wanted.vertices)
         rope, way = min(trials, key=lambda each: each[0].promise)
         yield from way
-    while len(rope.curve) < wanted.vertices:
-        before = len(rope.curve)
-        yield from rope.doubled()
-        if len(rope.curve) == before:
-            break
-        yield from rope.pulled(len(rope.curve) >= wanted.vertices)
     point = rope.point
     assert point is not None, "it has been pulled"
     contacts, strands = point.contacts, slice(point.contacts.strands)
@@ -205,8 +203,8 @@ class _Rope:
 
     @property
     def promise(self) -> float:
-        """About how short the rope becomes."""
-        return self.curve.length * (1.0 - self.point.gap) if self.point else np.inf
+        """About how short the rope becomes, compared to others of as many vertices."""
+        return self.point.merit if self.point else np.inf
 
     def proves(self, vertices: FloatArray) -> bool:
         return is_rope(self.curve.mesh, self.curve.vertices, vertices, np.array(self.last.radius))
@@ -255,7 +253,7 @@ class _Rope:
 
     def stirred(self, rng: np.random.Generator) -> Iterator[Iterate]:
         """The rope after random motions."""
-        for _ in range(3):
+        for _ in range(15):
             velocity = random_flow(self.curve.vertices, rng, 4, 2.0)
 
             def moved(_: float, stride: float, velocity: Field = velocity) -> FloatArray | None:
@@ -293,16 +291,30 @@ class _Rope:
                 return
         self.last = before
 
-    def pulled(self, exact: bool) -> Iterator[Iterate]:
-        """The steps of an interior point, with forces as the last one had them, on half as many vertices."""
+    def refined(self, vertices: int) -> Iterator[Iterate]:
+        """The rope pulled tight on more and more vertices."""
+        while len(self.curve) < vertices:
+            before = len(self.curve)
+            yield from self.doubled()
+            if len(self.curve) == before:
+                return
+            yield from self.pulled(vertices)
+
+    def pulled(self, vertices: int) -> Iterator[Iterate]:
+        """The steps of an interior point, on half as many vertices as the last one, to the end on so many."""
+        if self.point is None:
+            yield from self.shrunk()
         curve, last = self.curve.with_vertices((self.curve.vertices - self.center) / self.unit), self.point
-        mu, margin = (0.03 * (curve.length / len(curve)) ** 2, 0.3) if last is None else (0.05 * last.mu, 0.45 * last.margin)
+        # as the square of edges, so that the barrier is about the same on all meshes, and then less
+        mu, margin = WEIGHT * (curve.length / len(curve)) ** 2, 0.3
+        if last is not None:
+            mu, margin = 0.25 * FALL * last.mu, FALL**0.5 * last.margin
 
         def placed(vertices: FloatArray) -> FloatArray:
             return np.asarray(self.center + self.unit * vertices)
 
         self.point = point = InteriorPoint(curve, mu, lambda vertices: self.proves(placed(vertices)), margin)
-        for share in point.run(GAP if exact else None):
+        for share in point.run(GAP if len(curve) >= vertices else None):
             if share > 0.0:
                 path = [placed(point.curve.vertices)]
                 longer = curve.component_lengths - point.curve.component_lengths
