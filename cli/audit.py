@@ -130,6 +130,7 @@ def _as_text(found: Audit, meetings: Rows, contacts: Rows) -> str:
     """A headline, what happened between which chains, and every contact."""
     rings, total = sum(found.topology.closed), len(found.topology.closed)
     parts = [(len(found.found), "leg"), (rings, "ring"), (total - rings, "open chain")]
+    parts.append((len(found.names) - sum(map(len, found.topology.chains)), "other bead"))
     head = "✗ broken off" if found.problem else "✓ audited", " · ".join(counted(n, noun) for n, noun in parts if n)
     passed = [each for each in contacts if each["sign"]]
     own = sum(first == second for first, second in (each["chains"] for each in passed))

@@ -49,6 +49,7 @@ def test_passings_are_told_as_a_table_and_as_json(path, run):
     assert status == 0
     assert "2 open chains" in told
     assert "L2a1" not in told
+    assert run("audit", path, "--chains", "1x12")[1].splitlines()[0] == "✓ audited     2 legs · 1 ring · 12 other beads"
 
 
 def test_what_was_found_is_told_when_the_file_breaks_off(path, run):
