@@ -13,6 +13,7 @@ import numpy as np
 from ...core import CurveError
 from ...core.keys.colours import COMPONENT
 from ..curves.assets import bundled
+from ..curves.doors import copy_of
 from ..curves.recorded import world_motion
 from ..curves.splines import read
 from ..curves.surroundings import STAGE, TUBE_OF, WITHOUT_SHAPE
@@ -55,7 +56,13 @@ def set_up(
     collection[STAGE], collection[_LOOK] = _aspect(scene), look
     # what renders would show besides curves, their tubes and what they avoid
     around, tubes = scene.mobius_flow_surroundings, (tube for obj in objects for tube in _tubes(obj))
-    spared = {*objects, *tubes, around.container, *(around.avoid.all_objects if around.avoid is not None else ())}
+    spared = {
+        *objects,
+        *tubes,
+        *map(copy_of, objects),
+        around.container,
+        *(around.avoid.all_objects if around.avoid is not None else ()),
+    }
     for k, obj in enumerate(scene.objects if hide_others else ()):
         if not (obj.hide_render or obj in spared or obj.type in {*WITHOUT_SHAPE, "EMPTY"}):
             collection[f"{HIDDEN}{k}"], obj.hide_render = obj, True
