@@ -22,17 +22,16 @@ def bundled(kind: str, name: str) -> Any:
     return made
 
 
-def add_nodes(obj: bpy.types.Object, name: str, of: bpy.types.Object | None = None) -> bpy.types.Modifier:
-    """Give an object a modifier of bundled nodes, whose second input may be an object."""
+def add_nodes(obj: bpy.types.Object, name: str, *values: Any) -> None:
+    """Give an object a modifier of bundled nodes, and these values of its inputs after the geometry."""
     modifier = obj.modifiers.new(name, "NODES")
     modifier.node_group = tree = bpy.data.node_groups.get(name) or bundled("node_groups", name)
-    if of is not None:
-        given = [each.identifier for each in tree.interface.items_tree if each.in_out == "INPUT"][1]
+    inputs = [each.identifier for each in tree.interface.items_tree if each.in_out == "INPUT"][1:]
+    for identifier, value in zip(inputs, values, strict=False):
         if hasattr(modifier, "properties"):  # Blender 5.2 and later
-            getattr(modifier.properties.inputs, given).value = of
+            getattr(modifier.properties.inputs, identifier).value = value
         else:
-            modifier[given] = of
-    return modifier
+            modifier[identifier] = value
 
 
 def drop_nodes(name: str) -> None:

@@ -54,8 +54,9 @@ def enter(source: bpy.types.Object) -> bpy.types.Object:
     strands = Strands.of(source)
     data = new_curve_data(f"{source.name} Keys", strands.mesh)
     write_points(data, np.concatenate(strands.components).astype(np.float32))
+    thick = strands.attributes.get("radius")
     for spline, points in zip(data.splines, strands.mesh.slices, strict=True):
-        spline.points.foreach_set("radius", strands.attributes["radius"].values[points])
+        spline.points.foreach_set("radius", np.zeros(len(spline.points)) if thick is None else thick.values[points])
     data[SOURCE] = {"object": source, "rendered": not source.hide_render}
     carrier = object_like(source, data)
     show_instead(source, carrier)
@@ -128,7 +129,7 @@ def follow(carrier: bpy.types.Object, strands: Strands, drawn: Curve, refined: C
     copy.constraints.clear()
     if not strands.own:
         copy.modifiers.clear()
-    add_nodes(copy, _MOTION, carrier)
+    add_nodes(copy, _MOTION, carrier, "radius" in strands.attributes)
     copy.modifiers.move(len(copy.modifiers) - 1, 0)
     copy.parent, copy.parent_type, copy.matrix_parent_inverse = carrier, "OBJECT", Matrix()
     copy.matrix_basis = Matrix()

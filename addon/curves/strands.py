@@ -144,7 +144,7 @@ def _read(obj: bpy.types.Object, own: bool) -> Strands:
             _give(mesh, {"mobius_flow_chosen": Attribute("BOOLEAN", "EDGE", chosen)})
         _check_count(obj, data)
         made.append(bare := bpy.data.objects.new("Sampled", data))
-        add_nodes(bare, _NODES, shown)
+        add_nodes(bare, _NODES, *filter(None, [shown]))
         bpy.context.scene.collection.objects.link(bare)
         result = bare.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
         _check_count(obj, result)
@@ -159,9 +159,8 @@ def _read(obj: bpy.types.Object, own: bool) -> Strands:
         return Strands((), ())
     for name in ("curve_type", "mobius_flow_poly", "mobius_flow_chosen"):  # all are polygons now
         attributes.pop(name, None)
-    if "radius" not in attributes:  # as thick as Blender draws them; edges of meshes have no thickness
-        radii = np.full(sum(sizes), 0.0 if obj.type == "MESH" else _USUAL["radius"], dtype=np.float32)
-        attributes["radius"] = Attribute("FLOAT", "POINT", radii)
+    if "radius" not in attributes and obj.type != "MESH":  # edges of meshes have no thickness of their own
+        attributes["radius"] = Attribute("FLOAT", "POINT", np.full(sum(sizes), _USUAL["radius"], dtype=np.float32))
     components = np.split(attributes["position"].values.astype(np.float64), np.cumsum(sizes)[:-1])
     closed = attributes["cyclic"].values if "cyclic" in attributes else np.zeros(len(sizes), dtype=bool)
     worn = obj if own else obj.evaluated_get(bpy.context.evaluated_depsgraph_get())

@@ -50,6 +50,9 @@ def test_it_is_shown_in_motion_with_all_that_it_had(kind):
         old = there(points(copy), POINTS)
         np.testing.assert_allclose(points(copy, "tint", "value", 1)[old, 0], TINT, atol=1e-6)
         np.testing.assert_allclose(points(copy, "radius", "value", 1)[old, 0], THICK, rtol=1e-5)
+    if kind == "loop":
+        shown = copy.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+        assert "radius" not in shown.attributes, "nodes that come after would make tubes of no thickness"
     if kind == "made":
         assert not any(modifier.name == "Nodes" for modifier in copy.modifiers), "what it made is in the points"
         there(points(copy), KNOT + np.float32([0, 0, 2])) if hasattr(bpy.types.Curves, "set_types") else None
