@@ -2,13 +2,17 @@
 
 import argparse
 from dataclasses import asdict
+from pathlib import Path
 
-from ..core import RelaxOptions, Task
+from ..core import MobiusFlowError, RelaxOptions, Task
+from ..core.base import wrong_suffix
+from ..core.keys.contact_map import contact_map
+from ..core.keys.paper import PAPERS
 from ..core.tighten import Tightened, TightenOptions, tightening
 from . import curves
 from . import options as relax_options
 from .parser import further
-from .places import check_holds, check_output, check_places
+from .places import check_holds, check_output, check_places, writing
 from .relax import EXIT_STATUS, add_outputs, places, run_to_end, write_results
 
 _EPILOG = """\
@@ -35,11 +39,13 @@ def add_tighten(parser: argparse.ArgumentParser) -> None:
     curves.add_input(parser, "polygons, closed or open")
     text = "vertices in the end, or up to twice as many (default: 400)"
     parser.add_argument("--vertices", metavar="N", type=int, default=400, help=text)
-    text = "starts on few vertices, stirred at random but for the first, of which the shortest goes on (default: 1)"
+    text = "starts on few vertices, stirred at random but for the first; the best three go on to the end (default: 1)"
     parser.add_argument("--starts", metavar="K", type=int, default=1, help=text)
     parser.add_argument("--seed", metavar="S", type=int, default=0, help="seed of the random motions (default: 0)")
     text = "stop after this many seconds of computing; what was reached so far is kept (default: no limit)"
     parser.add_argument("--time-limit", metavar="SECONDS", type=float, help=text)
+    text = "write a map of where strands press on each other, place by place along the rope, as SVG, PDF or TikZ"
+    parser.add_argument("--contacts", metavar="MAP.svg", help=text)
     add_outputs(parser)
     further(parser, "the report", _REPORT)
     parser.set_defaults(run=_run)
@@ -50,7 +56,10 @@ def _run(options: argparse.Namespace) -> int:
     check_output(options.output, options.format, options.look, options.loop or options.constant_radius)
     named = {name: getattr(options, name) for name in ("vertices", "starts", "seed", "time_limit")}
     wanted = TightenOptions(**named)
-    check_places({"IN": options.input}, places(options))
+    mapped = None if options.contacts is None else Path(options.contacts)
+    if mapped and mapped.suffix.lower() not in PAPERS:
+        raise MobiusFlowError(f"{mapped}: {wrong_suffix(mapped, PAPERS, 'drawings')}")
+    check_places({"IN": options.input}, places(options) | {"--contacts": options.contacts})
     file = curves.read(options.input, options.format)
     check_holds(options.output, options.format, file.curve)
     origin = relax_options.provenance(asdict(wanted), str(file.source.path), file.source.sha256)
@@ -60,5 +69,8 @@ def _run(options: argparse.Namespace) -> int:
     if isinstance(result.outcome, Tightened):
         told = result.outcome
         origin |= {"ropelength": told.ropelength, "gap": told.gap, "residual": told.residual, "struts": told.struts}
+        if mapped:
+            with writing(options.contacts) as temporary:
+                temporary.write_bytes(PAPERS[mapped.suffix.lower()](contact_map(result.curve, told.struts)))
     write_results(options, result, iterates, origin)
     return EXIT_STATUS[result.status]

@@ -218,15 +218,15 @@ moved as little as that allows; ends and pins stay in place. Where two curves me
 
 
 class CURVE_OT_mobius_flow_tighten(Relaxing, bpy.types.Operator):
-    """Pull the selected closed curves tight: the shortest rope of nine tenths of their thickness, which stays, and \
-keep the motion as keyframes"""
+    """Pull the selected knots tight, open ones by their ends: ropes of nine tenths of their thickness, which stays, \
+as short as can be, and keep the motion as keyframes"""
 
     bl_label = "Tighten"
     needs = (ENTERABLE, POLYGONS)
 
     starts: IntProperty(
         name="Starts",
-        description="Starts on few vertices, stirred at random but for the first, of which the shortest goes on",
+        description="Starts on few vertices, stirred at random but for the first; the best three go on to the end",
         default=1,
         min=1,
         options={"SKIP_SAVE"},

@@ -31,6 +31,8 @@ class Crossing:
     @property
     def sentence(self) -> Message:
         over, under = (Message(COMPONENT, number=each + 1) for each in (self.over, self.under))
+        if over == under:
+            return Message("{over} went over itself near {place}", over=over, place=written(np.array(self.place)))
         return Message(
             "{over} went over {under} near {place}", over=over, under=under, place=written(np.array(self.place))
         )

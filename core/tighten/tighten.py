@@ -94,8 +94,8 @@ def tighten(
     """Pull a knot or link tight: as short as a rope of its radius can be, nine tenths of the curve's thickness.
 
     In the end there are ``vertices`` or up to twice as many.  Of several ``starts`` all but the first are stirred at
-    random, and the one that is shortest on few vertices goes on.  ``energy`` of iterates is length over radius,
-    ``gradient_norm`` the residual.  The result's outcome is a `Tightened`, unless it was cut short.
+    random; the three that are shortest on few vertices go on, and the best of them is kept.  ``energy`` of iterates is
+    length over radius, ``gradient_norm`` the residual.  The result's outcome is a `Tightened`, unless it was cut short.
 
     Open ropes are pulled by their ends, which go straight ahead as rope comes out of the knot.  The start must have
     long ends: nothing keeps strands from slipping over them.

@@ -17,8 +17,8 @@ def trefoil(tmp_path):
 
 
 def test_a_trefoil_is_written_with_report_and_proof(trefoil, tmp_path, run):
-    outputs = tmp_path / "out.obj", tmp_path / "r.json", tmp_path / "t.npz"
-    words = ("--vertices", "200", "--report", outputs[1], "--trajectory", outputs[2])
+    outputs = tmp_path / "out.obj", tmp_path / "r.json", tmp_path / "t.npz", tmp_path / "map.svg"
+    words = ("--vertices", "200", "--report", outputs[1], "--trajectory", outputs[2], "--contacts", outputs[3])
     status, _, said = run("tighten", trefoil, outputs[0], *words)
     assert status == 0
     assert "ropelength 32.7" in said
@@ -32,10 +32,17 @@ def test_a_trefoil_is_written_with_report_and_proof(trefoil, tmp_path, run):
     assert report["gap"] <= 1e-6
     assert report["options"]["vertices"] == report["vertices"] == 200
     assert all(0 <= a < b < 200 for a, b, _ in report["struts"])
+    dots = outputs[3].read_text(encoding="utf-8").count("<path")
+    assert dots == 2 * len(report["struts"]) + 4  # both ways, in a frame
 
 
 @pytest.mark.parametrize(
-    ("words", "said"), [(("--vertices", "7"), "vertices is 7"), (("--starts", "0"), "starts is 0")]
+    ("words", "said"),
+    [
+        (("--vertices", "7"), "vertices is 7"),
+        (("--starts", "0"), "starts is 0"),
+        (("--contacts", "map.txt"), ".svg"),
+    ],
 )
 def test_bad_input_is_one_line(trefoil, tmp_path, refused, words, said):
     assert said in refused("tighten", trefoil, tmp_path / "o.txt", *words)
