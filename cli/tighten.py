@@ -44,7 +44,7 @@ def add_tighten(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", metavar="S", type=int, default=0, help="seed of the random motions (default: 0)")
     text = "stop after this many seconds of computing; what was reached so far is kept (default: no limit)"
     parser.add_argument("--time-limit", metavar="SECONDS", type=float, help=text)
-    text = "write a map of where strands press on each other, place by place along the rope, as SVG, PDF or TikZ"
+    text = "write a map of where strands press on each other: SVG, PDF or TikZ"
     parser.add_argument("--contacts", metavar="MAP.svg", help=text)
     add_outputs(parser)
     further(parser, "the report", _REPORT)
