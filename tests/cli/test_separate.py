@@ -23,7 +23,7 @@ def test_ropes_are_written_with_report_and_proof(cross, tmp_path, run):
     assert status == 0
     assert "all ropes keep clear" in said
     assert "component 2 went over component 1 near (0, 0, 0)" in said
-    assert "no contact on the whole path" in said
+    assert "a rope of radius" in said
     assert verify(outputs[2]).accepted
     report = json.loads(outputs[1].read_text(encoding="utf-8"))
     assert report["crossings"] == [{"over": 1, "under": 0, "place": [0.0, 0.0, 0.0]}]
