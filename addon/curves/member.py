@@ -54,6 +54,7 @@ class Member:
         self._splines = Splines.of(obj.data)
         carries = SOURCE in obj.data and not self._continues
         self._strands = doors.strands_of(obj) if carries else None
+        self.shape_keys = original.shape_keys is not None
         self._plain, self._fitted = bevel.can_fit(obj.data), bevel.is_fitted(obj.data)
 
     def _show(self, data: bpy.types.Curve) -> None:

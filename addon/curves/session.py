@@ -358,8 +358,10 @@ class Session:
 
     @property
     def _shape_keys(self) -> bool:
-        """Whether shape keys are written; an animation that goes on may have them whatever is asked for."""
-        return self._key_options.output is Output.SHAPE_KEYS or self._continues
+        """Whether shape keys are written; an animation that goes on has what it has, whatever is asked for."""
+        if self._continues:
+            return any(member.shape_keys for member in self.members)
+        return self._key_options.output is Output.SHAPE_KEYS
 
     @property
     def _fits(self) -> bool:

@@ -52,6 +52,10 @@ def rope_motion(
     """
     if radius is None:
         return free_motion(mesh, start, end, obstacles)
+    if not obstacles:  # margins are relative to coordinates: those of curves far away get smaller, where that is exact
+        near = start - start[0], end - start[0]
+        if not any(_lost(given, start[0], each).any() for given, each in zip((start, end), near, strict=True)):
+            start, end = near
     exponent = int(np.frexp(max(np.abs(start).max(), np.abs(end).max(), *(each.size for each in obstacles)))[1])
     points = np.ldexp(start.T, -exponent, order="C"), np.ldexp(end.T, -exponent, order="C")
     own = np.ldexp(radius, -exponent) * (1.0 + _SLACK) + _SLACK
@@ -167,6 +171,12 @@ def _near(
                 vertices = np.concatenate([tree.corners[:, edges], mesh.size + still.tree.corners[:, others]])
                 names = np.stack([tree.order[edges], still.tree.order[others]])
                 yield (first, last), vertices, names, radius[component[names[0]]]
+
+
+def _lost(x: FloatArray, y: FloatArray, difference: FloatArray) -> FloatArray:
+    """What rounding takes from x − y (Knuth, The Art of Computer Programming 2, 4.2.2, theorem B)."""
+    z = difference - x
+    return (x - (difference - z)) - (y + z)
 
 
 class Corners(NamedTuple):

@@ -109,7 +109,7 @@ def _iterates(task: Task, options: SeparateOptions) -> Relaxation:
     if not 1e-6 * size < radius.min() <= radius.max() < 1e2 * size:  # thinner ones cannot be proved
         worst = radius.min() if radius.min() <= 1e-6 * size else radius.max()
         raise OptionError(
-            f"radius is {worst:g}, but coordinates are up to {size:g}; give {1e-6 * size:g} to {1e2 * size:g}"
+            f"the tube's radius is {worst:g}, but coordinates are up to {size:g}; give {1e-6 * size:g} to {1e2 * size:g}"
         )
     if not (curve.edge_lengths.min() > 0.0 and bending_radii(curve).min() > 1e-9 * radius.min()):
         check_embedded(curve)  # which says where it doubles back

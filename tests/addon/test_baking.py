@@ -56,9 +56,9 @@ def test_there_and_back():
 
 def test_constant_thickness_is_the_least():
     obj = add_curve([knot("5_2", 60).vertices])
-    relax(max_iterations=8, fit_bevel=True)
+    relax(max_iterations=8, fit_bevel=True, radius="none")
     radii = [block.data[0].radius * obj.data.bevel_depth for block in obj.data.shape_keys.key_blocks]
-    relax(max_iterations=8, fit_bevel=True, constant_radius=True)
+    relax(max_iterations=8, fit_bevel=True, radius="none", constant_radius=True)
     constant = [block.data[0].radius * obj.data.bevel_depth for block in obj.data.shape_keys.key_blocks]
     assert max(radii) > 1.05 * min(radii)
     assert constant == pytest.approx([min(radii)] * len(radii), rel=1e-5)

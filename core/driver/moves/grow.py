@@ -25,14 +25,15 @@ class Grow(Move):
     rise: float = 0.25
     settled: float = 0.01  # decrease of the objective in a step, by its scale, after which the next may come
     later: float = 0.1  # factor on ``settled`` after no motion was found
-    edges_per_gap: float = 2.0  # packed curves bend as tightly as strands are near
+    edges_per_gap: float = 2.0  # packed curves bend as tightly as strands are near, and twice as many of ropes: evenly
     most: int = FinerMesh.most  # vertices, unless there are more already
     _energy: float = field(default=math.inf, init=False)  # after the last event
 
     def __post_init__(self) -> None:
         self._longest, self._enough = self.fastest, self.settled
         self._is_done = self.run.options.grow == 1.0
-        self._resolution = replace(self.run.resolution, edges_per_gap=self.edges_per_gap)
+        rope = self.run.problem.radius is not None
+        self._resolution = replace(self.run.resolution, edges_per_gap=(1 + rope) * self.edges_per_gap)
 
     def __call__(self, event: Event) -> Event | Change:
         """Act at the start, after steps that gained little, and where the run would end with other lengths."""

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, Mesh, Obstacle
 from mobius_flow.core.collision import is_free, is_rope, rope_motion, thickness
-from mobius_flow.core.collision.rope import Corners, _bends, shortcut
+from mobius_flow.core.collision.rope import Corners, _bends, _lost, shortcut
 from mobius_flow.core.energies.edge_pairs import EdgePairs
 from mobius_flow.core.energies.rope import closest
 from mobius_flow.core.knots import knot
@@ -94,6 +94,17 @@ def test_thickness_is_the_largest_radius_of_smooth_curves(name: str, share: floa
     radii = np.ones(len(curve.mesh.component_sizes))
     assert is_rope(curve.mesh, curve.vertices, curve.vertices, share * thick * radii)
     assert not is_rope(curve.mesh, curve.vertices, curve.vertices, 2.1 * thick * radii)
+
+
+@pytest.mark.parametrize("away", [1e5, 1e9, 1e12])
+def test_far_away_a_rope_is_one_all_the_same(away: float) -> None:
+    """Where coordinates leave it its digits; differences that are rounded prove nothing."""
+    curve, radius = knot("4_1", 100), np.array([1.0])
+    there = np.rint(curve.vertices * 1e3) + away
+    radius *= 950.0 * thickness(curve)
+    assert is_rope(curve.mesh, there, there + 1.0, radius)
+    assert not is_rope(curve.mesh, there, there + 1.0, 2.2 * radius)
+    assert _lost(np.array([1.0]), np.array([1e-17]), np.array([1.0 - 1e-17])).any()
 
 
 @pytest.mark.parametrize("edges", [4, 5, 24])

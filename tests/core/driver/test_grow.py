@@ -45,6 +45,14 @@ def test_a_curve_in_a_box_grows_to_three_times_its_length():
     assert "of 3 times its length" in cut.message
 
 
+def test_a_rope_is_packed_as_one():
+    """It touches neither the walls nor itself."""
+    result, _ = proved(**in_the_box(3.0, radius=0.1))
+    assert result.last.grown == pytest.approx(3.0)
+    assert result.last.radius == (0.1,)
+    assert np.abs(result.curve.vertices).max() < 1.5 - 0.1
+
+
 def test_edges_are_split_as_strands_come_near_unless_the_mesh_is_fixed():
     """Each mesh has the vertices of the one before it."""
     result = minimize(*wanted(**in_the_box(3.0, mesh="fixed", max_iterations=40)))
