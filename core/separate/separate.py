@@ -108,9 +108,8 @@ def _iterates(task: Task, options: SeparateOptions) -> Relaxation:
     size = float(np.abs(curve.vertices).max())
     if not 1e-6 * size < radius.min() <= radius.max() < 1e2 * size:  # thinner ones cannot be proved
         worst = radius.min() if radius.min() <= 1e-6 * size else radius.max()
-        raise OptionError(
-            f"the tube's radius is {worst:g}, but coordinates are up to {size:g}; give {1e-6 * size:g} to {1e2 * size:g}"
-        )
+        allowed = f"{1e-6 * size:g} to {1e2 * size:g}"
+        raise OptionError(f"the tube's radius is {worst:g}, but coordinates are up to {size:g}; give {allowed}")
     if not (curve.edge_lengths.min() > 0.0 and bending_radii(curve).min() > 1e-9 * radius.min()):
         check_embedded(curve)  # which says where it doubles back
     check_clear(curve, task.obstacles)
