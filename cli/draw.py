@@ -80,7 +80,7 @@ def _run(options: argparse.Namespace) -> int:
         captions = [""]
     if is_film and pen.columns is None:
         pen = replace(pen, columns=len(drawings))
-    made = PAPERS[suffix](figure(drawings, captions, pen, alike=is_film))
+    made = PAPERS[suffix](figure(drawings, captions, pen))
     with writing(options.output) as temporary:
         temporary.write_bytes(made)
     say_written(options.output)

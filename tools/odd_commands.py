@@ -45,6 +45,7 @@ COMMANDS = {  # what each takes at least; IN is a good curve
     "separate": "IN out.txt --radius 0.1",
     "energy": "IN",
     "info": "IN",
+    "draw": "IN out.svg --layout",
     "knot": "3_1 k.txt",
     "compare": f"IN -o c.csv --methods lbfgs {SHORT}",
     "verify": "IN",
@@ -53,6 +54,7 @@ COMMANDS = {  # what each takes at least; IN is a good curve
 READERS = (  # commands that read a curve
     "energy IN",
     "energy IN --json --energy moebius-k2",
+    "draw IN out.pdf --arrows --numbers",
     f"relax IN {ALL}",
     f"relax IN out.json --quiet {SHORT}",
     f"compare IN --methods lbfgs -o c.csv {SHORT}",
@@ -168,6 +170,8 @@ def knots(rng: random.Random, room: Path) -> Case:
     """Knot names that are long, huge or invalid."""
     names = ["3_1", "T(3,5)", "T(999999,999999)", "braid()", "braid(1,2,3)", "m" * 2000, "3_1#" * 200, "0_1", *VALUES]
     extra = rng.choice(["", "--vertices 3", "--vertices 100", "--vertices 1000000000", "--vertices -5"])
+    if rng.random() < 0.3:
+        return Case(["draw", rng.choice(names), rng.choice(["k.svg", "k.pdf", "k.tex", "-", "no/k.svg"])])
     return Case(["knot", rng.choice(names), rng.choice(["k.txt", "k.obj", "-", "k", "no/k.txt"]), *extra.split()])
 
 

@@ -37,7 +37,11 @@ def seen(curves: Sequence[Curve], trials: int = 200, seed: int = 20231) -> list[
             told = f"has dimension {curve.dimension}" if curve.dimension > 3 else f"has {len(curve)} vertices"
             raise CurveError(f"the curve {told}; drawings are of curves in space of at most 20000 vertices")
         check_embedded(curve)
-    smooth = [rounded(Curve(np.pad(each.vertices, ((0, 0), (0, 3 - each.dimension))), each.mesh)) for each in curves]
+    _, power = np.frexp(max(float(np.ptp(each.vertices, axis=0).max()) for each in curves))
+    smooth = []
+    for curve in curves:
+        points = np.ldexp(curve.vertices, -power)  # where products of coordinates neither overflow nor vanish
+        smooth.append(rounded(Curve(np.pad(points, ((0, 0), (0, 3 - curve.dimension))), curve.mesh)))
     middles = [each.vertices - each.vertices.mean(axis=0) for each in smooth]
     rng, found = np.random.default_rng(seed), list[list[Drawing]]()
     # turned by about 0.02 radians, so that nothing special is seen

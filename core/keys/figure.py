@@ -93,8 +93,8 @@ class Figure:
     labels: list[Label] = field(default_factory=list)
 
 
-def figure(drawings: Sequence[Drawing], captions: Sequence[str] = (), pen: Pen = Pen(), alike: bool = False) -> Figure:
-    """Draw drawings on a sheet, row by row, each with its caption, if any, below; ``alike``: on one scale.
+def figure(drawings: Sequence[Drawing], captions: Sequence[str] = (), pen: Pen = Pen()) -> Figure:
+    """Draw drawings on a sheet, row by row, each with its caption, if any, below.
 
     Raises CurveError if there are none, or strands are too near to each other to be drawn.
     """
@@ -105,12 +105,11 @@ def figure(drawings: Sequence[Drawing], captions: Sequence[str] = (), pen: Pen =
     cell = np.array([pen.size + 2.0 * margin, pen.size + 2.0 * margin + below])
     rows = -(-len(drawings) // columns)
     sheet = Figure((columns * cell[0], rows * cell[1]), tuple(pen.width * each for each in LINES[pen.line]))
-    sizes = [float(np.ptp(each.curve.vertices, axis=0).max()) for each in drawings]
-    for index, (drawing, size) in enumerate(zip(drawings, sizes, strict=True)):
+    for index, drawing in enumerate(drawings):
         row, column = divmod(index, columns)
         corner = np.array([column, rows - 1 - row]) * cell
         low, high = drawing.curve.vertices.min(axis=0), drawing.curve.vertices.max(axis=0)
-        scale = (pen.size - pen.width) / (max(sizes) if alike else size)
+        scale = (pen.size - pen.width) / max(high - low)
         middle = corner + np.array([0.5 * cell[0], below + margin + 0.5 * pen.size])
         points = (drawing.curve.vertices - 0.5 * (low + high)) * scale + middle
         placed = replace(drawing, curve=drawing.curve.with_vertices(points))

@@ -22,7 +22,7 @@ from .diagrams.projection import plane_crossings
 from .drawings import Drawing
 from .planar import grid_drawing
 
-MAX_CROSSINGS = 200  # of a diagram that is laid out: some minutes
+MAX_CROSSINGS = 200  # of a diagram that is laid out: half a minute
 
 
 def laid_out(diagram: Diagram) -> Drawing:
