@@ -79,6 +79,8 @@ def relaxed(piece: Diagram) -> tuple[FloatArray, list[IntArray]]:
         x = np.empty((piece.crossings + sum(map(len, new)), 2))
         for edge, path in zip(edges, paths, strict=True):
             x[edge] = at_shares(path, False, np.linspace(0.0, 1.0, len(edge)))
+        if sum(sum(pieces[dart // 2] for dart in face) ** 2 for face in piece.faces) > 4e6:
+            break  # pairs of vertices: where faces have hundreds of edges, strands stay on the grid
         moved = at_rest(charged(piece, edges, spans / spans.mean()), x, tolerance)
         if not _is_drawing(piece, moved, edges):
             break

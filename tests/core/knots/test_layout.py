@@ -89,6 +89,12 @@ def test_the_derivative_of_the_energy():
     )
 
 
+def test_faces_of_hundreds_of_edges_stay_on_the_grid(monkeypatch):
+    monkeypatch.setattr(layout, "at_rest", None)
+    diagram = braid_diagram((1,) * 81)
+    assert read_off(laid_out(diagram)) == numbered(diagram.passes, diagram.signs)
+
+
 def test_strands_are_smooth_and_even_and_cross_at_right_angles():
     drawing = laid_out(named_diagram("8_18"))
     mesh, points = drawing.curve.mesh, drawing.curve.vertices
