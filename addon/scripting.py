@@ -21,8 +21,7 @@ import bpy
 from ..core import Curve, Hand, Iterate, MobiusFlowError
 from ..core.keys.key_options import Pace
 from ..core.keys.placement import Measure
-from ..core.separate import SeparateOptions
-from ..core.tighten import TightenOptions
+from ..core.ropes import SeparateOptions, TightenOptions
 from .curves import bake, bevel, doors, sizes
 from .curves.recorded import BakedKeys
 from .curves.session import Report, Session

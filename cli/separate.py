@@ -5,8 +5,7 @@ from dataclasses import asdict
 
 from ..core import RelaxOptions
 from ..core.base.errors import OptionError
-from ..core.separate import Separated, SeparateOptions, separating
-from ..core.separate.crossings import AXES
+from ..core.ropes import AXES, Separated, SeparateOptions, separating
 from . import curves
 from . import options as relax_options
 from .places import check_holds, check_output, check_places

@@ -8,7 +8,7 @@ from ..core import MobiusFlowError, RelaxOptions, Task
 from ..core.base import wrong_suffix
 from ..core.keys.contact_map import contact_map
 from ..core.keys.paper import PAPERS
-from ..core.tighten import Tightened, TightenOptions, tightening
+from ..core.ropes import Tightened, TightenOptions, tightening
 from . import curves
 from . import options as relax_options
 from .parser import further

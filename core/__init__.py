@@ -13,8 +13,7 @@ from .io import knot_list, read_curve, write_curve
 from .io.obstacles import read_obstacle
 from .io.trajectory import Iterate, Trajectory
 from .morph import NoMotionError, morph
-from .separate import separate
-from .tighten import tighten
+from .ropes import separate, tighten
 
 __all__ = [
     "METHODS",

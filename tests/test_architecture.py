@@ -22,7 +22,7 @@ FLOORS = (
     {"core.descent", "core.io", "core.untangle"},
     {"core.keys"},
     {"core.driver"},
-    {"core.morph", "core.separate", "core.tighten"},
+    {"core.morph", "core.ropes"},
     {"core"},
     {"addon"},
     {"cli"},

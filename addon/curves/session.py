@@ -23,8 +23,7 @@ from ...core.keys.key_options import Course, KeyOptions, Output
 from ...core.keys.motion import Key, Keys, Kind, Proof, Recording
 from ...core.keys.placement import Frame, Measure, Placement, Spot, spots
 from ...core.keys.tube import eased, rope_radii
-from ...core.separate import SeparateOptions
-from ...core.tighten import TightenOptions
+from ...core.ropes import SeparateOptions, TightenOptions
 from ..engine.worker import begun, in_common_space
 from . import bake, bevel, doors, pins
 from .goals import Goals

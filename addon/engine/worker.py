@@ -33,8 +33,7 @@ from ...core.driver import Relaxation
 from ...core.keys.motion import frames_of
 from ...core.keys.placement import Frame, Link, Placement
 from ...core.morph import morphing
-from ...core.separate import SeparateOptions, separating
-from ...core.tighten import TightenOptions, tightening
+from ...core.ropes import SeparateOptions, TightenOptions, separating, tightening
 
 Inbox = queue.SimpleQueue[Any]
 

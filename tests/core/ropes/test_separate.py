@@ -5,9 +5,9 @@ import pytest
 from bundles import bundle, least_distance
 from mobius_flow.core import Curve, MobiusFlowError, Obstacle, Status, Task, separate
 from mobius_flow.core.collision import is_rope
-from mobius_flow.core.separate import SeparateOptions
-from mobius_flow.core.separate.clearances import clearances
-from mobius_flow.core.separate.ropes import Ropes, stiffness
+from mobius_flow.core.ropes import SeparateOptions
+from mobius_flow.core.ropes.clearances import clearances
+from mobius_flow.core.ropes.displacement import Ropes, stiffness
 from shapes import regular_polygon
 from tasks import check
 from taylor import taylor_slope

@@ -20,7 +20,7 @@ from ..driver.outcome import stalled
 from ..driver.relax import within
 from ..io.trajectory import Iterate
 from .crossings import AXES, Crossing, lead_apart
-from .ropes import Ropes
+from .displacement import Ropes
 
 COARSE = 4.0  # radii that edges may be long: ropes bend within some four
 MOST = 4000  # edges into which a curve is cut for that

@@ -9,9 +9,9 @@ from mobius_flow.core.collision import thickness
 from mobius_flow.core.driver import WithOutcome
 from mobius_flow.core.energies.edge_pairs import EdgePairs
 from mobius_flow.core.knots import knot, overhand
-from mobius_flow.core.tighten import TightenOptions, tightening
-from mobius_flow.core.tighten.contacts import Contacts
-from mobius_flow.core.tighten.interior_point import InteriorPoint
+from mobius_flow.core.ropes import TightenOptions, tightening
+from mobius_flow.core.ropes.contacts import Contacts
+from mobius_flow.core.ropes.interior_point import InteriorPoint
 from scipy.linalg import eigh
 from tasks import check
 from taylor import taylor_slope

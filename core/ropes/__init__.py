@@ -1,0 +1,18 @@
+"""Ropes: made of curves that run through each other, and pulled tight."""
+
+from .crossings import AXES
+from .separate import Separated, SeparateOptions, separate, separating
+from .tighten import Strut, Tightened, TightenOptions, tighten, tightening
+
+__all__ = [
+    "AXES",
+    "SeparateOptions",
+    "Separated",
+    "Strut",
+    "TightenOptions",
+    "Tightened",
+    "separate",
+    "separating",
+    "tighten",
+    "tightening",
+]

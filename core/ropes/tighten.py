@@ -1,0 +1,169 @@
+"""Pull knots and links tight: the flow spreads them out, and then the rope keeps its radius while it gets shorter.
+
+Few vertices find the shape, more of them the length: the error of a polygon falls with the square of its edges.
+"""
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from ..base.arguments import check_number, checked
+from ..base.deadline import TimeLimit
+from ..base.errors import CurveError, OptionError
+from ..base.messages import Message
+from ..base.threads import BLAS
+from ..collision import thickness
+from ..curve import Curve
+from ..descent.task import Task
+from ..driver import Outcome, Relaxation, RelaxOptions, Result, Status, finish, relax
+from ..driver.prepare import rope_radius
+from ..driver.relax import within
+from ..io.trajectory import Iterate
+from .pulled_rope import GAP, PulledRope
+
+COARSE = 100  # vertices that find the shape, up to twice as many
+MOST = 20_000  # of vertices, starts and seeds
+FINAL = 3  # starts that go on to the end
+
+
+@dataclass(frozen=True, kw_only=True)
+class TightenOptions:
+    """How a knot is pulled tight: ``vertices`` in the end, or up to twice as many, and ``starts``, drawn by a seed."""
+
+    vertices: int = 400
+    starts: int = 1
+    seed: int = 0
+    time_limit: float | None = None
+
+    def __post_init__(self) -> None:
+        for name, low in (("vertices", COARSE), ("starts", 1), ("seed", 0)):
+            check_number(name, getattr(self, name), low - 1, MOST)
+        if self.time_limit is not None:
+            check_number("time_limit", self.time_limit, 0.0, math.inf)
+
+
+class Strut(NamedTuple):
+    """Two edges that press on each other, and the force, relative to the tension of the rope."""
+
+    edge: int
+    other: int
+    force: float
+
+
+@dataclass(frozen=True)
+class Tightened(Outcome):
+    """How tightening ended.
+
+    - ``ropelength``: length over thickness.
+    - ``gap``: Σ force × clearance, relative to the length: by about that part the rope could still be shorter.
+    - ``residual``: what forces lack to be in equilibrium, relative to the tension.
+    - ``struts``: where strands press on each other.
+    """
+
+    ropelength: float = 0.0
+    gap: float = math.inf
+    residual: float = math.inf
+    struts: tuple[Strut, ...] = ()
+
+
+@checked
+def tighten(
+    curve: Curve | Task,
+    *,
+    vertices: int = 400,
+    starts: int = 1,
+    seed: int = 0,
+    callback: Callable[[Iterate], None] | None = None,
+) -> Result:
+    """Pull a knot or link tight: as short as a rope of its radius can be, nine tenths of the curve's thickness.
+
+    In the end there are ``vertices`` or up to twice as many.  Of several ``starts`` all but the first are stirred at
+    random; the three that are shortest on few vertices go on, and the best of them is kept.  ``energy`` of iterates is
+    length over radius, ``gradient_norm`` the residual.  The result's outcome is a `Tightened`, unless it was cut short.
+
+    Open ropes are pulled by their ends, which go straight ahead as rope comes out of the knot.  The start must have
+    long ends: nothing keeps strands from slipping over them.
+
+    Raises CurveError if the curve is not in space, touches itself or is too thin for a rope; OptionError if
+    there are pins or obstacles, or numbers are out of range.
+    """
+    task = Task.of(curve)
+    return finish(tightening(task, TightenOptions(vertices=vertices, starts=starts, seed=seed)), task, callback)
+
+
+@BLAS.bounded()
+def tightening(task: Task, options: TightenOptions) -> Relaxation:
+    """Yield the curve and all steps on its way; return how it ended, a `Tightened`.  Raises as `tighten` does."""
+    began = time.perf_counter()
+    if task.pins or task.obstacles:
+        raise OptionError("a knot is pulled tight in free space; leave pins and obstacles out")
+    if task.curve.dimension != 3:
+        raise CurveError(f"the curve has dimension {task.curve.dimension}; only curves in space are pulled tight")
+    # open ropes stay as long as they are, so that edges do not become shorter
+    few = COARSE if task.curve.mesh.all_closed else 2 * COARSE
+    coarse = options.vertices >> max(0, int(math.log2(options.vertices / few)))
+    start = task.refined(max(len(task.curve), coarse))
+    thick = rope_radius(start, RelaxOptions(radius="keep"))
+    if thick is None:
+        raise CurveError("the curve is no rope: a corner is too sharp, or strands are too near; smooth or relax it")
+    unit, away = float(thick.min()), float(np.abs(start.curve.vertices.mean(axis=0)).max())
+    if away > 1e3 * unit:  # of such coordinates too few digits are left for strands that touch
+        raise CurveError(
+            f"the curve is {away:.3g} from the origin, too far for ropes of radius {unit:.3g}; move it there"
+        )
+    if not start.curve.mesh.all_closed:  # which are not scaled until they fit
+        unit = min(unit, 0.9 * thickness(start.curve))
+    work = BLAS.bounding(_tightened(start, unit, coarse, options))
+    if options.time_limit is None:
+        return work
+    return within(TimeLimit(options.time_limit, used=time.perf_counter() - began), work)
+
+
+def _tightened(start: Task, unit: float, coarse: int, wanted: TightenOptions) -> Relaxation:
+    rng, size = np.random.default_rng(wanted.seed), len(start.curve)
+    loosely = RelaxOptions(mesh="fixed", untangle="never", tolerance=1e-2, max_iterations=500)
+    ends = tuple(start.curve.mesh.ends.ravel().tolist())
+    flow = relax(replace(start, pins=ends), replace(loosely, radius=unit, vertices=size))
+    rope = PulledRope(next(flow), unit)
+    yield rope.last
+    if not rope.is_tight and start.curve.mesh.all_closed:  # strands could slip over ends
+        for iterate in flow:
+            yield from rope.follow(iterate.path, iterate.gradient_norm, iterate.step_size)
+    yield from rope.thinned(coarse)
+    if wanted.starts == 1:
+        yield from rope.pulled(wanted.vertices)
+        yield from rope.refined(wanted.vertices)
+    else:
+        trials = list[tuple[PulledRope, list[Iterate]]]()
+        for k in range(wanted.starts):
+            trial = PulledRope(rope.last, unit)
+            trials.append((trial, [*(trial.stirred(rng) if k else ()), *trial.pulled(wanted.vertices)]))
+        trials = sorted(trials, key=lambda each: each[0].promise)[:FINAL]
+        for trial, way in trials:
+            way += trial.refined(wanted.vertices)
+        rope, way = min(trials, key=lambda each: each[0].promise)
+        yield from way
+    point = rope.point
+    assert point is not None, "it has been pulled"
+    contacts, strands = point.contacts, slice(point.contacts.strands)
+    struts = zip(*(x[strands].tolist() for x in (contacts.i, contacts.j, point.forces)), strict=True)
+    ropelength, gap, residual = rope.curve.length / thickness(rope.curve), point.gap, point.residual
+    template = "ropelength {ropelength:.7g}, gap {gap:.1g}, residual {residual:.1g}"
+    told = Message(template, ropelength=ropelength, gap=gap, residual=residual)
+    if gap <= GAP and residual <= 10.0 * GAP:
+        status, said = Status.CONVERGED, Message("converged: {told}", told=told)
+    else:
+        status, said = Status.STALLED, Message("stalled: forces are not in equilibrium: {told}", told=told)
+    pressing = tuple(Strut(*each) for each in struts if each[2] > 1e-4)
+    outcome = Tightened(status, (said,), ropelength=ropelength, gap=gap, residual=residual, struts=pressing)
+    if not rope.curve.mesh.all_closed:
+        if point.excess < 1e-3:
+            return outcome.adding("the rope is straight, as no knot was in it")
+        return outcome.adding("{excess:.5g} radii of rope are in the knot", excess=point.excess)
+    if (point.curve.component_lengths < 2.01 * math.pi).all():
+        return outcome.adding("circles of the rope's radius are left, as of unknots")
+    return outcome
