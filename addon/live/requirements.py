@@ -60,10 +60,10 @@ def selected_curves(context: bpy.types.Context, *more: str) -> list[bpy.types.Ob
 
     ``more``: other custom properties of objects, which say what curve object they were made of.
     """
-    made_of = list(context.selected_objects)
+    selected = made_of = list(context.selected_objects)
     for name in (CARRIER, *more):
         made_of = [obj.get(name, obj) for obj in made_of if obj is not None]
-    there = (obj for obj in made_of if obj is not None and obj.name in context.scene.objects)
+    there = (obj for obj in made_of if obj is not None and (obj in selected or obj.name in context.scene.objects))
     return [obj for obj in dict.fromkeys(there) if obj.type == "CURVE"]
 
 

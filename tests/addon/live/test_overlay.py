@@ -121,7 +121,7 @@ def test_pinned_points_are_marked(drawn, monkeypatch):
     pins.pin(obj.data.splines[0], np.arange(12) < 2)
     monkeypatch.setattr(overlay, "location_3d_to_region_2d", lambda _region, _data, place: place[:2])
     here = view()
-    here.mode, here.selected_objects, here.scene = "OBJECT", [obj], bpy.context.scene
+    here.mode, here.selected_objects = "OBJECT", [obj]
     overlay._pins(here)
     ((_, corners, _, kind),) = drawn
     middles = np.reshape(corners, (2, -1, 2)).mean(axis=1)
