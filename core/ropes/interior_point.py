@@ -50,6 +50,8 @@ class InteriorPoint:
     margin: float = 0.3  # of distances beyond 2, at which the barrier begins
     gap: float = field(default=np.inf, init=False)
     residual: float = field(default=np.inf, init=False)
+    contacts: Contacts = field(init=False)
+    forces: FloatArray = field(init=False)
 
     def __post_init__(self) -> None:
         self._delta, self._depth = 0.0, 1.0
