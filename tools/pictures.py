@@ -6,6 +6,7 @@
     morph    one famous unknot on its way to another
     cables   strands that run through each other, and six moments on their way to ropes that keep clear
     world    what curves in the world do, before and after a relaxation: world-*.png
+    packed   a rope that fills a ball
     untangle the README's moving picture: another famous unknot, a rope on its way to the circle
 
 speed.png is drawn by benchmarks/speed.py.
@@ -21,7 +22,7 @@ import bpy
 import mobius_flow
 import numpy as np
 from matplotlib.figure import Figure
-from mobius_flow.addon.pictures.export import compose, write_picture
+from mobius_flow.addon.pictures.export import compose, write_picture, write_still
 from mobius_flow.addon.pictures.looks import LOOKS
 from mobius_flow.addon.pictures.materials import bundled, colour_components
 from mobius_flow.addon.pictures.rendering import empty_scene, render_still, use_cycles, use_workbench
@@ -38,7 +39,7 @@ from mobius_flow.core import (
     relax,
     separate,
 )
-from mobius_flow.core.collision import is_free
+from mobius_flow.core.collision import is_rope
 from mobius_flow.core.keys.motion import Playing, recorded
 from mobius_flow.core.keys.placement import Measure
 from mobius_flow.core.keys.tube import rope_radii
@@ -192,11 +193,20 @@ def world() -> None:
     before_and_after("growth", small, vertices=60, mesh="finer", grow=12.0, max_iterations=90)
 
 
+def packed() -> None:
+    iterates: list[Iterate] = []
+    task = Task(curve=knot("3_1"), obstacles=(read_obstacle(ROOT / "examples" / "ball.obj"),))
+    minimize(task, RelaxOptions(grow=14.0, radius=0.1, max_iterations=190, tolerance=1e-3), iterates.append)
+    with tempfile.TemporaryDirectory() as room:
+        write_still(path := Path(room, "packed.png"), iterates, "STUDIO")
+        save(Image.open(path).convert("RGB").crop((200, 0, 600, 450)).resize((320, 360)), "packed")
+
+
 def untangle() -> None:
     """Every second frame of the film, which repeats; the first one is the still for those who see no motion."""
     motion, _ = recorded([*relax(read_curve(ROOT / "examples" / "tangle.obj"))], Measure.RADIUS)
     playing = Playing().timed(motion)
-    keys, mesh = motion.keys(is_free, playing.timing.length, playing.timing), motion.start.mesh
+    keys, mesh = motion.keys(is_rope, playing.timing.length, playing.timing), motion.start.mesh
     frames = playing.timing.frames(motion.course(keys))
     scene = empty_scene()
     use_workbench(scene, 480, 360)
@@ -213,6 +223,7 @@ def untangle() -> None:
 
 
 if __name__ == "__main__":
-    drawn = {"knots": knots, "cables": cables, "looks": looks, "morph": unknots, "world": world, "untangle": untangle}
+    drawn = {"knots": knots, "cables": cables, "looks": looks, "morph": unknots, "world": world, "packed": packed}
+    drawn["untangle"] = untangle
     for wanted in sys.argv[1:] or drawn:
         drawn[wanted]()
