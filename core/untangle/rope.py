@@ -73,13 +73,18 @@ class _Model:
             _add(self.force, a, by_a[:, None] * first)
             self._blocks += [(a, b, (by_a * by_b)[:, None, None] * second) for b, by_b in corners]
 
-    def minimum(self, more: sp.csc_array) -> FloatArray:
-        """The displacements of least energy with one more form, sparse (3n, 3n); shape (n, 3)."""
-        own = np.arange(len(self.form))
-        a, b, values = map(np.concatenate, zip(*self._blocks, (own, own, self.form), strict=True))
-        rows, columns = 3 * a[:, None, None] + np.arange(3)[:, None], 3 * b[:, None, None] + np.arange(3)
-        places = [np.broadcast_to(each, values.shape).ravel() for each in (rows, columns)]
-        form = sp.coo_array((values.ravel(), places), shape=more.shape).tocsc() + more
+    def minimum(self) -> FloatArray:
+        """The displacements of least energy, shape (n, 3)."""
+        n, own = len(self.form), np.arange(len(self.form))
+        a, b, blocks = map(np.concatenate, zip(*self._blocks, (own, own, self.form), strict=True))
+        order = np.argsort(key := a * n + b, kind="stable")
+        first = np.flatnonzero(np.diff(key[order], prepend=-1))
+        rows, columns = np.divmod(key[order[first]], n)
+        total = sp.csr_array((np.ones(len(order)), order, np.append(first, len(order))))  # of those with one place
+        blocks = (total @ blocks.reshape(-1, 9)).reshape(-1, 3, 3)
+        form = sp.bsr_array((blocks, columns, np.searchsorted(rows, np.arange(n + 1))), shape=(3 * n, 3 * n)).tocsr()
+        # as it is symmetric, its rows are its columns
+        form = sp.csc_array((form.data, form.indices, form.indptr), shape=form.shape)
         return -np.asarray(factorised(form).solve(self.force.ravel())).reshape(-1, 3)
 
 
@@ -100,13 +105,6 @@ class ElasticRope:
         self._origin = (curve.vertices[held] if held.any() else curve.vertices).mean(axis=0)
         self.seen = (self.vertices - self._origin) @ frame
         self.thick, self.face, self.speed, self._pull = 0.0, 1.0, 0.0, 0.0
-        inner = self.mesh.inner
-        entries = np.repeat([-2.0, 1.0, 1.0], len(inner))
-        places = (
-            np.tile(np.arange(len(inner)), 3),
-            np.concatenate([inner, self.mesh.anticycle[inner], self.mesh.cycle[inner]]),
-        )
-        self._second = sp.coo_array((entries, places), shape=(len(inner), self.mesh.size)).tocsr()  # differences
 
     @property
     def curve(self) -> Curve:
@@ -131,37 +129,39 @@ class ElasticRope:
     def step(self, springs: Springs | None = None, cap: float = 0.35) -> bool:
         """Go one step, in which no vertex moves by more than a part ``cap`` of a face; return whether it is free."""
         check_time()
-        here, face, r = Curve(self.seen, self.mesh), self.face, self.thick
-        mean, model = float(here.edge_lengths.mean()), _Model(self.mesh.size)
-        cosine = self._cosines(here)
+        here, mesh, face, r = Curve(self.seen, self.mesh), self.mesh, self.face, self.thick
+        mean, model, x = float(here.edge_lengths.mean()), _Model(mesh.size), here.vertices
+        cosine, inner = self._cosines(here), mesh.inner
         # bending, for which corners of more than 60 degrees are stiffer
         stiffness = (0.35 * face) ** 2 / mean**3 * (1.0 + 30.0 * np.maximum(0.5 - cosine, 0.0))
-        bends = self._second.T @ sp.diags_array(stiffness) @ self._second
-        model.force += bends @ here.vertices
-        crossings = plane_crossings(self.mesh, here.vertices).edges
-        lying = np.ones(self.mesh.size, dtype=bool)
+        before, after, one = mesh.anticycle[inner], mesh.cycle[inner], np.ones(len(inner))
+        bend = stiffness[:, None] * (x[before] - 2.0 * x[inner] + x[after])
+        model.couple(((before, one), (inner, -2.0 * one), (after, one)), bend, stiffness[:, None, None] * np.eye(3))
+        lying = np.ones(mesh.size, dtype=bool)
         if springs is not None:
             k, scale = springs.vertices, mean / face**2
             lying[k] = springs.landed
-            model.force[k] += scale * np.einsum("kij,kj->ki", springs.stiffness, here.vertices[k] - springs.places)
+            model.force[k] += scale * np.einsum("kij,kj->ki", springs.stiffness, x[k] - springs.places)
             model.form[k] += scale * springs.stiffness
+        crossings = plane_crossings(mesh, x).edges
         self._add_tension(model, here, crossings.shape[1], lying, springs)
         self._add_repulsion(model, here, crossings, lying)
         e, f = self._strands(here, max(4.0 * r, 2.05 * r + 2.0 * cap * face), r)
-        self._add_barrier(model, here, e, f)
+        apart = self._add_barrier(model, here, e, f)
         model.force[self.held] = 0.0
         model.form[self.held] += 1e9 * mean / face**2 * np.eye(3)
-        move = model.minimum(sp.kron(bends, sp.eye_array(3), format="csc"))
+        move = model.minimum()
         move[self.held] = 0.0
         self.speed = float(np.linalg.norm(move, axis=1).max())
         if self.speed == 0.0:
             return False
         move *= min(1.0, cap * face / self.speed)
-        floor, sharp = min(2.05 * r, 0.97 * self._gap(here.vertices, e, f)), min(SHARP, cosine.min(initial=1.0))
+        floor, sharp = min(2.05 * r, 0.97 * apart.min(initial=np.inf)), min(SHARP, cosine.min(initial=1.0))
+        near = apart < floor + 2.0 * min(self.speed, cap * face)
         for _ in range(10):
-            seen = here.vertices + move
-            smooth = self._cosines(Curve(seen, self.mesh)).min(initial=1.0) >= sharp
-            if smooth and self._gap(seen, e, f) > floor and self._go(seen):
+            seen = x + move
+            smooth = self._cosines(Curve(seen, mesh)).min(initial=1.0) >= sharp
+            if smooth and self._gap(seen, e[near], f[near]) > floor and self._go(seen):
                 return True
             move *= 0.6
         return False
@@ -214,8 +214,8 @@ class ElasticRope:
         start = mesh.offsets[mesh.component[tails]][:, :, None]
         size = np.array(mesh.component_sizes)[mesh.component[tails]][:, :, None]
         a, b = start + (tails[:, :, None] - start + np.arange(-reach - 1, reach + 3)) % size
-        near_one = [(u[:, :, None] * n + v[:, None, :]).ravel() for u, v in ((a, b), (b, a))]
-        apart = ~np.isin(i * n + j, np.concatenate(near_one))
+        near_one = np.unique(np.minimum(a[:, :, None], b[:, None]) * n + np.maximum(a[:, :, None], b[:, None]))
+        apart = ~np.isin(i * n + j, near_one, assume_unique=True)
         i, j = i[apart], j[apart]
         v = (x[i] - x[j]) * [1.0, 1.0, 0.0]
         d = np.linalg.norm(v, axis=1) + 1e-12 * face
@@ -229,18 +229,19 @@ class ElasticRope:
             _add(model.force, vertices, sign * force)
             _add(model.form, vertices, form)
 
-    def _add_barrier(self, model: _Model, here: Curve, e: IntArray, f: IntArray) -> None:
-        """The barrier at the rope's diameter, between edges that are near each other."""
+    def _add_barrier(self, model: _Model, here: Curve, e: IntArray, f: IntArray) -> FloatArray:
+        """The barrier at the rope's diameter, between edges that are near each other; return how far apart they are."""
         r, ell = max(self.thick, 1e-12 * self.face), here.edge_lengths
         chord, s, t = closest(EdgePairs.of(self.mesh, here.vertices, e, f))
-        d = np.linalg.norm(chord, axis=1)
-        e, f, chord, s, t, d = (each[d < 4.0 * r] for each in (e, f, chord, s, t, d))
+        apart = np.linalg.norm(chord, axis=1)
+        e, f, chord, s, t, d = (each[apart < 4.0 * r] for each in (e, f, chord, s, t, apart))
         q, weight = chord / d[:, None], 0.2 * ell[e] * ell[f] / r
         _, first, second = phi(np.maximum(0.5 * d / r - 1.0, 1e-3))
         (a, b), (u, v) = ((self.mesh.tails[each], self.mesh.heads[each]) for each in (e, f))
         corners = (a, 0.5 - s), (b, 0.5 + s), (u, t - 0.5), (v, -0.5 - t)
         form = (0.25 * weight * second / r**2)[:, None, None] * q[:, :, None] * q[:, None]
         model.couple(corners, (0.5 * weight * first / r)[:, None] * q, form)
+        return apart
 
     def _strands(self, here: Curve, reach: float, radius: float) -> tuple[IntArray, IntArray]:
         """Pairs of edges whose middles are so near that they may be within reach, but that are far along the curve."""
