@@ -160,7 +160,11 @@ class ElasticRope:
         near = apart < floor + 2.0 * min(self.speed, cap * face)
         for _ in range(10):
             seen = x + move
-            if (self._cosines(Curve(seen, mesh)) >= sharp).all() and self._gap(seen, e[near], f[near]) > floor and self._go(seen):
+            if (
+                (self._cosines(Curve(seen, mesh)) >= sharp).all()
+                and self._gap(seen, e[near], f[near]) > floor
+                and self._go(seen)
+            ):
                 return True
             move *= 0.6
         return False

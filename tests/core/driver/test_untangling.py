@@ -18,6 +18,7 @@ from mobius_flow.core import (
     relax,
 )
 from mobius_flow.core.base.deadline import TimeLimit, check_time
+from mobius_flow.core.base.messages import Message
 from mobius_flow.core.collision import check_embedded
 from mobius_flow.core.descent.task import Units
 from mobius_flow.core.driver.moves import untangling
@@ -25,7 +26,8 @@ from mobius_flow.core.driver.outcome import converged
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.driver.run import Run
 from mobius_flow.core.knots import knot, overhand, scramble
-from mobius_flow.core.untangle import Stage
+from mobius_flow.core.untangle import Stage, Untangled
+from mobius_flow.core.untangle.rope import ViewCount
 from shapes import regular_polygon
 from solids import plate
 from tasks import proved
@@ -223,6 +225,17 @@ def test_moves_that_leave_more_crossings_than_go_are_in_vain(monkeypatch) -> Non
     start, stuck, after = islice(relax(Task(curve=curve, obstacles=plates(curve, 0.003))), 3)
     assert start.curve.mesh == stuck.curve.mesh == after.curve.mesh
     assert after.strand_moves is None
+
+
+def test_moves_that_stretch_the_curve_between_pins_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    def far(curve: Curve, *_: object) -> Iterator[object]:
+        yield Stage(curve, (), ViewCount(2, 0))
+        yield Stage(curve, (curve.vertices + 9.0 * curve.length * np.eye(len(curve))[:, 3:4],), ViewCount(1, 1))
+        return Untangled(1, False, Message("one crossing is left"), 1)
+
+    monkeypatch.setattr(untangling, "untangled", far)
+    result = minimize(Task(curve=GOERITZ, pins=(2, 6)), RelaxOptions(untangle="always", max_iterations=1))
+    assert "strand moves: none are made: others would stretch the curve between pins" in result.message
 
 
 def test_what_fails_within_moves_loses_nothing(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, Mesh
 from mobius_flow.core.collision import thickness
+from mobius_flow.core.curve.distances import arc_distance_of_vertices
 from mobius_flow.core.curve.pins import holds
 from mobius_flow.core.energies.edge_pairs import EdgePairs
 from mobius_flow.core.energies.rope import closest, phi
@@ -110,6 +111,45 @@ def test_forces_of_barrier_tension_and_weight_are_derivatives() -> None:
     assert apart(0.0) > 0.0
     for energy, model in ((apart, barrier), (tense, tension)):
         assert taylor_slope(energy, [energy(0.0), np.sum(model.force * v)]) > 1.9
+
+
+def test_the_repulsion_in_the_plane_is_that_of_all_pairs_which_are_not_near_one_crossing() -> None:
+    """Its force is the derivative of what is added up pair by pair."""
+    rope = laid("5_2")
+    here, face, n = Curve(rope.seen, rope.mesh), rope.face, rope.mesh.size
+    mean, crossings, x = float(here.edge_lengths.mean()), drawing(rope).crossings.edges, here.vertices
+    reach = int(0.5 * face / mean)
+    i, j = np.triu_indices(n, 1)
+    apart = (arc_distance_of_vertices(here, i, j) > 1.6 * face) & (np.linalg.norm((x[i] - x[j])[:, :2], axis=1) < face)
+    assert apart.any()
+    for a, b in crossings.T:
+        at_a, at_b = ((np.stack([i, j]) - each + reach + 1) % n < 2 * reach + 4 for each in (a, b))
+        apart &= ~(at_a & at_b[::-1]).any(axis=0)
+    i, j = i[apart], j[apart]
+    model, v = _Model(n), np.random.default_rng(5).normal(size=(n, 3)) * 0.05 * face
+    rope._add_repulsion(model, here, crossings, np.ones(n, dtype=bool))
+
+    def energy(t: float) -> float:
+        moved = x + t * v
+        value, _, _ = phi(np.linalg.norm((moved[i] - moved[j])[:, :2], axis=1) / face)
+        return float(1.5 * (mean / face) ** 2 * face * value.sum())
+
+    assert energy(0.0) > 0.0
+    assert taylor_slope(energy, [energy(0.0), np.sum(model.force * v)]) > 1.9
+
+
+def test_the_minimum_of_forces_is_that_of_the_dense_form() -> None:
+    rng, n = np.random.default_rng(6), 12
+    model, dense = _Model(n), np.eye(3 * n)
+    model.form += np.eye(3)
+    for _ in range(5):  # functions of x_a − x_b / 2
+        a, b = rng.permutation(n)[:8].reshape(2, 4)
+        first, second = rng.normal(size=(4, 3)), np.einsum("kij,klj->kil", *[rng.normal(size=(4, 3, 3))] * 2)
+        model.couple(((a, np.ones(4)), (b, np.full(4, -0.5))), first, second)
+        for k in range(4):
+            by = np.kron(np.eye(n)[a[k]] - 0.5 * np.eye(n)[b[k]], np.eye(3))
+            dense += by.T @ second[k] @ by
+    np.testing.assert_allclose(model.minimum().ravel(), -np.linalg.solve(dense, model.force.ravel()), rtol=1e-9)
 
 
 def test_springs_lead_vertices_and_no_further_than_the_rest_allows() -> None:
