@@ -25,7 +25,7 @@ from ..energies.rope import closest, phi
 from ..knots.diagrams.projection import plane_crossings
 from ..solve.symmetric import factorised
 
-SHARP = 0.3  # cosine of the sharpest turn at a vertex that is not so sharp already
+SHARP = 0.3  # cosine of the sharpest turn at a vertex, if there are no sharper ones
 
 
 class ViewCount(NamedTuple):
@@ -156,7 +156,7 @@ class ElasticRope:
         if self.speed == 0.0:
             return False
         move *= min(1.0, cap * face / self.speed)
-        floor, sharp = min(2.05 * r, 0.97 * apart.min(initial=np.inf)), np.minimum(SHARP, cosine)
+        floor, sharp = min(2.05 * r, 0.97 * apart.min(initial=np.inf)), min(SHARP, cosine.min(initial=1.0))
         near = apart < floor + 2.0 * min(self.speed, cap * face)
         for _ in range(10):
             seen = x + move
