@@ -245,7 +245,7 @@ class ElasticRope:
         corners = (a, 0.5 - s), (b, 0.5 + s), (u, t - 0.5), (v, -0.5 - t)
         form = (0.25 * weight * second / r**2)[:, None, None] * q[:, :, None] * q[:, None]
         model.couple(corners, (0.5 * weight * first / r)[:, None] * q, form)
-        return apart
+        return np.asarray(apart)
 
     def _strands(self, here: Curve, reach: float, radius: float) -> tuple[IntArray, IntArray]:
         """Pairs of edges whose middles are so near that they may be within reach, but that are far along the curve."""
