@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from ..base.types import BoolArray, FloatArray, IntArray
 from ..curve.refine import arc_lengths
@@ -44,15 +43,15 @@ class Lead:
             new[1:-1] = 0.25 * new[:-2] + 0.5 * new[1:-1] + 0.25 * new[2:]
         self.far = np.linalg.norm(new - old[:, :2], axis=1)
         # the area that is swept for each crossing, for which many at once count less
-        grown = max(now[-1] / was[-1], 1.0)  # rope must come from elsewhere, and moves more than the strand itself
-        self.cost = float(self.far.mean() * was[-1] * grown**1.5) / max(move.saved, 0.5) ** 0.7
-        self.swept = np.concatenate([old[:, :2] + over * (new - old[:, :2]) for over in np.linspace(0.0, 1.0, 5)])
+        self.cost = float(self.far.mean() * max(was[-1], now[-1])) / max(move.saved, 0.5) ** 0.7
+        both = np.vstack([old[:, :2], new])
+        self.low, self.high = both.min(axis=0), both.max(axis=0)
 
     def lift(self, rope: ElasticRope, rest: BoolArray) -> None:
         """Set the height of the way: above all that may be below it, and more and more if the strand meets itself."""
         up, x = 1.0 if self.move.strand.over else -1.0, rope.seen
-        distance, _ = cKDTree(self.swept).query(x[:, :2], distance_upper_bound=rope.face)
-        below = rest & np.isfinite(distance)
+        low, high = self.low - 0.5 * rope.face, self.high + 0.5 * rope.face
+        below = rest & ((x[:, :2] > low) & (x[:, :2] < high)).all(axis=1)
         ways = (self.old[:, :2] + over * (self.new - self.old[:, :2]) for over in (0.25, 0.5, 0.75))
         clear = 5.0 + 8.0 * any(map(_meets_itself, ways)) * self.at
         top = (up * x[below, 2]).max(initial=0.0) + rope.thick * clear
@@ -63,7 +62,7 @@ class Lead:
         plane = self.old[:, :2] + over * (self.new - self.old[:, :2])
         s, face = arc_lengths(plane), rope.face
         ell = np.linalg.norm(rope.mesh.changes(rope.seen), axis=1).mean()
-        grown = int(np.clip(np.clip(s[-1] / (1.5 * ell), 4, 0.6 * self.size) - self.count, -2, 4))
+        grown = int(np.clip(np.clip(s[-1] / (1.1 * ell), 4, 0.6 * self.size) - self.count, -2, 4))
         last = min(self.first + self.count + grown - grown // 2, self.most)
         self.first = max(self.first - grown // 2, self.least)
         self.count = last - self.first
@@ -120,7 +119,7 @@ def lead(rope: ElasticRope, leads: Sequence[Lead]) -> bool:
             free = rope.step(now) and free
             if not free or behind(now) < near:
                 break
-        if not free or behind(now) > 2.0:
+        if behind(now) > 2.0:
             break
     for hold in (1.0, 1.0, 0.7, 0.4, 0.2, 0.05):
         rope.step(springs(1.0, 1.0, hold, landed=True))

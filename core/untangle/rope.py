@@ -196,8 +196,7 @@ class ElasticRope:
         goal = (1.0 - self._pull) * means
         both = along[:, :, None] * along[:, None, :]
         stiffness = both + np.maximum(0.0, 1.0 - goal / ell)[:, None, None] * (eye - both)
-        # strands that are led may stretch, so that they do not draw in the rest
-        one, soft = np.ones(mesh.edges), np.where(lying[mesh.tails] | lying[mesh.heads], 0.06, 0.5) * means
+        one, soft = np.ones(mesh.edges), 0.06 * means
         ends = (mesh.tails, -one), (mesh.heads, one)
         model.couple(ends, ((ell - goal) / soft)[:, None] * along, stiffness / soft[:, None, None])
         model.force[:, 2] += 1.5 * unit * lying * here.vertices[:, 2]

@@ -9,7 +9,6 @@ from collections.abc import Generator, Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from ..base.deadline import check_time
 from ..base.messages import Message
@@ -41,7 +40,7 @@ VIEWS = 24
 FEW = 4  # of them are looked at before it is known whether any move is worthwhile
 WORK = 60_000  # crossings that may be visited to find out how few moves lead to
 WIDE, FAT = 1.2, 0.08  # a face's width, times the root of area per crossing, and a rope's radius, in faces
-AT_ONCE = 6  # so many strands move, where they are far from each other
+AT_ONCE = 4  # so many strands move, where they are far from each other
 PATIENCE = 12  # moves in vain, after which a view is given up
 TABU = 8  # moves for which a strand that moved in vain is left alone
 
@@ -143,10 +142,10 @@ def _make_moves(
         before, count, tried = rope.mark(), drawing.diagram.crossings, tried + 1
         led = [(tried, set(each.vertices.tolist())) for each in leads]
         free = lead(rope, leads)
-        free = _settle(rope) and free
+        _settle(rope)
         after = draw(rope, rng)
         seen, low = after.diagram.crossings, lowest.diagram.crossings
-        if seen >= count and (not free or seen > low + max(4, low // 8) or outlook(after.diagram, rng) > best):
+        if seen >= count and (seen > low + max(4, low // 8) or outlook(after.diagram, rng) > best):
             rope.rewind(before)
             tabu, vain, blocked = tabu + led, vain + 1, blocked or not free
             continue
@@ -184,17 +183,14 @@ def _choose(
                 found.append(each)
     found.sort(key=lambda each: each.cost)
     chosen: list[Lead] = []
-    swept: list[cKDTree] = []
     second: tuple[int, Lead] | None = None
     for each in found[:40]:
-        if chosen and (len(chosen) == most or each.cost > 2.0 * max(chosen[0].cost, rope.face**2)):
-            break
-        if any(tree.query(each.swept)[0].min() < 0.8 * rope.face for tree in swept):
+        gaps = (np.maximum(each.low - other.high, other.low - each.high).max() for other in chosen)
+        if chosen and (len(chosen) == most or each.cost > 4.0 * chosen[0].cost or min(gaps) < 0.8 * rope.face):
             continue
         left = outlook(each.move.after, rng)
         if left <= best:
             chosen.append(each)
-            swept.append(cKDTree(each.swept))
         elif second is None or left < second[0]:
             second = left, each
     return chosen or ([second[1]] if second else [])
@@ -225,15 +221,12 @@ def _lay_down(rope: ElasticRope, crossings: int) -> None:
             break
 
 
-def _settle(rope: ElasticRope) -> bool:
-    """Let the rope come to rest, or nearly so; return whether nothing was in the way."""
+def _settle(rope: ElasticRope) -> None:
+    """Let the rope come to rest, or nearly so."""
     for k in range(20):
-        if not rope.step():
-            return False
-        if k >= 3 and rope.speed < 0.08 * rope.face:
+        if not rope.step() or (k >= 3 and rope.speed < 0.08 * rope.face):
             break
         rope.thicken(FAT * rope.face)
-    return True
 
 
 def _refined(curve: Curve, vertices: int, radius: FloatArray | None) -> Curve:

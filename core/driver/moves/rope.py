@@ -47,9 +47,7 @@ class GiveWay(Move):
         steps, part = self.later if self._start else self.first
         if len(self._energies) <= steps or len(self._energies) % self.every:
             return None
-        # whichever is faster, lately or all the while: saddles are left faster and faster
-        gain = max((self._energies[-1 - count] - self._energies[-1]) / count for count in (5, steps))
-        return self._where_in_the_way(steps * gain / part)
+        return self._where_in_the_way((self._energies[-1 - steps] - self._energies[-1]) / part)
 
     def converged(self, outcome: Outcome) -> Change | None:
         """Give way, or let go: the barrier is over, and the proof stays, so that the curve is at rest by itself."""
