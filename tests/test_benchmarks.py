@@ -21,6 +21,7 @@ ARGUMENTS = {
     "rope": ["4_1", "--vertices", "80", "--iterations", "20"],
     "seeded_runs": ["different", "--save", "runs.json"],
     "soak": ["--count", "2"],
+    "untangling": ["culprit"],
     "speed": ["--sizes", "60,80", "--solver", "hierarchical"],
 }
 
@@ -41,6 +42,7 @@ def test_it_runs(name, tmp_path, monkeypatch):
     done = run(name, *ARGUMENTS[name])
     assert done.returncode == 0, done.stdout + done.stderr
     few = {"batch": 1, "seeded_runs": 0, "soak": 1, "resolution": 3, "hops": 3, "passes": 3, "knots": 6, "rope": 3}
+    few["untangling"] = 2
     least = few.get(name, 5)  # a title, and a line for each of four curves
     assert len(done.stdout.splitlines()) >= least
 

@@ -140,12 +140,12 @@ def refined_alike(x: Curve, y: Curve, begins: tuple[float, ...]) -> tuple[Curve,
         places, vertices = (np.array(each).T for each in zip(*nodes, strict=True))
         for which, (curve, first) in enumerate(((x, begin), (y, 0.0))):
             part, own, has = curve.components[component], places[which], vertices[which] >= 0
-            there, k = np.flatnonzero(has), np.cumsum(has)
-            # around each node are two vertices, the k-th and the next, perhaps of the round before or after
+            there, last = np.flatnonzero(has), np.cumsum(has)
+            # around each node are two vertices, the last and the next, perhaps of the round before or after
             node = np.concatenate([there[-1:] - len(has), there, there[:1] + len(has)])
             share = np.concatenate([own[there[-1:]] - 1.0, own[there], own[there[:1]] + 1.0])
-            along = 0.45 + 0.1 * (np.arange(len(has)) - node[k]) / (node[k + 1] - node[k])
-            own = np.where(has, own, share[k] + along * (share[k + 1] - share[k]))
+            along = 0.45 + 0.1 * (np.arange(len(has)) - node[last]) / (node[last + 1] - node[last])
+            own = np.where(has, own, share[last] + along * (share[last + 1] - share[last]))
             points = at_shares(part, closed, (own - first) % 1.0 if closed else own)
             points[has] = part[vertices[which][has]]
             parts[which].append(points)

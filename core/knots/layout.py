@@ -136,7 +136,7 @@ def charged(piece: Diagram, edges: list[IntArray], spans: FloatArray) -> Charged
     slope = sp.coo_array((entries, (np.tile(rows, 2), np.concatenate([heads, tails]))), (len(rows), count)).tocsr()
     bend = sp.diags_array(1.0 / between) @ (slope[after] - slope)
     elastic = slope.T @ sp.diags_array(step) @ slope + 0.3 * bend.T @ sp.diags_array(between) @ bend
-    mass = 0.5 * (np.bincount(tails, step) + np.bincount(heads, step))
+    mass = np.asarray(0.5 * (np.bincount(tails, step) + np.bincount(heads, step)), dtype=np.float64)
     mass[: piece.crossings] *= 0.5  # which are on two strands, but one place
     pairs = []  # of vertices round each face that are not next to each other
     for face in piece.faces:

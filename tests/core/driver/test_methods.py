@@ -25,15 +25,15 @@ Proofs = set[tuple[bytes, bytes]]
 def proofs(monkeypatch: pytest.MonkeyPatch) -> Proofs:
     """The motions that are proved while a test runs, each by the bits of its ends."""
     found: Proofs = set()
-    prove = problem.free_motion
+    prove = problem.Problem.free_motion
 
-    def recorded(mesh: object, start: FloatArray, end: FloatArray, obstacles: object) -> FreeMotion:
-        motion = prove(mesh, start, end, obstacles)
+    def recorded(given: problem.Problem, start: FloatArray, end: FloatArray) -> FreeMotion:
+        motion = prove(given, start, end)
         if motion.proved:
             found.add((start.tobytes(), end.tobytes()))
         return motion
 
-    monkeypatch.setattr(problem, "free_motion", recorded)
+    monkeypatch.setattr(problem.Problem, "free_motion", recorded)
     return found
 
 

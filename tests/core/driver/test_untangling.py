@@ -182,6 +182,7 @@ def test_arcs_between_pins_have_their_lengths_again() -> None:
     assert result.curve.edge_lengths[edges].sum() == pytest.approx(curve.edge_lengths[:12].sum())
 
 
+@pytest.mark.slow
 def test_arcs_between_many_pins_do_not_wind_round_others() -> None:
     curve = knot("goeritz")
     result, _ = proved(curve, pins=tuple(range(0, len(curve), 2)), untangle="always", max_iterations=2)
@@ -219,6 +220,7 @@ def test_where_strands_are_not_moved_it_is_told(curve: Curve, options: dict[str,
     assert result.report()["strand_moves"] is None
 
 
+@pytest.mark.slow
 def test_moves_that_leave_more_crossings_than_go_are_in_vain(monkeypatch) -> None:
     monkeypatch.setattr(untangling.Untangling, "often", 0)
     curve = knot("tuzun-sikora")

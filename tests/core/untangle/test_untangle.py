@@ -53,7 +53,7 @@ def test_famous_unknots_lose_all_crossings(name: str) -> None:
 @pytest.mark.parametrize("case", family([("5_2", 5), ("m7_4", 7), ("L6a4", 6), ("3_1#m4_1", 7), ("3_1#3_1", 6)], 2))
 def test_scrambled_knots_and_links_come_to_their_crossings(case: tuple[str, int]) -> None:
     name, crossings = case
-    curve = scramble(knot(name, 100), 1, moves=800)
+    curve = scramble(knot(name, 60), 1, moves=400)
     end, found = run(curve)
     assert (found.crossings, found.least) == (crossings, True)
     assert str(knot_type(end)) == str(knot_type(curve))
@@ -89,7 +89,7 @@ def test_plates_leave_room_or_none(part: float, free: bool) -> None:
     gap = part * np.ptp(curve.vertices, axis=0).max()
     _, found = run(curve, walls=[plate(low - gap, name="below"), plate(high + gap, name="above")])
     assert (found.crossings == 0) is free
-    assert free or "crossings are left, as no way for a strand is free" in found.reason
+    assert free or "crossings are left, as no" in found.reason  # way is free, or no view shows what is in front
 
 
 def test_wherever_it_is_left_the_curve_is_embedded_and_of_its_type() -> None:
