@@ -355,7 +355,7 @@ def normals(u: Motion, v: Motion) -> tuple[Vector, Vector, Vector]:
     return first, plus(cross(u[0], v[1]), cross(u[1], v[0])), last
 
 
-def arcs_fit(edge: Motion, neighbours: Sequence[Motion], radius: int, halvings: int = 12) -> bool:
+def arcs_fit(edge: Motion, neighbours: Sequence[Motion], radius: int, halvings: int = 16) -> bool:
     """Whether arcs of a radius fit into the corners of an edge: radius (tan(a/2) + tan(b/2)) <= length, all vectors.
 
     tan(a/2) is |e x f| / (|e||f| + <e, f>).  Where bounds of these do not suffice, the time is halved.

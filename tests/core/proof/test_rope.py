@@ -158,3 +158,14 @@ def test_a_file_has_the_least_radius_of_its_run() -> None:
     for share, iterate in zip((1.0, 0.5, 0.8), iterates, strict=False):
         trajectory.add(replace(iterate, radius=(share,)))
     assert trajectory.arrays()["radius"].tolist() == [0.5]
+
+
+@pytest.mark.parametrize("margin", [1e-3, 1e-4, 3.5e-5])
+def test_the_checker_bounds_corners_as_finely_as_runs_do(margin: float) -> None:
+    """Of a corner whose edge shrinks while the angle does, bounds over a part of the time are loose."""
+    start, end = np.array([[-1.0, 0, 0], [0, 0, 0], [0, 2, 0]]), np.array([[-1.0, 0, 0], [0, 0, 0], [0.01, 1, 0]])
+    assert is_rope(Mesh((3,), (False,)), start, end, np.array([1.0 - margin]))
+    size = 10**30
+    edge, shrinking = ((size, 0, 0),) * 2, ((0, 2 * size, 0), (size // 100, size, 0))
+    assert checker.arcs_fit(edge, [shrinking], int(size * (1.0 - margin)))
+    assert not checker.arcs_fit(edge, [shrinking], int(size * (1.0 + margin)))
