@@ -155,7 +155,9 @@ def test_an_overhand_knot_is_pulled_by_its_ends():
     assert iterates[-1].curve.length == pytest.approx(loose.length, rel=1e-6)  # no rope is lost
 
 
-@pytest.mark.parametrize(("name", "held"), [("open-figure-eight", 27.4), ("open-granny", 30.2)])
+@pytest.mark.parametrize(
+    ("name", "held"), [("open-figure-eight", 27.4), pytest.param("open-granny", 30.2, marks=pytest.mark.slow)]
+)
 def test_rope_knots_are_pulled_tight_by_their_ends(name, held):
     loose = knot(name)
     iterates, outcome = run(loose, vertices=200)
