@@ -229,7 +229,7 @@ class Recording:
                 pairs = zip(times, points, strict=True)
                 between[k] = [self._stored(Key(t, shape, size=self._size(t, shape))) for t, shape in pairs]
         start, ends = self._link.to_stored(self._mesh, self.start.vertices), list(map(self._stored, ends))
-        for radius in (self._radius, 0.0):
+        for radius in dict.fromkeys((self._radius, 0.0)):
             proved = partial(self._proved, free, radius)
             unproved = int(not proved(ends[0], ends[0], start))  # rounding may push one through another
             keys = ends[:1]

@@ -2,7 +2,7 @@
 
 import time
 from collections import deque
-from collections.abc import Generator, Hashable, Iterable, Iterator
+from collections.abc import Generator, Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
@@ -20,6 +20,7 @@ from ...descent import Leg, Point, Step
 from ...descent.line_searches import on_target
 from ...descent.step import attempt
 from ...io.trajectory import Iterate, StrandMoves
+from ...knots.closures import closed_towards
 from ...knots.diagrams import QuickInvariants, quick_invariants
 from ...untangle import Stage, untangled, worth
 from ..move import Change, Move
@@ -28,8 +29,8 @@ from ..prepare import target_lengths
 from ..run import HEADWAY, Run
 from .links import shrinking_ball
 
-# directions to the points, ten lengths of the curve from its middle, where ends are joined
-WAYS = 10.0 * np.array([[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]])
+# directions, of length 1, in which ends are joined far out
+WAYS = np.array([[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]]) / np.sqrt(3.0)
 
 
 @dataclass(eq=False)
@@ -143,7 +144,7 @@ class Untangling(Move):
         run, start = self.run, self.run.iterate
         pins = np.array(start.pins, dtype=np.intp)
         held = self._ends_are_pinned and not start.curve.mesh.all_closed
-        ways = start.curve.vertices.mean(axis=0) + start.curve.length * WAYS if held else ()
+        ways = WAYS.tolist() if held else ()
         knots = _closures(start.curve, ways)
         given = run.problem.obstacles, run.problem.radius, run.options.seed, next(self._shares, 0.0)
         work = untangled(start.curve, pins, *given)
@@ -223,14 +224,12 @@ class Untangling(Move):
                 yield run.accept(step)
 
 
-def _closures(curve: Curve, ways: Iterable[FloatArray]) -> list[QuickInvariants]:
-    """Invariants of a curve with the ends of its arcs joined at a point far away, for several such points.
+def _closures(curve: Curve, ways: Iterable[Sequence[float]]) -> list[QuickInvariants]:
+    """Invariants of a curve with the ends of its arcs joined far out, in several directions.
 
     Ends are only points, over which a knot slips off: a knot that is there whichever way they go on is the arc's own.
     """
-    pairs = list(zip(curve.components, curve.mesh.closed, strict=True))
-    joined = ([part if closed else np.vstack([part, way]) for part, closed in pairs] for way in ways)
-    return [quick_invariants(Curve.from_components(parts)) for parts in joined]
+    return [quick_invariants(closed_towards(curve, (x, y, z))) for x, y, z in ways]
 
 
 class _Lengths:

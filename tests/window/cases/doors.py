@@ -50,36 +50,40 @@ def by_hand(name: str, data: bpy.types.ID) -> Steps:
     yield from undone(is_back, "the relaxation")
 
 
+def trefoil() -> np.ndarray:
+    return core("knots").torus_knot(2, 3, 24).vertices
+
+
+def become_trefoil(curves: bpy.types.bpy_struct) -> None:
+    """Give hair curves, or a drawing, one closed strand that becomes thicker along the way."""
+    attributes = curves.attributes
+    attributes["position"].data.foreach_set("vector", trefoil().astype(np.float32).ravel())
+    attributes.new("cyclic", "BOOLEAN", "CURVE").data.foreach_set("value", [True])
+    attributes.new("radius", "FLOAT", "POINT").data.foreach_set("value", np.linspace(0.05, 0.15, 24))
+
+
 def hair() -> Steps:
-    """A trefoil and a strand beside it."""
     clear()
-    knot = core("knots").torus_knot(2, 3, 24).vertices
     data = bpy.data.hair_curves.new("Source")
     data.add_curves([24])
-    data.attributes["position"].data.foreach_set("vector", knot.astype(np.float32).ravel())
-    data.attributes.new("cyclic", "BOOLEAN", "CURVE").data.foreach_set("value", [True])
-    data.attributes.new("radius", "FLOAT", "POINT").data.foreach_set("value", np.linspace(0.05, 0.15, 24))
+    become_trefoil(data)
     yield from by_hand("hair", data)
 
 
 def strokes() -> Steps:
     clear()
-    knot = core("knots").torus_knot(2, 3, 24).vertices
     old = not hasattr(bpy.data, "grease_pencils_v3")
     data = (bpy.data.grease_pencils if old else bpy.data.grease_pencils_v3).new("Source")
     drawing = data.layers.new("Layer").frames.new(1).drawing
     drawing.add_strokes([24])
-    drawing.attributes["position"].data.foreach_set("vector", knot.astype(np.float32).ravel())
-    drawing.attributes.new("cyclic", "BOOLEAN", "CURVE").data.foreach_set("value", [True])
-    drawing.attributes.new("radius", "FLOAT", "POINT").data.foreach_set("value", np.linspace(0.05, 0.15, 24))
+    become_trefoil(drawing)
     yield from by_hand("strokes", data)
 
 
 def edges() -> Steps:
     clear()
-    knot = core("knots").torus_knot(2, 3, 24).vertices
     data = bpy.data.meshes.new("Source")
-    data.from_pydata(knot.tolist(), [(k, (k + 1) % 24) for k in range(24)], [])
+    data.from_pydata(trefoil().tolist(), [(k, (k + 1) % 24) for k in range(24)], [])
     yield from by_hand("edges", data)
 
 
