@@ -11,6 +11,7 @@ from mobius_flow.core.curve.refine import evenly
 from mobius_flow.core.keys.key_options import Pace, Timing
 from mobius_flow.core.keys.motion import Key, Keys, Kind, recorded
 from mobius_flow.core.keys.placement import Measure
+from mobius_flow.core.keys.rope import corners
 from mobius_flow.core.keys.tube import (
     free_radius,
     radius_beside,
@@ -233,3 +234,14 @@ def test_between_two_sizes_a_rope_is_proved_in_one():
     keys = followed(made, measure=Measure.RADIUS, in_points=True).keys(proved)
     np.testing.assert_allclose(seen, [(0.0999, 1.0), (0.0999, 2.0)], rtol=1e-6)
     assert [key.radius for key in keys.keys] == pytest.approx([0.0998, 0.0499])
+
+
+def test_points_that_are_no_corners_are_left_out_but_not_a_whole_arc_of_them() -> None:
+    """On a circle so fine that each point is on an edge, up to 32-bit rounding, the arc is still there."""
+    n = 20_000
+    angles = 2.0 * np.pi * np.arange(n) / n
+    circle = np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], axis=1)
+    mesh, start, end = corners(Mesh((n,)), circle, 2.0 * circle, 0.1)
+    assert mesh.size == pytest.approx(n / 8, rel=0.1)
+    np.testing.assert_array_equal(2.0 * start, end)
+    assert np.linalg.norm(Curve(start).midpoints, axis=1).min() > 1.0 - 1e-6

@@ -1,6 +1,7 @@
 """Knots pulled tight: derivatives of contacts, equilibrium at rest, proofs of the way, and known lengths."""
 
 from itertools import islice
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from mobius_flow.core.knots import knot, overhand
 from mobius_flow.core.ropes import TightenOptions, tightening
 from mobius_flow.core.ropes.contacts import Contacts
 from mobius_flow.core.ropes.interior_point import InteriorPoint
+from mobius_flow.core.ropes.pulled_rope import PulledRope
 from scipy.linalg import eigh
 from tasks import check
 from taylor import taylor_slope
@@ -153,6 +155,17 @@ def test_an_overhand_knot_is_pulled_by_its_ends():
     assert (np.diff(ends) >= 0.0).all()
     assert ends[-1] > 1.2 * ends[0]
     assert iterates[-1].curve.length == pytest.approx(loose.length, rel=1e-6)  # no rope is lost
+
+
+def test_ends_stay_where_vertices_double():
+    """But for the size of the whole."""
+    first = next(tightening(Task(curve=overhand(100)), TightenOptions(vertices=200)))
+    rope = PulledRope(first, first.radius[0])
+    before, rope.point = rope.curve.vertices[[0, -1]] - rope.center, SimpleNamespace(gap=0.0)
+    assert list(rope.doubled())
+    after = rope.curve.vertices[[0, -1]] - rope.center
+    assert len(rope.curve) == 2 * len(first.curve) - 1
+    np.testing.assert_allclose(after, before * (np.linalg.norm(after[1]) / np.linalg.norm(before[1])), rtol=1e-9)
 
 
 @pytest.mark.parametrize(
