@@ -68,8 +68,13 @@ def seen(curves: Sequence[Curve], trials: int = 200, seed: int = 20231) -> list[
 
     def merit(drawings: list[Drawing]) -> tuple[float, int, float]:
         sizes = [float(np.ptp(each.curve.vertices, axis=0).max()) for each in drawings]
-        least = min(widest(each, size / 12.0, 1.5)[0] / size for each, size in zip(drawings, sizes, strict=True))
-        return min(least, 0.02), -crossings(drawings), least  # thinner strands than 2 % are worse than more crossings
+        # thinner strands than 2 % are worse than more crossings; wide ones may have room where strands cross at angles
+        # that leave none to thin ones
+        least, room = (
+            min(widest(each, share * size, 1.5)[0] / size for each, size in zip(drawings, sizes, strict=True))
+            for share in (0.02, 1 / 12)
+        )
+        return least, -crossings(drawings), room
 
     best = max(sorted(found, key=crossings)[:20], key=merit)
     turn = upright(np.concatenate([each.curve.vertices for each in best]))

@@ -55,6 +55,7 @@ def test_nothing_touches_at_gaps(name):
     assert min(stroke.width for stroke in sheet.strokes) > 0.5
 
 
+@pytest.mark.kernels
 def test_views_are_those_of_fewest_crossings_with_room_between():
     for curve, crossings in ((knot("3_1"), 3), (knot("overhand"), 3), (smooth_knot("4_1"), 4), (knot("hopf"), 2)):
         (drawing,) = seen([curve])
