@@ -68,17 +68,20 @@ def seen(curves: Sequence[Curve], trials: int = 200, seed: int = 20231) -> list[
 
     def merit(drawings: list[Drawing]) -> tuple[float, int, float]:
         sizes = [float(np.ptp(each.curve.vertices, axis=0).max()) for each in drawings]
-        # thinner strands than 2 % are worse than more crossings; wide ones may have room where strands cross at angles
-        # that leave none to thin ones
+        # thinner strands than 2.1 %, the pen's own, are worse than more crossings; wide ones may have room where strands
+        # cross at angles that leave none to thin ones; shares are of fixed steps, which rounding must not tell apart
         least, room = (
-            min(widest(each, share * size, 1.5)[0] / size for each, size in zip(drawings, sizes, strict=True))
-            for share in (0.02, 1 / 12)
+            min(round(widest(each, share * size, 1.5)[0] / size, 9) for each, size in zip(drawings, sizes, strict=True))
+            for share in (0.021, 1 / 12)
         )
         return least, -crossings(drawings), room
 
-    best = max(sorted(found, key=crossings)[:20], key=merit)
-    turn = upright(np.concatenate([each.curve.vertices for each in best]))
-    return [replace(each, curve=each.curve.with_vertices(each.curve.vertices @ turn)) for each in best]
+    fewest = []
+    for drawings in sorted(found, key=crossings)[:20]:
+        turn = upright(np.concatenate([each.curve.vertices for each in drawings]))
+        turned = (each.curve.with_vertices(each.curve.vertices @ turn) for each in drawings)
+        fewest.append([replace(each, curve=curve) for each, curve in zip(drawings, turned, strict=True)])
+    return max(fewest, key=merit)
 
 
 def widest(drawing: Drawing, width: float, gap: float) -> tuple[float, list[Arc]]:
