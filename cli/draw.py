@@ -5,9 +5,8 @@ import os
 from dataclasses import replace
 from pathlib import Path
 
-from ..core import CurveError, MobiusFlowError, OptionError
-from ..core.base import declared
-from ..core.base.errors import wrong_suffix
+from ..core import CurveError, OptionError
+from ..core.base import declared, write_file
 from ..core.io import FORMATS
 from ..core.io.codes import code_diagram
 from ..core.io.source import Source
@@ -21,7 +20,7 @@ from ..core.knots.layout import laid_out
 from ..core.knots.names import named_diagram, table_range
 from . import curves
 from .options import add_option
-from .places import check_places, writing
+from .places import check_places, suffix_of
 from .terminal import say_written
 
 _CODES = {".pd": "pd", ".dt": "dt", ".gauss": "gauss"}
@@ -61,16 +60,15 @@ def add_draw(parser: argparse.ArgumentParser) -> None:
 
 
 def _run(options: argparse.Namespace) -> int:
-    suffix = Path(options.output).suffix.lower()
-    if suffix not in PAPERS:
-        raise MobiusFlowError(f"{options.output}: {wrong_suffix(Path(options.output), PAPERS, 'drawings')}")
+    suffix = suffix_of(options.output, PAPERS, "drawings")
     pen = Pen(**{name: getattr(options, name) for name in Pen.__dataclass_fields__})
     check_places({path: path for path in options.inputs if os.path.exists(path)}, {"OUT": options.output})
     drawings: list[Drawing] = []
     captions: list[str] = []
     for word in options.inputs:
         here, names = _drawn(word, options)
-        drawings, captions = drawings + here, captions + names
+        drawings += here
+        captions += names
     is_film = len(options.inputs) == 1 and options.inputs[0].lower().endswith(".npz")
     if options.labels is not None:
         captions = [""] * len(drawings) if options.labels == "none" else options.labels.split(",")
@@ -80,9 +78,7 @@ def _run(options: argparse.Namespace) -> int:
         captions = [""]
     if is_film and pen.columns is None:
         pen = replace(pen, columns=len(drawings))
-    made = PAPERS[suffix](figure(drawings, captions, pen))
-    with writing(options.output) as temporary:
-        temporary.write_bytes(made)
+    write_file(options.output, PAPERS[suffix](figure(drawings, captions, pen)))
     say_written(options.output)
     return 0
 

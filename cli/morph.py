@@ -11,7 +11,7 @@ from ..core.morph import DifferentError, NoMotionError, compare, morphing, movin
 from . import curves
 from . import options as relax_options
 from .places import check_holds, check_output, check_places
-from .relax import EXIT_STATUS, add_outputs, places, run_to_end, write_results
+from .relax import add_outputs, places, provenance, run_to_end, write_results
 from .signals import INTERRUPTED
 from .terminal import emit, one_line
 
@@ -83,22 +83,20 @@ def read_pair(options: argparse.Namespace, wanted: RelaxOptions) -> tuple[tuple[
 
 
 def _run(options: argparse.Namespace) -> int:
-    """Find the motion, write every requested output, and return the exit status."""
     check_output(options.output, options.format, options.look, options.loop or options.constant_radius)
     wanted = relax_options.from_arguments(options)
     check_places(relax_options.inputs(options, A=options.a, B=options.b), places(options))
     (file, task), (other, goal) = read_pair(options, wanted)
     check_holds(options.output, options.format, file.curve)
-    settings = vars(wanted.resolved) | {"avoid": [each.name for each in task.obstacles]}
-    origin = relax_options.provenance(settings, str(file.source.path), file.source.sha256)
+    origin = provenance(vars(wanted.resolved), task, file)
     origin["to"] = {"name": str(other.source.path), "sha256": other.source.sha256}
     try:
-        result, iterates = run_to_end(morphing((task, goal), wanted, NAMES), task, wanted, options)
+        result, iterates = run_to_end(morphing((task, goal), wanted, NAMES), task, options, wanted)
     except NoMotionError as error:
         print(one_line(f"mobius-flow: {error}"), file=sys.stderr)
         return 1
-    write_results(options, result, iterates, origin)
-    return 1 if result.status is Status.TIME_LIMIT else EXIT_STATUS[result.status]
+    status = write_results(options, result, iterates, origin)
+    return 1 if result.status is Status.TIME_LIMIT else status
 
 
 def add_same(parser: argparse.ArgumentParser) -> None:

@@ -8,14 +8,13 @@ import shutil
 import stat
 import sys
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Collection, Mapping, Sequence
 from itertools import combinations, product
 from pathlib import Path
 
 from ..addon.pictures import export
 from ..core import Curve, Iterate, MobiusFlowError, Result
-from ..core.base import OptionError, OutputError, atomic_write, status_of, wrong_suffix
+from ..core.base import OptionError, OutputError, status_of, wrong_suffix
 from ..core.curve import check_closed
 from ..core.io import FORMATS, written_formats
 from ..core.keys.motion import Playing, check_dimension
@@ -104,16 +103,6 @@ def is_file(path: str) -> bool:
     return path != STREAM and (found is None or stat.S_ISREG(found.st_mode))
 
 
-@contextmanager
-def writing(path: str) -> Iterator[Path]:
-    """Give a temporary path whose file replaces the real one in the end, whole; an OutputError says why it cannot."""
-    try:
-        with atomic_write(path) as temporary:
-            yield temporary
-    except (OSError, ValueError) as error:
-        raise OutputError(path, error) from error
-
-
 def kept(path: str, write: Write, rescue: Write | None = None, name: str | None = None) -> list[str]:
     """Write a result; if that fails, keep it in a temporary directory, and return the sentences that say so.
 
@@ -144,6 +133,14 @@ def kept(path: str, write: Write, rescue: Write | None = None, name: str | None 
     if interrupt is not None:
         raise KeyboardInterrupt(reason) from interrupt
     return [reason]
+
+
+def suffix_of(path: str, known: Collection[str], kind: str) -> str:
+    """The suffix of an output, in lower case; raises a MobiusFlowError if it is none of those known."""
+    suffix = Path(path).suffix.lower()
+    if suffix not in known:
+        raise MobiusFlowError(f"{path}: {wrong_suffix(path, known, kind)}")
+    return suffix
 
 
 def is_scene(path: str) -> bool:

@@ -3,16 +3,17 @@
 import argparse
 import json
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 
 from ..core import Curve, Iterate, MobiusFlowError, RelaxOptions, Result, Status, Task, Trajectory, relax
-from ..core.base.errors import counted
+from ..core.base import counted, write_file
 from ..core.descent.task import centred
 from ..core.driver import Relaxation, finish
 from ..core.driver.run import gradient_bound
 from ..core.energies.hierarchy import moebius_energy
-from ..core.io import written_formats
+from ..core.io import CurveFile, written_formats
 from ..core.keys.motion import Playing
 from . import curves, signals
 from . import options as relax_options
@@ -28,7 +29,6 @@ from .places import (
     is_scene,
     kept,
     write_output,
-    writing,
 )
 from .progress import progress
 from .terminal import GREEN, RED, YELLOW, command, digits, power, quoted, report
@@ -92,20 +92,22 @@ def add_outputs(parser: argparse.ArgumentParser) -> None:
 
 
 def _run(options: argparse.Namespace) -> int:
-    """Relax, write every requested output, and return the exit status."""
-    check_output(options.output, options.format, options.look, options.loop or options.constant_radius)
     wanted = relax_options.from_arguments(options)
-    check_places(relax_options.inputs(options), places(options))
+    file, task = read_task(options)
+    with curves.refusals(file):
+        result, iterates = run_to_end(relax(task, wanted), task, options, wanted)
+    return write_results(options, result, iterates, provenance(vars(wanted.resolved), task, file))
+
+
+def read_task(options: argparse.Namespace, **more: str | None) -> tuple[CurveFile, Task]:
+    """Read the input with its pins and obstacles, once the outputs, and ``more`` of them, can be written."""
+    check_output(options.output, options.format, options.look, options.loop or options.constant_radius)
+    check_places(relax_options.inputs(options), places(options) | more)
     file = curves.read(options.input, options.format)
     with curves.refusals(file):
         task = relax_options.task(options, file)
     check_holds(options.output, options.format, file.curve)
-    respected = {"pins": task.pins, "pin_tangents": task.pin_tangents, "avoid": [each.name for each in task.obstacles]}
-    origin = relax_options.provenance(vars(wanted.resolved) | respected, str(file.source.path), file.source.sha256)
-    with curves.refusals(file):
-        result, iterates = run_to_end(relax(task, wanted), task, wanted, options)
-    write_results(options, result, iterates, origin)
-    return EXIT_STATUS[result.status]
+    return file, task
 
 
 def places(options: argparse.Namespace) -> dict[str, str | None]:
@@ -113,8 +115,14 @@ def places(options: argparse.Namespace) -> dict[str, str | None]:
     return {"OUT": options.output, "--report": options.report, "--trajectory": options.trajectory}
 
 
+def provenance(settings: Mapping[str, object], task: Task, file: CurveFile) -> dict[str, object]:
+    """The provenance of a result, with what the task adds to the options."""
+    respected = {"pins": task.pins, "pin_tangents": task.pin_tangents, "avoid": [each.name for each in task.obstacles]}
+    return relax_options.provenance({**settings, **respected}, str(file.source.path), file.source.sha256)
+
+
 def run_to_end(
-    relaxation: Relaxation, task: Task, wanted: RelaxOptions, options: argparse.Namespace
+    relaxation: Relaxation, task: Task, options: argparse.Namespace, wanted: RelaxOptions | None = None
 ) -> tuple[Result, list[Iterate]]:
     """Run to the end or an interrupt. Signals interrupt steps only: neither what is recorded nor the end is lost."""
     iterates: list[Iterate] = []
@@ -133,18 +141,21 @@ def run_to_end(
 
 
 def write_results(
-    options: argparse.Namespace, result: Result, iterates: list[Iterate], origin: Mapping[str, object]
-) -> None:
-    """Write every requested output, and report on standard error how the run ended, unless quiet.
+    options: argparse.Namespace,
+    result: Result,
+    iterates: list[Iterate],
+    origin: Mapping[str, object],
+    more: Mapping[str, Write] = MappingProxyType({}),
+) -> int:
+    """Write every requested output, report on standard error how the run ended, unless quiet, and return the status.
 
     If one cannot be written, the others still are. Files come first: a film takes a minute, and a stream may never
-    end, so that these can be interrupted; they are not begun after an interrupt.
+    end, so that these can be interrupted; they are not begun after an interrupt.  ``more``: further files.
     """
 
     def report_as_json(path: str) -> None:
         text = json.dumps(result.report() | dict(origin), indent=1) + "\n"
-        with writing(path) as temporary:
-            temporary.write_text(text, encoding="utf-8")
+        write_file(path, text.encode())
 
     def trajectory(path: str) -> None:
         made = Trajectory(origin, result.task.obstacles)
@@ -169,7 +180,7 @@ def write_results(
     scene, name = is_scene(options.output), None
     if scene or options.output == curves.STREAM:  # of what is kept
         name = f"{Path(options.output).stem}.obj" if scene else f"curve.{options.format or 'txt'}"
-    extras = (options.report, report_as_json), (options.trajectory, trajectory)
+    extras = (options.report, report_as_json), (options.trajectory, trajectory), *more.items()
     jobs: list[tuple[str, Write, str | None]]
     jobs = [(path, write, None) for path, write in extras if path is not None]
     jobs.append((options.output, output, name))  # of a film that is not written the curve is kept, by the name's suffix
@@ -189,10 +200,12 @@ def write_results(
         raise MobiusFlowError("; ".join(failures))
     signals.allow()
     if not options.quiet:
-        print(_said(options, result, iterates[0]), file=sys.stderr)
+        written = [path for path, *_ in jobs[-1:] + jobs[:-1] if path not in (curves.STREAM, curves.DEVICE)]
+        print(_said(options, result, iterates[0], written), file=sys.stderr)
+    return EXIT_STATUS[result.status]
 
 
-def _said(options: argparse.Namespace, result: Result, start: Iterate) -> str:
+def _said(options: argparse.Namespace, result: Result, start: Iterate, written: Sequence[str]) -> str:
     """How a run ended, what it reached, what was written, and what to do next.
 
     Energies have the digits that the mesh leaves them; those of a motion that does not fall are no achievement.
@@ -202,7 +215,6 @@ def _said(options: argparse.Namespace, result: Result, start: Iterate) -> str:
     took = counted(result.iterations, "iteration"), f"{result.seconds:.1f} s", f"{len(result.curve)} vertices"
     reason, *notes = result.outcome.clauses
     told = "" if falls and result.outcome.converged else str(reason).partition(": ")[2] or reason
-    written = [path for path in places(options).values() if path not in (None, curves.STREAM, curves.DEVICE)]
     following = ["verify", options.trajectory] if options.trajectory in written else []
     if not following and Path(options.output).suffix.lower() in written_formats():
         following = ["info", options.output]

@@ -3,13 +3,11 @@
 import argparse
 from dataclasses import asdict
 
-from ..core import RelaxOptions
-from ..core.base.errors import OptionError
+from ..core.base import OptionError
 from ..core.ropes import AXES, Separated, SeparateOptions, separating
 from . import curves
 from . import options as relax_options
-from .places import check_holds, check_output, check_places
-from .relax import EXIT_STATUS, add_outputs, places, run_to_end, write_results
+from .relax import add_outputs, provenance, read_task, run_to_end, write_results
 
 _EPILOG = """\
 examples:
@@ -49,8 +47,6 @@ def add_separate(parser: argparse.ArgumentParser) -> None:
 
 
 def _run(options: argparse.Namespace) -> int:
-    """Separate, write every requested output, and return the exit status."""
-    check_output(options.output, options.format, options.look, options.loop or options.constant_radius)
     try:
         radius = tuple(map(float, options.radius.split(",")))
     except ValueError:
@@ -62,17 +58,10 @@ def _run(options: argparse.Namespace) -> int:
         free_ends=options.free_ends,
         time_limit=options.time_limit,
     )
-    check_places(relax_options.inputs(options), places(options))
-    file = curves.read(options.input, options.format)
+    file, task = read_task(options)
     with curves.refusals(file):
-        task = relax_options.task(options, file)
-    check_holds(options.output, options.format, file.curve)
-    settings = asdict(wanted) | {"pins": task.pins, "avoid": [each.name for each in task.obstacles]}
-    origin = relax_options.provenance(settings, str(file.source.path), file.source.sha256)
-    with curves.refusals(file):
-        result, iterates = run_to_end(separating(task, wanted), task, RelaxOptions(), options)
-    if isinstance(result.outcome, Separated):
-        crossings = [asdict(each) for each in result.outcome.crossings]
-        origin |= {"share": result.outcome.share, "moved": result.outcome.moved, "crossings": crossings}
-    write_results(options, result, iterates, origin)
-    return EXIT_STATUS[result.status]
+        result, iterates = run_to_end(separating(task, wanted), task, options)
+    origin = provenance(asdict(wanted), task, file)
+    if isinstance(told := result.outcome, Separated):
+        origin |= {"share": told.share, "moved": told.moved, "crossings": list(map(asdict, told.crossings))}
+    return write_results(options, result, iterates, origin)

@@ -2,18 +2,15 @@
 
 import argparse
 from dataclasses import asdict
-from pathlib import Path
 
-from ..core import MobiusFlowError, RelaxOptions, Task
-from ..core.base import wrong_suffix
+from ..core.base import write_file
 from ..core.keys.contact_map import contact_map
 from ..core.keys.paper import PAPERS
 from ..core.ropes import Tightened, TightenOptions, tightening
 from . import curves
-from . import options as relax_options
 from .parser import further
-from .places import check_holds, check_output, check_places, writing
-from .relax import EXIT_STATUS, add_outputs, places, run_to_end, write_results
+from .places import Write, suffix_of
+from .relax import add_outputs, provenance, read_task, run_to_end, write_results
 
 _EPILOG = """\
 examples:
@@ -48,29 +45,19 @@ def add_tighten(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--contacts", metavar="MAP.svg", help=text)
     add_outputs(parser)
     further(parser, "the report", _REPORT)
-    parser.set_defaults(run=_run)
+    parser.set_defaults(run=_run, pins=[], pin_tangents=False, avoid=[])
 
 
 def _run(options: argparse.Namespace) -> int:
-    """Tighten, write every requested output, and return the exit status."""
-    check_output(options.output, options.format, options.look, options.loop or options.constant_radius)
-    named = {name: getattr(options, name) for name in ("vertices", "starts", "seed", "time_limit")}
-    wanted = TightenOptions(**named)
-    mapped = None if options.contacts is None else Path(options.contacts)
-    if mapped and mapped.suffix.lower() not in PAPERS:
-        raise MobiusFlowError(f"{mapped}: {wrong_suffix(mapped, PAPERS, 'drawings')}")
-    check_places({"IN": options.input}, places(options) | {"--contacts": options.contacts})
-    file = curves.read(options.input, options.format)
-    check_holds(options.output, options.format, file.curve)
-    origin = relax_options.provenance(asdict(wanted), str(file.source.path), file.source.sha256)
+    wanted = TightenOptions(**{name: getattr(options, name) for name in ("vertices", "starts", "seed", "time_limit")})
+    suffix = options.contacts and suffix_of(options.contacts, PAPERS, "drawings")
+    file, task = read_task(options, **{"--contacts": options.contacts})
     with curves.refusals(file):
-        task = Task(curve=file.curve)
-        result, iterates = run_to_end(tightening(task, wanted), task, RelaxOptions(), options)
-    if isinstance(result.outcome, Tightened):
-        told = result.outcome
+        result, iterates = run_to_end(tightening(task, wanted), task, options)
+    origin, more = provenance(asdict(wanted), task, file), dict[str, Write]()
+    if isinstance(told := result.outcome, Tightened):
         origin |= {"ropelength": told.ropelength, "gap": told.gap, "residual": told.residual, "struts": told.struts}
-        if mapped:
-            with writing(options.contacts) as temporary:
-                temporary.write_bytes(PAPERS[mapped.suffix.lower()](contact_map(result.curve, told.struts)))
-    write_results(options, result, iterates, origin)
-    return EXIT_STATUS[result.status]
+        if suffix:
+            drawn = PAPERS[suffix](contact_map(result.curve, told.struts))
+            more[options.contacts] = lambda path: write_file(path, drawn)
+    return write_results(options, result, iterates, origin, more)

@@ -4,11 +4,11 @@ import argparse
 from pathlib import Path
 
 from ..core import MobiusFlowError
-from ..core.base.errors import wrong_suffix
+from ..core.base import write_file
 from ..core.keys.solids import animation, solid
 from ..core.keys.view import FRAMES, motion, page, still
 from . import curves
-from .places import VIEWED, check_places, writing
+from .places import VIEWED, check_places, suffix_of
 from .terminal import say_written
 
 _EPILOG = """\
@@ -38,9 +38,7 @@ def add_view(parser: argparse.ArgumentParser) -> None:
 
 
 def _run(options: argparse.Namespace) -> int:
-    suffix = Path(options.output).suffix.lower()
-    if suffix not in VIEWED:
-        raise MobiusFlowError(f"{options.output}: {wrong_suffix(Path(options.output), VIEWED, 'pictures')}")
+    suffix = suffix_of(options.output, VIEWED, "pictures")
     if not 2 <= options.frames <= 1000:
         raise MobiusFlowError(f"frames is {options.frames}; give 2 to 1000")
     if options.width is not None and not 0.0 < options.width < float("inf"):
@@ -58,7 +56,6 @@ def _run(options: argparse.Namespace) -> int:
         made = animation(shown, radius)
     else:
         made = solid(shown.curves[-1], suffix[1:], options.width)
-    with writing(options.output) as temporary:
-        temporary.write_bytes(made)
+    write_file(options.output, made)
     say_written(options.output)
     return 0

@@ -13,11 +13,11 @@ import numpy as np
 
 from ..cli.curves import check_regular
 from ..cli.options import DEFAULT, LOOKS
-from ..cli.places import check_place, export, writing
+from ..cli.places import check_place, export
 from ..cli.progress import live
 from ..cli.terminal import say_written
 from ..core import Curve, MobiusFlowError, Status, read_curve
-from ..core.base import FloatArray, wrong_suffix
+from ..core.base import FloatArray, atomic_write, wrong_suffix
 from ..core.driver.moves.balance import balanced
 from .atlas.data import TITLE, curve_path
 from .atlas.folder import SUMS
@@ -128,7 +128,7 @@ def _write_page(path: str, titles: Sequence[str], pictures: Sequence[Path], look
         name, _, more = title.partition("\n")
         write(x, y - 0.5 * cell - 0.08, name, 15.0, ink)
         write(x, y - 0.5 * cell - 0.28, more, 9.5, faint)
-    with writing(path) as temporary:
+    with atomic_write(path) as temporary:
         figure.savefig(temporary, dpi=size / side)
 
 

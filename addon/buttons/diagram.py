@@ -6,7 +6,7 @@ import bpy
 from bpy.props import BoolProperty, StringProperty
 
 from ...core import MobiusFlowError
-from ...core.base import Message, OutputError, atomic_write
+from ...core.base import Message, write_file
 from ...core.keys.arcs import seen
 from ...core.keys.figure import Pen, figure
 from ...core.keys.paper import PAPERS
@@ -42,10 +42,5 @@ as they are at the end of their animation"""
         objects = selected_curves(context)
         recorded = [Recorded.of(obj) for obj in objects]
         link = in_world(objects, recorded, [each.points[-1] for each in recorded])
-        made = paper(figure(seen([link]), pen=Pen(arrows=self.arrows, numbers=self.numbers)))
-        try:
-            with atomic_write(path) as temporary:
-                temporary.write_bytes(made)
-        except (OSError, ValueError) as error:
-            raise OutputError(str(path), error) from error
+        write_file(path, paper(figure(seen([link]), pen=Pen(arrows=self.arrows, numbers=self.numbers))))
         self.report({"INFO"}, rpt_("Drawn: {path}", path=path))

@@ -10,6 +10,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from .errors import MobiusFlowError, OutputError
+
 _NO_PLACE_BESIDE = (errno.EACCES, errno.EPERM, errno.EROFS)
 _NOT_REPLACEABLE = (errno.EBUSY, errno.EXDEV, errno.EACCES, errno.EPERM)  # mount points, sticky directories
 
@@ -21,7 +23,7 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[Path]:
     The temporary file lies in the same directory and has the same suffix, so libraries that look at the suffix work
     too; text or binary is up to the block. If the block raises, ``path`` is left as it was and the temporary file is
     removed. Symbolic links are followed. Where a file cannot be replaced, as in a directory that is read-only or where
-    it is mounted by itself, and to devices and pipes, the whole contents are copied. An OSError if the target is a
+    it is mounted by itself, and to devices and pipes, the whole contents are copied. An OutputError if the target is a
     directory or write-protected, or the disk refuses.
 
     >>> import tempfile
@@ -31,16 +33,17 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[Path]:
     >>> target.read_text()
     '0 0 0'
     """
-    found = status_of(path)
-    if found is not None and stat.S_ISDIR(found.st_mode):
-        raise IsADirectoryError(f"{path} is a directory")
-    if found is not None and not os.access(path, os.W_OK):
-        # The replacement itself would succeed, since it needs rights on the directory only.
-        raise PermissionError(f"{path} is write-protected")
-    replaced = found is None or (stat.S_ISREG(found.st_mode) and own_stream(found) is None)
-    target = Path(os.path.realpath(path)) if replaced else Path(path)
-    temporary = _create(target, found, beside=replaced)
+    temporary: Path | None = None
     try:
+        found = status_of(path)
+        if found is not None and stat.S_ISDIR(found.st_mode):
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+        if found is not None and not os.access(path, os.W_OK):
+            # The replacement itself would succeed, since it needs rights on the directory only.
+            raise PermissionError(errno.EACCES, "it is write-protected")
+        replaced = found is None or (stat.S_ISREG(found.st_mode) and own_stream(found) is None)
+        target = Path(os.path.realpath(path)) if replaced else Path(path)
+        temporary = _create(target, found, beside=replaced)
         yield temporary
         # on the disk, so that a power cut cannot leave a renamed empty file
         with temporary.open("rb+") as stream:
@@ -48,9 +51,19 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[Path]:
         if not (temporary.parent == target.parent and _replace(temporary, target, found)):
             _copy(temporary, target, found)
             temporary.unlink()
-    except BaseException:
-        temporary.unlink(missing_ok=True)
+    except BaseException as error:
+        if temporary is not None:
+            temporary.unlink(missing_ok=True)
+        # a ValueError for a path with a null character
+        if isinstance(error, OSError | ValueError) and not isinstance(error, MobiusFlowError):
+            raise OutputError(path, error) from error
         raise
+
+
+def write_file(path: str | os.PathLike[str], data: bytes) -> None:
+    """Write a whole file, or none, as `atomic_write`."""
+    with atomic_write(path) as temporary:
+        temporary.write_bytes(data)
 
 
 def status_of(path: str | os.PathLike[str]) -> os.stat_result | None:

@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import BinaryIO, TextIO
 
-from ..base import CurveError, CurveFileError, Table, atomic_write, checked, reason_of, wrong_suffix
+from ..base import CurveError, CurveFileError, MobiusFlowError, Table, atomic_write, checked, wrong_suffix
 from ..curve.curve import Curve
 from . import codes, json_lists, obj, pdb, vect, xyz
 from .source import Polygon, Source, assemble
@@ -134,10 +134,8 @@ def write_curve(path: str | os.PathLike[str], curve: Curve, form: Format | None 
     try:
         with atomic_write(path) as temporary, temporary.open("w", encoding="utf-8", newline="\n") as stream:
             stream.write(form.text(curve))
-    except CurveError as error:
-        raise CurveFileError(path, str(error)) from error
-    except (OSError, ValueError) as error:  # a ValueError for a path with a null character
-        raise CurveFileError(path, f"cannot be written: {reason_of(error)}") from error
+    except MobiusFlowError as error:
+        raise CurveFileError(path, str(error).removeprefix(f"{path}: ")) from error
 
 
 def format_of(path: Path) -> Format:

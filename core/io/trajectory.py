@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.arguments import checked, checked_fields
-from ..base.errors import MobiusFlowError, OutputError, counted
+from ..base.errors import MobiusFlowError, counted
 from ..base.files import atomic_write
 from ..base.types import BoolArray, FloatArray, IntArray
 from ..curve import Curve, Mesh, Obstacle
@@ -148,11 +148,8 @@ class Trajectory:
     @checked
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the trajectory as .npz, whole or not at all; an OutputError says why that fails."""
-        try:
-            with atomic_write(path) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
-                # as numpy.savez_compressed does, which leaves the archive open, and loud, when the disk is full
-                for name, array in self.arrays().items():
-                    with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
-                        np.lib.format.write_array(member, array, allow_pickle=False)
-        except (OSError, ValueError) as error:  # a ValueError for a path with a null character
-            raise OutputError(os.fspath(path), error) from error
+        with atomic_write(path) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
+            # as numpy.savez_compressed does, which leaves the archive open, and loud, when the disk is full
+            for name, array in self.arrays().items():
+                with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
+                    np.lib.format.write_array(member, array, allow_pickle=False)

@@ -3,7 +3,7 @@
 import hashlib
 from pathlib import Path
 
-from ...core.base import OutputError, atomic_write
+from ...core.base import OutputError, write_file
 from ..batch.job import foreign, sha256_of
 
 SUMS = "SHA256SUMS"
@@ -57,7 +57,7 @@ class Folder:
                 sums.write("" if sums.tell() else _MARK)
                 sums.write(f"{digest}  {name}\n")
             self._ours.setdefault(name, set()).add(digest)
-            self._write(name, data)
+            write_file(self.path / name, data)
         except OSError as error:
             raise OutputError(self.path / name, error) from error
 
@@ -67,7 +67,7 @@ class Folder:
             if self._check(name) is not None:
                 (self.path / name).unlink()
         lines = (f"{digest}  {name}\n" for name, digest in sorted(self._kept.items()))
-        self._write(SUMS, "".join([_MARK, *lines]).encode())
+        write_file(self.path / SUMS, "".join([_MARK, *lines]).encode())
 
     def _check(self, name: str) -> str | None:
         """The hash of a file, None if there is none; a MobiusFlowError if it is not ours, or behind a link."""
@@ -78,7 +78,3 @@ class Folder:
         if path.exists() and digest not in self._ours.get(name, ()):
             raise foreign(path, "atlas")
         return digest
-
-    def _write(self, name: str, data: bytes) -> None:
-        with atomic_write(self.path / name) as temporary:
-            temporary.write_bytes(data)

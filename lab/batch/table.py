@@ -12,7 +12,7 @@ from typing import get_args, get_type_hints
 from ... import __version__
 from ...cli.terminal import one_line
 from ...core import RelaxOptions
-from ...core.base import OutputError, atomic_write
+from ...core.base import atomic_write
 from .job import CSV, PARQUET, Job, as_text, foreign, sha256_of
 
 FAILED = "failed"
@@ -93,12 +93,9 @@ def save(rows: Iterable[Row], directory: Path) -> None:
     columns = [(name, kinds[(get_args(hint) or (hint,))[0]]) for name, hint in get_type_hints(Row).items()]
     stream = io.BytesIO()
     pyarrow.parquet.write_table(pa.Table.from_pylist(cells, pa.schema(columns, metadata={_MARK: mark})), stream)
-    try:
-        with atomic_write(directory / CSV) as table, atomic_write(directory / PARQUET) as parquet:
-            table.write_bytes(text)
-            parquet.write_bytes(stream.getvalue())
-    except OSError as error:
-        raise OutputError(directory / CSV, error) from error
+    with atomic_write(directory / CSV) as table, atomic_write(directory / PARQUET) as parquet:
+        table.write_bytes(text)
+        parquet.write_bytes(stream.getvalue())
 
 
 def check_tables(directory: Path) -> None:

@@ -11,11 +11,11 @@ from pathlib import Path
 
 from ...cli import curves, signals
 from ...cli import options as relax_options
-from ...cli.places import check_places, kept, writing
+from ...cli.places import check_places, kept
 from ...cli.progress import live
 from ...cli.terminal import emit, power, say_written, sentence, table, width_of
 from ...core import METHODS, MobiusFlowError
-from ...core.base.errors import OptionError, counted, wrong_suffix
+from ...core.base import OptionError, atomic_write, counted, wrong_suffix
 from .comparison import History, variants
 from .comparison import compare as compared
 from .figures import figure_class, write_figure, write_strip
@@ -69,7 +69,7 @@ def compare(options: argparse.Namespace) -> int:
         emit(table(_COLUMNS, cells, sys.stdout))
 
     def write(path: str) -> None:
-        with writing(path) as temporary:
+        with atomic_write(path) as temporary:
             writer(temporary, runs)
 
     if runs and options.output is not None:

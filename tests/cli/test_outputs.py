@@ -13,8 +13,8 @@ from commands import SHORT
 from mobius_flow.cli import places
 from mobius_flow.cli import relax as relax_command
 from mobius_flow.core import read_curve, write_curve
+from mobius_flow.core.base import OutputError, atomic_write
 from mobius_flow.core.base.errors import MobiusFlowError
-from mobius_flow.core.base.files import atomic_write
 from mobius_flow.core.io import FORMATS
 from mobius_flow.core.proof import verify
 from shapes import regular_polygon
@@ -239,7 +239,7 @@ def test_copying_that_fails_brings_the_old_contents_back(tmp_path, monkeypatch):
 
     monkeypatch.setattr("mobius_flow.core.base.files._replace", lambda *_: False)
     monkeypatch.setattr(os, "write", full)
-    with pytest.raises(OSError, match="No space"), atomic_write(target) as temporary:
+    with pytest.raises(OutputError, match="No space"), atomic_write(target) as temporary:
         temporary.write_text("new and longer")
     assert target.read_text() == "old"
     assert sorted(os.listdir(tmp_path)) == before
