@@ -15,9 +15,9 @@ from .terminal import emit, sentence
 COMMANDS = {  # the module of each, which has add_COMMAND(parser), and what it does; see also `joined`
     "relax": ("relax", "relax a curve"),
     "morph": ("morph", "find a proved motion from one curve to another"),
-    "separate": ("separate", "make ropes of curves that run through each other"),
+    "separate": ("ropes", "make ropes of curves that run through each other"),
     "same": ("morph", "tell whether two curves are the same knot or link"),
-    "tighten": ("tighten", "pull a knot or link tight"),
+    "tighten": ("ropes", "pull a knot or link tight"),
     "energy": ("info", "print the energy of a curve"),
     "info": ("info", "identify the knot type of curves, and measure them"),
     "verify": ("verify", "check a trajectory for contact"),
