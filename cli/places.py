@@ -8,19 +8,18 @@ import shutil
 import stat
 import sys
 import tempfile
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping
 from itertools import combinations, product
 from pathlib import Path
 
 from ..addon.pictures import export
-from ..core import Curve, Iterate, MobiusFlowError, Result
+from ..core import Curve, MobiusFlowError
 from ..core.base import OptionError, OutputError, status_of, wrong_suffix
 from ..core.curve import check_closed
 from ..core.io import FORMATS, written_formats
-from ..core.keys.motion import Playing, check_dimension
+from ..core.keys.motion import check_dimension
 from . import curves
 from .curves import DEVICE, OUTPUT, STREAM
-from .progress import live
 from .terminal import OutputStreamError
 
 FILMS = (".blend", ".mp4")  # which are played as a motion
@@ -178,19 +177,3 @@ def check_holds(path: str, form: str | None, curve: Curve) -> None:
             curves.format_for(path, form).text(curve)
     except MobiusFlowError as error:
         raise MobiusFlowError(f"{path}: {error}") from error
-
-
-def write_output(
-    path: str, form: str | None, result: Result, iterates: Sequence[Iterate], playing: Playing, shown: bool
-) -> None:
-    """Write the curve, or the scene; ``shown``: whether progress may be."""
-    suffix = Path(path).suffix.lower()
-    if suffix == ".blend":
-        export.write_blend(path, iterates, playing)
-    elif suffix == ".png":
-        export.write_still(path, iterates, playing.look)
-    elif suffix == ".mp4":
-        with live(shown) as show:
-            export.write_movie(path, iterates, lambda done, total: show(f"frame {done} of {total} is drawn"), playing)
-    else:
-        curves.write(path, result.curve, form)

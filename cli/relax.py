@@ -25,12 +25,12 @@ from .places import (
     check_holds,
     check_output,
     check_places,
+    export,
     is_file,
     is_scene,
     kept,
-    write_output,
 )
-from .progress import progress
+from .progress import live, progress
 from .terminal import GREEN, RED, YELLOW, command, digits, power, quoted, report
 
 EXIT_STATUS = dict.fromkeys(Status, 0) | {Status.STALLED: 1, Status.INTERRUPTED: 130}
@@ -164,9 +164,17 @@ def write_results(
         made.save(path)
 
     def output(path: str) -> None:
-        playing = Playing(options.look, options.loop, options.constant_radius)
-        shown = not options.quiet and sys.stderr.isatty()
-        write_output(path, options.format, result, iterates, playing, shown)
+        playing, suffix = Playing(options.look, options.loop, options.constant_radius), Path(path).suffix.lower()
+        if suffix == ".blend":
+            export.write_blend(path, iterates, playing)
+        elif suffix == ".png":
+            export.write_still(path, iterates, options.look)
+        elif suffix == ".mp4":
+            with live(not options.quiet and sys.stderr.isatty()) as show:
+                said = "frame {} of {} is drawn".format
+                export.write_movie(path, iterates, lambda done, total: show(said(done, total)), playing)
+        else:
+            curves.write(path, result.curve, options.format)
 
     def patiently(write: Write) -> Write:
         def begin(path: str) -> None:

@@ -11,6 +11,7 @@ from blender_scenes import add_curve, contents
 from mobius_flow.addon.buttons.relaxing import CURVE_OT_mobius_flow_relax
 from mobius_flow.addon.curves.splines import Splines
 from mobius_flow.addon.properties import SETTINGS
+from mobius_flow.core import MobiusFlowError
 from processes import PATIENCE
 from shapes import hopf_link
 
@@ -58,7 +59,10 @@ class Operator:
         with pytest.MonkeyPatch.context() as patch:
             if not self.in_process:
                 patch.setattr(sys, "executable", "")  # then there is no Python to start
-            return self.begin(self.context)
+            try:
+                return self.begin(self.context)
+            except MobiusFlowError as error:
+                return self.fail(error)
 
     def event(self, kind="TIMER", mouse=(0, 0), value="PRESS", **keys):
         modifiers = {"ctrl": False, "shift": False, "alt": False, "oskey": False} | keys

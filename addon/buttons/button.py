@@ -59,6 +59,26 @@ class Button:
         raise NotImplementedError
 
 
+class LiveButton(Button):
+    """A button whose job goes on while Blender stays usable; scripts, which have no window, wait for its end."""
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        if bpy.app.background or context.window is None:
+            return self.execute(context)
+        try:
+            return {"CANCELLED"} if self.asks(context) else self.begin(context)
+        except MobiusFlowError as error:
+            return self.fail(error)
+
+    def asks(self, _context: bpy.types.Context) -> bool:
+        """Ask something first, if need be; another operator then does the job."""
+        return False
+
+    def begin(self, context: bpy.types.Context) -> set[str]:
+        """Begin the job; raises MobiusFlowError."""
+        raise NotImplementedError
+
+
 def button(label: str, *needs: Requirement, base: type[Button] = Button, **more: Any) -> Callable[[_Act], type]:
     """Turn a function into an operator without settings: its name is the identifier, its docstring the tooltip."""
 

@@ -5,7 +5,6 @@ from typing import Any
 import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 
-from ...core import MobiusFlowError
 from ...core.base.messages import Message
 from ...core.driver.words import named, time_left
 from ..curves.recorded import drawn_radius
@@ -15,7 +14,7 @@ from ..pictures import staging
 from ..pictures.movie import CHOICES, Filming, is_rendering, is_there, play, target
 from ..scripting import Relaxation
 from ..translations import iface_, rpt_
-from .button import Button, button
+from .button import Button, LiveButton, button
 
 _STAGE = Condition(
     "The scene has no stage; press Set Up Stage first", lambda context: not staging.own_stage(context.scene)
@@ -83,7 +82,7 @@ class _OfFilm:
         return given.get("filepath", settings.filepath), given.get("look", settings.look)
 
 
-class CURVE_OT_mobius_flow_render_film(_OfFilm, Button, bpy.types.Operator):
+class CURVE_OT_mobius_flow_render_film(_OfFilm, LiveButton, bpy.types.Operator):
     """Render all frames that the scene plays to an MP4. Esc over the render's window cancels, and leaves no file"""
 
     bl_label = "Render Film"
@@ -101,26 +100,27 @@ class CURVE_OT_mobius_flow_render_film(_OfFilm, Button, bpy.types.Operator):
         self.filming.render()
         self._report_film()
 
-    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        """Render the film while Blender stays usable; ask first if the file already exists."""
-        if bpy.app.background or context.window is None:
-            return self.execute(context)
-        try:
-            path, look = self.wanted(context)
-            if target(path).exists() and not self.overwrite:
-                bpy.ops.curve.mobius_flow_replace_film("INVOKE_DEFAULT", **self.given())
-                return {"CANCELLED"}
-            self.filming = Filming(context.scene, path, look, self.overwrite)
-            self.filming.start()
-        except MobiusFlowError as error:
-            return self.fail(error)
+    def asks(self, context: bpy.types.Context) -> bool:
+        """Ask whether a film that is there may be replaced."""
+        if is_there := target(self.wanted(context)[0]).exists() and not self.overwrite:
+            bpy.ops.curve.mobius_flow_replace_film("INVOKE_DEFAULT", **self.given())
+        return bool(is_there)
+
+    def begin(self, context: bpy.types.Context) -> set[str]:
+        self.filming = Filming(context.scene, *self.wanted(context), self.overwrite)
+        self.filming.start()
         self.timer = context.window_manager.event_timer_add(0.2, window=context.window)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if event.type != "TIMER" or is_rendering():
-            self._show_progress(context)
+            made = self.filming
+            progress = Message("Rendering the film: {done} of {count} frames", done=made.done, count=made.frames)
+            if (seconds := made.seconds_left) is not None:
+                progress = Message("{state}, {time}", state=progress, time=time_left(seconds))
+            if context.workspace is not None:
+                context.workspace.status_text_set(iface_(progress))
             return {"PASS_THROUGH"}
         if not self._end(context):
             self.report({"WARNING"}, rpt_("The film was not finished; no file was written"))
@@ -136,14 +136,6 @@ class CURVE_OT_mobius_flow_render_film(_OfFilm, Button, bpy.types.Operator):
         context.window_manager.event_timer_remove(self.timer)
         clear_status()
         return self.filming.finish()
-
-    def _show_progress(self, context: bpy.types.Context) -> None:
-        made = self.filming
-        progress = Message("Rendering the film: {done} of {count} frames", done=made.done, count=made.frames)
-        if (seconds := made.seconds_left) is not None:
-            progress = Message("{state}, {time}", state=progress, time=time_left(seconds))
-        if context.workspace is not None:
-            context.workspace.status_text_set(iface_(progress))
 
     def _report_film(self) -> None:
         made = self.filming

@@ -9,7 +9,6 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 from ...core import Curve
 from ...core.base import FloatArray, Message
-from ...core.curve import Mesh
 from ...core.curve.tube import caps, places_between, quads, rings
 from ...core.driver.words import named
 from ...core.keys.colours import COLOURINGS, COMPONENT, DISTANCE, ENERGY, vertex_values
@@ -124,9 +123,14 @@ FBX does with NLA Strips and All Actions off, one frame later"""
             part = slice(first, first := first + each.mesh.size)
             write_values(tube.data, {name: array[part] for name, array in values.items()})
             if self.every_frame:
-                compute_values(tube, each.mesh)
+                # at the middles of the rings as shown, Blender's nodes compute the arc length from the start of a
+                # component; the curvature, which is the angle by which the polygon turns over half the length of both
+                # edges, and 0 at open ends; and the distance to the nearest edge of another strand
+                closed = np.array(each.mesh.closed, dtype=np.float64)[each.mesh.component]
+                write_values(tube.data, {"ring": np.arange(each.mesh.size, dtype=np.float64), "closed": closed})
+                add_nodes(tube, "Möbius Flow Attributes")
             if colours is not None:
-                write_colours(tube.data, colours[part], vertex_colours(COLOUR))
+                write_colours(tube.data, colours[part])
             made.append(tube)
         if own := [obj.name for obj in objects if obj.data.bevel_mode != "ROUND" or obj.data.taper_object]:
             sentence = "The tube of {names} is round: profiles and tapers are left out"
@@ -218,20 +222,7 @@ def write_values(mesh: bpy.types.Mesh, values: Mapping[str, FloatArray]) -> None
         attribute.data.foreach_set("value", _on_rings(mesh, array))
 
 
-def compute_values(tube: bpy.types.Object, curve: Mesh) -> None:
-    """Let Blender's nodes compute numbers of a tube's curve at any frame, also between keys and without the extension.
-
-    ``tube``: a mesh object with the attribute `COMPONENT`, whose rings, of as many vertices each, are those of a curve.
-    At the middles of the rings as shown they store the arc length from the start of a component; the curvature, the
-    angle by which the polygon turns over half the length of both edges, and 0 at open ends; and the distance to the
-    nearest other strand, as `core.keys.colours.strand_distances`, but to its edges.
-    """
-    name, closed = "Möbius Flow Attributes", np.array(curve.closed, dtype=np.float64)[curve.component]
-    write_values(tube.data, {"ring": np.arange(curve.size, dtype=np.float64), "closed": closed})
-    add_nodes(tube, name)
-
-
-def write_colours(mesh: bpy.types.Mesh, colours: FloatArray, material: bpy.types.Material) -> None:
+def write_colours(mesh: bpy.types.Mesh, colours: FloatArray) -> None:
     """Colour a tube by colours of curve vertices, linear RGB, (n, 3), in a material that shows them."""
     # bytes at the corners of faces are the only kind that Alembic keeps
     attribute = mesh.color_attributes.new(COLOUR, "BYTE_COLOR", "CORNER")
@@ -240,7 +231,7 @@ def write_colours(mesh: bpy.types.Mesh, colours: FloatArray, material: bpy.types
     attribute.data.foreach_set("color", _on_rings(mesh, opaque)[corners].ravel())
     mesh.color_attributes.active_color_index = mesh.color_attributes.render_color_index = 0
     mesh.materials.clear()
-    mesh.materials.append(material)
+    mesh.materials.append(vertex_colours(COLOUR))
     mesh.polygons.foreach_set("material_index", np.zeros(len(mesh.polygons), dtype=np.int32))
 
 

@@ -36,7 +36,7 @@ from ..live.run import LiveRun, Refresh, RunState
 from ..properties import SETTINGS, settings
 from ..scripting import Relaxation, begin, implied
 from ..translations import iface_, rpt_
-from .button import Button, button
+from .button import Button, LiveButton, button
 
 _ANIMATED = Condition(
     "Select a curve that was baked first", lambda context: bake.scene_range(shown_curves(context)) is None
@@ -51,7 +51,7 @@ _SEVERAL = Condition(
 )
 
 
-class Relaxing(Listening, Button):
+class Relaxing(Listening, LiveButton):
     """The base of all operators that relax: the whole job in one call, or a live run in a window."""
 
     # For scripts; settings that are not given come from the scene, and nothing is remembered from run to run.
@@ -77,26 +77,21 @@ class Relaxing(Listening, Button):
     continues = False  # whether baked curves are relaxed on from the ends of their animations
     stays = False  # whether a live run waits for a hand where it comes to rest
 
-    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        """Relax the selected curves live; ask first if keys are replaced, or smooth splines have to become polygons."""
-        if bpy.app.background or context.window is None:
-            return self.execute(context)
+    def asks(self, context: bpy.types.Context) -> bool:
+        """Ask if keys are replaced, or smooth splines have to become polygons."""
         keyed = (obj for obj in self.moving(context) if obj.type == "CURVE" and bake.is_baked(obj.data))
         if not (self.again or self.continues) and any(keyed):
             ask = partial(_go_on_or_begin_anew, type(self).bl_idname)
             context.window_manager.popup_menu(ask, title=iface_("Already Animated"), icon="QUESTION")
-            return {"CANCELLED"}
+            return True
         context.view_layer.update()
-        if POLYGONS.of(selected_curves(context)) and not self.sample_splines:
-            return set(bpy.ops.curve.mobius_flow_sample("INVOKE_DEFAULT")) and {"CANCELLED"}
-        return self.begin(context)
+        if smooth := POLYGONS.of(selected_curves(context)) and not self.sample_splines:
+            bpy.ops.curve.mobius_flow_sample("INVOKE_DEFAULT")
+        return bool(smooth)
 
     def begin(self, context: bpy.types.Context) -> set[str]:
-        try:
-            values = self.values(context)
-            run = LiveRun(self.session(context, values), Refresh(values["view_every"]), self.stays)
-        except MobiusFlowError as error:
-            return self.fail(error)
+        values = self.values(context)
+        run = LiveRun(self.session(context, values), Refresh(values["view_every"]), self.stays)
         registry.begin(run)
         return self.listen(context, run)
 
@@ -313,31 +308,23 @@ def cancel(_operator: Button, _context: bpy.types.Context) -> None:
     registry.current().cancel()
 
 
-class CURVE_OT_mobius_flow_recover(Listening, Button, bpy.types.Operator):
+class CURVE_OT_mobius_flow_recover(Listening, LiveButton, bpy.types.Operator):
     """Keep what the last relaxation had reached when it was cancelled"""
 
     bl_label = "Recover"
     needs = (_RECOVERABLE,)
 
-    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        """Write the keys while Blender stays usable."""
-        if bpy.app.background or context.window is None:
-            return self.execute(context)
-        try:
-            return self.listen(context, self._recovered())
-        except MobiusFlowError as error:
-            return self.fail(error)
+    def begin(self, context: bpy.types.Context) -> set[str]:
+        return self.listen(context, self._recovered())
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        try:
-            run = self._recovered()
-        except MobiusFlowError as error:
-            return self.fail(error)
+    def act(self, context: bpy.types.Context) -> None:
+        run = self._recovered()
         while not run.state.over:
             run.tick()
             time.sleep(0.005)  # the keys are being prepared
+        if run.state is not RunState.DONE:
+            raise MobiusFlowError(run.message)
         report_end(self, context.scene, run)
-        return {"FINISHED"} if run.state is RunState.DONE else {"CANCELLED"}
 
     def _recovered(self) -> LiveRun:
         run = registry.latest()

@@ -125,8 +125,8 @@ class Session:
         self._too_thick = False  # whether a bevel of the artist's meets itself at the start
         self._last: Iterate | None = None
         self._repinned = False  # whether a hand has left pins
-        self._begin(objects)
         try:
+            self._begin(objects)
             self.goals = Goals(goals, self.curve)
             held = tuple(sorted({*pinned, *pins.pinned_vertices(objects, self.curve.mesh)}))
             obstacles, tangents = surroundings.obstacles, pin_tangents and bool(held)
@@ -163,13 +163,9 @@ class Session:
         """Show stand-ins for curve objects, and read the link that they form."""
         self.members = [Member(obj, self._continues) for obj in objects]
         self._shown: tuple[Curve, Frame, float | None] | None = None
-        try:
-            for member in self.members:
-                member.begin()
-            self.curve, self.link = read_link(objects)
-        except BaseException:
-            self.discard()
-            raise
+        for member in self.members:
+            member.begin()
+        self.curve, self.link = read_link(objects)
 
     def reopen(self) -> None:
         """Go on after `discard`; raises MobiusFlowError if the curves are not as they were at first."""
@@ -178,14 +174,17 @@ class Session:
         objects = [obj for member in self.members if (obj := member.found()) is not None]
         if len(objects) < len(self.members) or self.surroundings.lost():
             raise MobiusFlowError(changed)
-        self._begin(objects)
-        same = link.counts == self.link.counts and curve.mesh == self.curve.mesh
-        same = same and all(a.equals(b) for a, b in zip(link.placements, self.link.placements, strict=True))
-        same = same and np.array_equal(curve.vertices, self.curve.vertices)
-        self.curve, self.link = curve, link
-        if not same:
+        try:
+            self._begin(objects)
+            placed = zip(link.placements, self.link.placements, strict=False)
+            same = link.counts == self.link.counts and all(a.equals(b) for a, b in placed)
+            if not (same and self.curve.mesh == curve.mesh and np.array_equal(self.curve.vertices, curve.vertices)):
+                raise MobiusFlowError(changed)
+        except BaseException:
             self.discard()
-            raise MobiusFlowError(changed)
+            raise
+        finally:
+            self.curve, self.link = curve, link
 
     def run(self, drag: Callable[[Hand, Iterate], object] | None = None) -> Report:
         """Do the whole job; raises MobiusFlowError if the curves cannot be relaxed, or an object is gone.

@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_curve, add_trefoil, evaluated, relax
-from mobius_flow.addon.buttons import relaxing
+from mobius_flow.addon.buttons import button, relaxing
 from mobius_flow.addon.curves import bake
 from mobius_flow.addon.curves.keyframes import all_fcurves, frames_of
 from mobius_flow.addon.curves.recorded import Recorded
@@ -142,9 +142,9 @@ def asked(name, monkeypatch, **values):
         selected_objects=context.selected_objects,
     )
     cls = getattr(relaxing, f"CURVE_OT_mobius_flow_{name}")
-    pressed = type("Pressed", (SimpleNamespace,), {"bl_idname": cls.bl_idname, "moving": cls.moving})
+    pressed = type("Pressed", (SimpleNamespace,), {"bl_idname": cls.bl_idname, "moving": cls.moving, "asks": cls.asks})
     with monkeypatch.context() as patch:
-        patch.setattr(relaxing, "bpy", SimpleNamespace(app=SimpleNamespace(background=False)))
+        patch.setattr(button, "bpy", SimpleNamespace(app=SimpleNamespace(background=False)))
         begins = {"begin": lambda _context: {"RUNNING_MODAL"}, "sample_splines": False, "again": False}
         said = cls.invoke(pressed(**begins | {"continues": cls.continues} | values), here, None)
     assert said == ({"CANCELLED"} if menus else {"RUNNING_MODAL"})

@@ -115,7 +115,6 @@ class Waiting:
     cancel = CURVE_OT_mobius_flow_render_film.cancel
     _end = CURVE_OT_mobius_flow_render_film._end
     _report_film = CURVE_OT_mobius_flow_render_film._report_film
-    _show_progress = CURVE_OT_mobius_flow_render_film._show_progress
 
     def __init__(self, scene, path):
         self.filming, self.timer, self.reports = Filming(scene, str(path)), object(), []
