@@ -14,7 +14,7 @@ from pathlib import Path
 
 from ..addon.pictures import export
 from ..core import Curve, MobiusFlowError
-from ..core.base import OptionError, OutputError, status_of, wrong_suffix
+from ..core.base import OptionError, OutputError, files, status_of, wrong_suffix
 from ..core.curve import check_closed
 from ..core.io import FORMATS, written_formats
 from ..core.keys.motion import check_dimension
@@ -62,24 +62,8 @@ def check_place(path: str) -> None:
     """Raise a MobiusFlowError unless a file can be created there."""
     if path in (STREAM, DEVICE) and (sys.stdout is None or not sys.stdout.writable()):
         raise MobiusFlowError(f"{OUTPUT} is closed; name a file")
-    if path == STREAM:
-        return
-    try:
-        found, directory = status_of(path), Path(os.path.realpath(path)).parent
-        if found is not None and stat.S_ISDIR(found.st_mode):
-            raise MobiusFlowError(f"{path}: is a directory; name a file")
-        if found is None and not directory.is_dir():
-            raise MobiusFlowError(f"{path}: cannot be written: the directory {Path(path).parent} does not exist")
-        if not os.access(directory if found is None else path, os.W_OK):
-            raise MobiusFlowError(f"{path}: is write-protected")
-        if found is None:
-            tempfile.NamedTemporaryFile(prefix=".", dir=directory).close()  # the only way to know
-        elif stat.S_ISREG(found.st_mode):
-            open(path, "r+b").close()
-    except MobiusFlowError:
-        raise
-    except (OSError, ValueError) as error:  # a ValueError for a null character
-        raise OutputError(path, error) from error
+    if path != STREAM:
+        files.check_place(path)
 
 
 def check_directory(path: str) -> None:

@@ -19,7 +19,7 @@ from .fcurves import LINEAR, collections, draw_line, new_action
 from .splines import key_points, read, write_points
 from .splines import radii as spline_radii
 
-_ONCE = Timing()
+ONCE = Timing()
 _MARK = "mobius_flow"  # custom property of the actions made here
 
 
@@ -29,7 +29,7 @@ def writing(
     frames: FloatArray,
     output: Output,
     radii: FloatArray | None = None,
-    timing: Timing = _ONCE,
+    timing: Timing = ONCE,
 ) -> Iterator[None]:
     """Write keys in short pieces to a curve object with as many points; the curve itself keeps the last key.
 
@@ -193,14 +193,6 @@ def _own_collections(block: bpy.types.ID) -> Iterator[Any]:
         yield from collections(animation.action)
     elif animation.action_slot:
         yield from collections(animation.action, [animation.action_slot])
-
-
-def mirror(curve: bpy.types.FCurve, middle: float) -> None:
-    """Let a piecewise linear or constant F-curve retrace its path backwards from a frame on."""
-    for frame, value, kind in [(*point.co, point.interpolation) for point in curve.keyframe_points][::-1]:
-        if frame < middle:
-            curve.keyframe_points.insert(2 * middle - frame, value, options={"FAST"}).interpolation = kind
-    curve.update()
 
 
 def add_keys(

@@ -147,7 +147,7 @@ def compose(
     obj.select_set(True)
     bpy.context.view_layer.objects.active = obj
     output = Output.SHAPE_KEYS if len(points) > 1 else Output.RESULT
-    for _ in keyframes.writing(obj, keys, frames, output, radii / radii.max()):
+    for _ in keyframes.writing(obj, keys, frames, output, radii / radii.max(), playing.timing):
         pass
     along = None
     if len(mesh.component_sizes) == 1:
@@ -162,10 +162,8 @@ def compose(
     size = scene.render.resolution_x, scene.render.resolution_y
     floor = stage.build(scene.collection, ground, LOOKS[look])
     floor.is_shadow_catcher = scene.render.film_transparent = cut_out
-    scene.camera = stage.follow(scene.collection, size, ground, floor, points, radii.max(axis=1), frames)
-    if playing.timing.loop:
-        for curve in keyframes.all_fcurves():
-            keyframes.mirror(curve, frames[-1] + playing.timing.hold_end)
+    seen = points, radii.max(axis=1), frames
+    scene.camera = stage.follow(scene.collection, size, ground, floor, *seen, playing.timing)
     scene.world = bundled("worlds", LOOKS[look].label)
     scene.world.name = "World"
     key = next(each for each in scene.collection.objects if each.type == "LIGHT")

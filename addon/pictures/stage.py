@@ -11,9 +11,10 @@ from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from ...core.base.types import FloatArray
 from ...core.curve.refine import interpolated
+from ...core.keys.key_options import Timing
 from ...core.keys.placement import Frame
 from ..curves.assets import bundled
-from ..curves.keyframes import add_keys
+from ..curves.keyframes import ONCE, add_keys, there_and_back
 from .looks import Look
 
 
@@ -111,11 +112,13 @@ def follow(
     points: "Sequence[Frame | FloatArray]",
     radii: FloatArray,
     frames: FloatArray,
+    timing: Timing = ONCE,
 ) -> bpy.types.Object:
     """Add a camera that sees the whole tube in every frame, and keep the floor just below it.
 
     It swings around the stage, looks at an empty and is focused there. ``size`` is that of its pictures, in any unit;
-    the floor is at the height of the stage's middle; points are the vertices, (n, 3), of every key.
+    the floor is at the height of the stage's middle; points are the vertices, (n, 3), of every key; ``timing`` tells
+    whether keys are passed again on the way back.
     """
     data, calm = bpy.data.cameras.new("Camera"), 25  # frames over which its way is smoothed
     data.lens, data.sensor_width = 60.0, 36.0  # mm
@@ -148,9 +151,15 @@ def follow(
     distances = bounded(needed.max(axis=1))
     heights = np.array([((p - stage.middle) @ stage.axes[2]).min() for p in points]) - 1.02 * radii
     lows = -bounded(-np.interp(every, frames, heights))
-    _move(focus, stage.middle + targets @ stage.axes, every)
-    _move(camera, stage.middle + (targets + distances[:, None] * np.array(views)[:, 2]) @ stage.axes, every)
-    _move(floor, stage.middle + lows[:, None] * stage.axes[2], every)
+    for obj, places in (
+        (focus, stage.middle + targets @ stage.axes),
+        (camera, stage.middle + (targets + distances[:, None] * np.array(views)[:, 2]) @ stage.axes),
+        (floor, stage.middle + lows[:, None] * stage.axes[2]),
+    ):
+        obj.location = places[0]
+        for axis in range(3) if np.ptp(places, axis=0).any() else ():
+            keyed = there_and_back(every, places[:, axis], timing)
+            add_keys(obj, f"{obj.name} Motion", "location", axis, *keyed)
     focus.rotation_euler, focus.empty_display_size = Matrix(stage.axes.T.tolist()).to_euler(), 0.1 * stage.size
     look = camera.constraints.new("TRACK_TO")
     look.target, look.track_axis, look.up_axis, look.use_target_z = focus, "TRACK_NEGATIVE_Z", "UP_Y", True
@@ -159,11 +168,3 @@ def follow(
     # what is a size of the stage off the focus is softened by 0.03 of one; a lens is measured in millimetres
     data.dof.aperture_fstop = 1e-3 * data.lens / (0.03 * stage.size)
     return camera
-
-
-def _move(obj: bpy.types.Object, places: FloatArray, frames: FloatArray) -> None:
-    """Put an object where it is in the first frame, and let it move if it does."""
-    obj.location = places[0]
-    if len(places) > 1 and np.ptp(places, axis=0).max() > 0:
-        for axis in range(3):
-            add_keys(obj, f"{obj.name} Motion", "location", axis, frames, places[:, axis])

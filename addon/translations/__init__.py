@@ -25,6 +25,7 @@ CONTEXT = "Möbius Flow"  # of all but tooltips, which Blender looks up without 
 ANY = "*"  # what Blender calls the context of entries that have none
 
 Table = dict[tuple[str, str], str]
+_ENTRY = re.compile(r'(?:msgctxt (".*")\n)?msgid (".*"(?:\n".*")*)\nmsgstr (".*"(?:\n".*")*)')
 
 
 def iface_(template: str, **values: Any) -> str:
@@ -99,20 +100,15 @@ def read_po(text: str) -> Table:
     """
     table: Table = {}
     for entry in re.split(r"\n\s*\n", text):
-        fields: dict[str, str] = {}
-        field = ""
-        for line in map(str.strip, entry.split("\n")):
-            if line and not line.startswith("#"):
-                keyword = line.partition('"')[0]
-                field = keyword.strip() or field
-                if field not in ("msgctxt", "msgid", "msgstr") or (keyword and field in fields):
-                    raise ValueError(f"not an entry of a PO file without plurals:\n{entry}")
-                fields[field] = fields.get(field, "") + json.loads(line[len(keyword) :])  # PO quotes as JSON does
-        if fields and not {"msgid", "msgstr"} <= fields.keys():
-            raise ValueError(f"msgid or msgstr is missing:\n{entry}")
-        key = fields.get("msgctxt", ANY), fields.get("msgid", "")
-        if key in table:
+        lines = [line for line in map(str.strip, entry.split("\n")) if line and not line.startswith("#")]
+        found = _ENTRY.fullmatch("\n".join(lines))
+        if lines and found is None:
+            raise ValueError(f"not an entry of a PO file without plurals:\n{entry}")
+        # PO quotes as JSON does
+        quoted = found.groups("") if found is not None else ("", "", "")
+        context, original, translation = ("".join(map(json.loads, each.splitlines())) for each in quoted)
+        if (key := (context or ANY, original)) in table:
             raise ValueError(f"there twice:\n{entry}")
-        if key[1] and fields["msgstr"] and not re.search("^#,.*fuzzy", entry, re.MULTILINE):
-            table[key] = fields["msgstr"]
+        if original and translation and not re.search("^#,.*fuzzy", entry, re.MULTILINE):
+            table[key] = translation
     return table

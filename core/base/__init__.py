@@ -17,7 +17,7 @@ from .errors import (
     shown,
     wrong_suffix,
 )
-from .files import atomic_write, status_of, write_file
+from .files import atomic_write, check_place, status_of, write_file
 from .messages import COMPONENT, EDGE, OBSTACLE, OF_GOAL, VERTEX, VERTEX_COUNT, Message, Sentence, joined
 from .plugins import Table
 from .threads import BLAS, THREADS

@@ -23,8 +23,8 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[Path]:
     The temporary file lies in the same directory and has the same suffix, so libraries that look at the suffix work
     too; text or binary is up to the block. If the block raises, ``path`` is left as it was and the temporary file is
     removed. Symbolic links are followed. Where a file cannot be replaced, as in a directory that is read-only or where
-    it is mounted by itself, and to devices and pipes, the whole contents are copied. An OutputError if the target is a
-    directory or write-protected, or the disk refuses.
+    it is mounted by itself, and to devices and pipes, the whole contents are copied. A MobiusFlowError says why it
+    cannot be written.
 
     >>> import tempfile
     >>> target = Path(tempfile.mkdtemp()) / "curve.txt"
@@ -37,10 +37,12 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[Path]:
     try:
         found = status_of(path)
         if found is not None and stat.S_ISDIR(found.st_mode):
-            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+            raise MobiusFlowError(f"{path}: is a directory; name a file")
+        if found is None and not Path(os.path.realpath(path)).parent.is_dir():
+            raise MobiusFlowError(f"{path}: cannot be written: the directory {Path(path).parent} does not exist")
         if found is not None and not os.access(path, os.W_OK):
-            # The replacement itself would succeed, since it needs rights on the directory only.
-            raise PermissionError(errno.EACCES, "it is write-protected")
+            # the replacement itself would succeed, since it needs rights on the directory only
+            raise MobiusFlowError(f"{path}: is write-protected")
         replaced = found is None or (stat.S_ISREG(found.st_mode) and own_stream(found) is None)
         target = Path(os.path.realpath(path)) if replaced else Path(path)
         temporary = _create(target, found, beside=replaced)
@@ -58,6 +60,16 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[Path]:
         if isinstance(error, OSError | ValueError) and not isinstance(error, MobiusFlowError):
             raise OutputError(path, error) from error
         raise
+
+
+def check_place(path: str | os.PathLike[str]) -> None:
+    """Raise a MobiusFlowError unless a file can be written there."""
+    with suppress(_Enough), atomic_write(path):
+        raise _Enough
+
+
+class _Enough(Exception):  # noqa: N818 - nothing is wrong
+    """Nothing is to be written."""
 
 
 def write_file(path: str | os.PathLike[str], data: bytes) -> None:

@@ -68,8 +68,8 @@ def seen(curves: Sequence[Curve], trials: int = 200, seed: int = 20231) -> list[
 
     def merit(drawings: list[Drawing]) -> tuple[float, int, float]:
         sizes = [float(np.ptp(each.curve.vertices, axis=0).max()) for each in drawings]
-        # thinner strands than 2.1 %, the pen's own, are worse than more crossings; wide ones may have room where strands
-        # cross at angles that leave none to thin ones; shares are of fixed steps, which rounding must not tell apart
+        # thinner strands than 2.1 %, the pen's own, are worse than more crossings; wide ones may have room where thin
+        # ones have none at their angles; shares are of fixed steps, which rounding must not tell apart
         least, room = (
             min(round(widest(each, share * size, 1.5)[0] / size, 9) for each, size in zip(drawings, sizes, strict=True))
             for share in (0.021, 1 / 12)

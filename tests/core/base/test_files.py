@@ -66,7 +66,7 @@ def test_devices_are_written_to_directly() -> None:
 @pytest.mark.parametrize("name", ["directory.txt", "missing/curve.txt", "a\0b.txt", "x" * 300 + ".txt"])
 def test_targets_that_cannot_be_written_give_one_sentence(tmp_path: Path, name: str) -> None:
     (tmp_path / "directory.txt").mkdir()
-    with pytest.raises(CurveFileError, match="cannot be written") as caught:
+    with pytest.raises(CurveFileError, match=r"cannot be written|is a directory") as caught:
         write_curve(tmp_path / name, Curve(np.eye(3)))
     assert "\n" not in str(caught.value)
 
