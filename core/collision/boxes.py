@@ -156,6 +156,20 @@ class StillTriangles:
         return self.obstacles[int(np.searchsorted(ends, triangle, side="right"))]
 
 
+def nearer_than(square: Callable[[], float]) -> Test:
+    """The test whether boxes, at the first time, are at most that squared distance apart, which may fall meanwhile.
+
+    Boxes are never further apart than those in them, to the last bit: gaps are not larger, and each product and sum is
+    rounded monotonically, in the same order for all pairs.
+    """
+
+    def near(level: Level, a: IntArray, other: Level, b: IntArray) -> BoolArray:
+        gaps = np.maximum(level.gaps(a, other, b)[0], 0.0)
+        return np.asarray(sum(gap * gap for gap in gaps) <= square())
+
+    return near
+
+
 @lru_cache(maxsize=8)
 def still_triangles(obstacles: tuple[Obstacle, ...], exponent: int) -> StillTriangles:
     """The triangles of some obstacles, whose coordinates are at most two to the power of ``exponent``."""

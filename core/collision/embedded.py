@@ -7,11 +7,11 @@ import numpy as np
 from ..base.errors import CurveError
 from ..base.messages import COMPONENT, EDGE, VERTEX, Message
 from ..base.tolerances import MIN_GAP, MIN_SPACING, ON_EDGE_UNITS, PLANE_ROUNDING
-from ..base.types import BoolArray, FloatArray, IntArray
+from ..base.types import FloatArray
 from ..curve import Curve, Mesh, Obstacle, at_edges, at_vertices
-from .boxes import BoxTree, Level, corners, still_triangles
+from .boxes import BoxTree, corners, nearer_than, still_triangles
 from .exact import EDGES, crossing, first_contact
-from .gap import folds, minimal_gap, near_edges, scaled_points, squared_gaps, squared_segment_distances, written
+from .gap import folds, minimal_gap, near_edges, scaled_points, squared_segment_distances, written
 from .planes import doubtful
 
 TOUCHING = Message("{edge} and {other} touch or cross near {place}; move the strands apart")
@@ -30,23 +30,18 @@ def check_embedded(curve: Curve) -> None:
     Exact in the plane and in space.  In four and more dimensions, where nothing is proved, edges touch if they are
     together up to rounding.  The CurveError names component, edges and vertices, and the place.
     """
-    tails, heads = curve.mesh.tails, curve.mesh.heads
-    unit = int(np.frexp(np.abs(curve.vertices).max())[1]) + 1  # differences of scaled coordinates don't overflow
-    points = np.ldexp(curve.vertices, -unit)
-    nearest = MIN_SPACING * np.ptp(points, axis=0).max()
-    same = np.flatnonzero((np.abs(points[heads] - points[tails]) <= nearest).all(axis=1))
+    mesh, (points, _) = curve.mesh, scaled_points(curve)
+    vectors, nearest = points[:, mesh.heads] - points[:, mesh.tails], MIN_SPACING * float(np.ptp(points, axis=1).max())
+    same = np.flatnonzero((np.abs(vectors) <= nearest).all(axis=0))
     if same.size:
-        tail, head = int(tails[same[0]]), int(heads[same[0]])
+        tail, head = int(mesh.tails[same[0]]), int(mesh.heads[same[0]])
         same_point = "{vertex} and {other} are the same point {place}; remove one of them"
-        ends = {"vertex": _name(curve.mesh, VERTEX, tail), "other": _name(curve.mesh, VERTEX, head)}
+        ends = {"vertex": _name(mesh, VERTEX, tail), "other": _name(mesh, VERTEX, head)}
         message = Message(same_point, **ends, place=written(curve.vertices[tail]))
         raise CurveError(message, at_vertices(curve, tail, head))
-    points, _ = scaled_points(curve)
     # the curve must not turn by 180° at a vertex, up to rounding
-    mesh = curve.mesh
     before = np.flatnonzero(mesh.next != np.arange(mesh.edges))
     after = mesh.next[before]
-    vectors = points[:, mesh.heads] - points[:, mesh.tails]
     first, second = vectors[:, before], vectors[:, after]
     p, q = np.triu_indices(len(points), 1)
     left, right = first[p] * second[q], first[q] * second[p]
@@ -57,39 +52,23 @@ def check_embedded(curve: Curve) -> None:
         back = "the curve doubles back at {vertex}, {place}; move or remove it"
         message = Message(back, vertex=_name(mesh, VERTEX, vertex), place=written(curve.vertices[vertex]))
         raise CurveError(message, at_vertices(curve, vertex))
-    touching = _touching_pairs if curve.dimension <= 3 else _coinciding_pairs
-    for i, j in touching(curve, points):
-        raise _refusal(TOUCHING, curve, i, j)
-
-
-def _touching_pairs(curve: Curve, points: FloatArray) -> Iterator[tuple[int, int]]:
-    """Pairs of edges that touch, sorted batch by batch; raises a CurveError if too many pairs are doubtful.
-
-    Pairs are doubtful if no plane separates them certainly in floating-point numbers; these are decided exactly.  Never
-    all at once: where thousands of edges coincide there are millions, and the first is enough.  No comparison of boxes
-    is rounded: a gap has the sign of the exact difference.
-    """
-    tree, mesh, count = BoxTree.build(curve.mesh, points, points), curve.mesh, 0
-
-    def near(level: Level, a: IntArray, other: Level, b: IntArray) -> BoolArray:
-        return np.asarray((level.gaps(a, other, b)[0] <= 0).all(axis=0))
-
-    for a, b in tree.pairs(near):
+    if curve.dimension > 3:
+        for i, j, _ in near_edges(curve, points, lambda: nearest**2):
+            for pair in sorted(np.sort(np.stack([i, j], axis=1), axis=1).tolist()):
+                raise _refusal(TOUCHING, curve, *pair)
+        return
+    # Pairs that no plane separates certainly in floating-point numbers are decided exactly, and never all at once:
+    # where thousands of edges coincide there are millions, and the first is enough.
+    tree, count = BoxTree.build(mesh, points, points), 0
+    for a, b in tree.pairs(nearer_than(lambda: 0.0)):
         pairs = np.sort(tree.order[np.stack([a, b])], axis=0)
-        for i, j in sorted(pairs[:, doubtful(points, corners(mesh, *pairs))].T.tolist()):
-            ends = curve.vertices[corners(mesh, i, j)]  # as given: scaling may cost the smallest digits
-            if first_contact(ends, ends) is not None:
-                yield i, j
+        for k, other in sorted(pairs[:, doubtful(points, corners(mesh, *pairs))].T.tolist()):
+            given = curve.vertices[corners(mesh, k, other)]  # scaling may cost the smallest digits
+            if first_contact(given, given) is not None:
+                raise _refusal(TOUCHING, curve, k, other)
             if count == 2000:  # that take about a second; `check_gap` refuses strands that need more, if not this
-                raise _refusal(DOUBTFUL, curve, i, j)
+                raise _refusal(DOUBTFUL, curve, k, other)
             count += 1
-
-
-def _coinciding_pairs(curve: Curve, points: FloatArray) -> Iterator[tuple[int, int]]:
-    """Pairs of edges no further apart than rounding, sorted batch by batch."""
-    nearest = MIN_SPACING * float(np.ptp(points, axis=1).max())
-    for i, j, _ in near_edges(curve, points, lambda: nearest**2):
-        yield from sorted(zip(*np.sort(np.stack([i, j]), axis=0).tolist(), strict=True))
 
 
 def meeting_point(ends: FloatArray) -> FloatArray:
@@ -130,7 +109,13 @@ def check_clear(curve: Curve, obstacles: Sequence[Obstacle]) -> None:
             "give its vertices three coordinates, or leave the obstacles out"
         )
     for edge, pair, obstacle in _near(curve, obstacles, MIN_GAP * curve.length):
-        what, where = _meeting(pair)
+        what, where = TOO_NEAR, np.asarray(pair[:2].mean(axis=0))
+        if (s := crossing(pair[0], pair[1], pair[2:])) is not None:
+            what, where = (PIERCES if 0 < s < 1 else TOUCHES), pair[0] + s * (pair[1] - pair[0])
+        else:
+            for four in (pair[[0, 1, *side]] for side in reversed(EDGES)):
+                if first_contact(four, four) is not None:
+                    what, where = TOUCHES, meeting_point(four)
         reason = Message(what, edge=_name(curve.mesh, EDGE, edge), obstacle=obstacle.title, place=written(where))
         raise CurveError(reason, at_edges(curve, (edge,), where))
 
@@ -151,26 +136,11 @@ def _near(curve: Curve, obstacles: Sequence[Obstacle], distance: float) -> Itera
     points, radius = np.ldexp(given.T, -exponent, order="C"), float(np.ldexp(distance, -exponent))
     own = points[:, : len(curve)]
     tree = BoxTree.build(curve.mesh, own, own)
-
-    def near(level: Level, a: IntArray, other: Level, b: IntArray) -> BoolArray:
-        return squared_gaps(level.gaps(a, other, b)) <= radius**2
-
-    for a, b in tree.pairs_with(still.tree, near):
+    for a, b in tree.pairs_with(still.tree, nearer_than(lambda: radius**2)):
         vertices = np.concatenate([tree.corners[:, a], len(curve) + still.tree.corners[:, b]])
         close = np.flatnonzero(doubtful(points, vertices, radius))
         for k in close[np.argsort(tree.order[a[close]], kind="stable")].tolist():
             yield int(tree.order[a[k]]), given[vertices[:, k]], still.obstacle_of(int(still.tree.order[b[k]]))
-
-
-def _meeting(corners: FloatArray) -> tuple[str, FloatArray]:
-    """What an edge does to a nearby triangle, and where; ``corners`` has shape (5, 3)."""
-    s = crossing(corners[0], corners[1], corners[2:])
-    if s is not None:
-        return (PIERCES if 0 < s < 1 else TOUCHES), corners[0] + s * (corners[1] - corners[0])
-    touched = [four for four in (corners[[0, 1, *ends]] for ends in EDGES) if first_contact(four, four) is not None]
-    if touched:
-        return TOUCHES, meeting_point(touched[0])
-    return TOO_NEAR, np.asarray(corners[:2].mean(axis=0))
 
 
 def survives_rounding(curve: Curve, obstacles: Sequence[Obstacle] = ()) -> bool:

@@ -5,9 +5,9 @@ from itertools import chain
 
 import numpy as np
 
-from ..base import MIN_GAP, BoolArray, CurveError, FloatArray, IntArray, Message, Place
+from ..base import MIN_GAP, CurveError, FloatArray, IntArray, Message, Place
 from ..curve import Curve, Mesh, arc_distance_of_points, bending_radii
-from .boxes import BoxTree, Level, corners
+from .boxes import BoxTree, corners, nearer_than
 from .planes import closest_chord, relative_motion
 
 
@@ -18,18 +18,14 @@ def minimal_gap(curve: Curve) -> tuple[float, tuple[int, int] | None]:
     edges, has no such pair: infinity and None.
     """
     points, unit = scaled_points(curve)
-    best, pair = np.inf, None
+    best, pair, mesh = np.inf, None, curve.mesh
     farthest = 4.0 * len(points)  # for coordinates within ±1; finite, since the boxes' padding is infinitely far
-
-    def bound() -> float:
-        return min(best, farthest)
-
-    mesh = curve.mesh
     i, j = np.arange(mesh.edges), mesh.next[mesh.next]
     apart = (j != mesh.next) & (mesh.next[j] != i)  # a triangle has no edges one edge apart, nor has the end of an arc
     i, j = i[apart], j[apart]
     begin = i, j, squared_segment_distances(points, corners(mesh, i, j))
-    for i, j, squares in chain([begin], near_edges(curve, points, bound)):
+    others = near_edges(curve, points, lambda: min(best, farthest))
+    for i, j, squares in chain([begin], others):
         if i.size and squares.min() < best:
             k = int(np.argmin(squares))
             best, pair = float(squares[k]), (int(i[k]), int(j[k]))
@@ -70,11 +66,8 @@ def thickness(curve: Curve, most: float = np.inf) -> float:
     bend = float(bending_radii(curve).min())
     points, unit = scaled_points(curve)
     best = min(float(np.ldexp(2.0 * min(bend, most), -unit)) ** 2, 4.0 * len(points))  # for coordinates within ±1
-
-    def bound() -> float:
-        return best
-
-    for i, j, squares in near_edges(curve, points, bound):
+    near = near_edges(curve, points, lambda: best)
+    for i, j, squares in near:
         # Points just half a circle apart are two radii apart or more (Schur's theorem).  So where the closest points of
         # two edges are nearer along the curve, none of the others can count for less than the bending radius.
         # the closest points, as lengths from the edges' tails; one of many pairs if they are parallel
@@ -105,11 +98,7 @@ def near_edges(
     `scaled_points` gives them.
     """
     tree = BoxTree.build(curve.mesh, points, points)
-
-    def near(level: Level, a: IntArray, other: Level, b: IntArray) -> BoolArray:
-        return squared_gaps(level.gaps(a, other, b)) <= bound()
-
-    for a, b in tree.pairs(near):
+    for a, b in tree.pairs(nearer_than(bound)):
         i, j = tree.order[a], tree.order[b]
         squares = squared_segment_distances(points, np.concatenate([tree.corners[:, a], tree.corners[:, b]]))
         kept = squares <= bound()
@@ -128,15 +117,6 @@ def squared_segment_distances(points: FloatArray, vertices: IntArray) -> FloatAr
 def written(position: FloatArray) -> str:
     """A point as messages write it."""
     return "(" + ", ".join(f"{x:.6g}" for x in position) + ")"
-
-
-def squared_gaps(signed: FloatArray) -> FloatArray:
-    """Squared distances of boxes at the first time, from their signed gaps along ±each axis.
-
-    Boxes are never further apart than those in them, to the last bit: gaps are not larger, and each product and sum is
-    rounded monotonically, in the same order for all pairs.
-    """
-    return np.asarray(sum(gap * gap for gap in np.maximum(signed[0], 0.0)))
 
 
 def folds(mesh: Mesh) -> IntArray:

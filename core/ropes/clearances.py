@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 import scipy.sparse as sp
 
-from ..base.types import BoolArray, FloatArray, IntArray
-from ..collision import BoxTree, Level, near_edges, scaled_points, squared_gaps, still_triangles
+from ..base.types import FloatArray, IntArray
+from ..collision import BoxTree, near_edges, nearer_than, scaled_points, still_triangles
 from ..curve import Curve, Obstacle, arc_distance_of_pairs, bending_radii
 from ..energies.edge_pairs import CORNERS, EdgePairs
 from ..energies.rope import bends, closest, distance, phi
@@ -97,11 +97,7 @@ def _with_obstacles(
     still = still_triangles(tuple(obstacles), exponent)
     points, nearest = np.ldexp(curve.vertices.T, -exponent, order="C"), float(np.ldexp(reach, -exponent))
     tree = BoxTree.build(mesh, points, points)
-
-    def near(level: Level, a: IntArray, other: Level, b: IntArray) -> BoolArray:
-        return squared_gaps(level.gaps(a, other, b)) <= nearest**2
-
-    found = [*tree.pairs_with(still.tree, near)]
+    found = [*tree.pairs_with(still.tree, nearer_than(lambda: nearest**2))]
     none = np.zeros(0, dtype=np.intp)
     a, b = (np.concatenate(each) for each in zip((none, none), *found, strict=True))
     edge, triangle = tree.order[a], still.tree.order[b]

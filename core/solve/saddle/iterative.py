@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
@@ -17,7 +17,10 @@ from scipy.linalg import cho_factor, cho_solve
 from ...base import FloatArray, IntArray, check_time
 from ...curve import Curve, Mesh, holds
 from ..constraints import ConstraintDerivative, Constraints
-from .tangent_space import Applied, TangentSpace
+from .tangent_space import TangentSpace
+
+if TYPE_CHECKING:
+    from ..hierarchical import CompressedInnerProduct
 
 ROUNDING = 1e-12  # relative to all of a covector, below which its tangential part is rounding
 
@@ -184,20 +187,12 @@ class Tolerances:
         return cls(gradient=error, preconditioner=error)
 
 
-class WithModel(Applied, Protocol):
-    """A Gram matrix A of which products are known, and a model that is cheaply inverted."""
-
-    @property
-    def model(self) -> Model:
-        """M, spectrally equivalent to A."""
-
-
 class IterativeTangentSpace(TangentSpace):
     """Constraints of full rank, or any with weights; LinAlgError unless A is definite and iterations suffice."""
 
     def __init__(
         self,
-        inner: WithModel,
+        inner: "CompressedInnerProduct",
         constraints: ConstraintDerivative,
         tolerances: Tolerances,
         weights: FloatArray | None = None,

@@ -9,7 +9,7 @@ A sparse matrix is factorised as it is; barycenters, whose rows are dense, are a
 """
 
 from abc import ABC, abstractmethod
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.sparse as sp
@@ -21,12 +21,8 @@ from ...curve import Curve, free_edges, holds
 from ...energies.edge_pairs import ROWS_TIMES_COLUMNS
 from ..constraints import ConstraintDerivative, Constraints
 
-
-class Applied(Protocol):
-    """A Gram matrix A of which products are known."""
-
-    def apply(self, u: FloatArray) -> FloatArray:
-        """A u, shape (n, k)."""
+if TYPE_CHECKING:
+    from ..metrics.inner_product import DenseInnerProduct, InnerProduct, SparseInnerProduct
 
 
 class TangentSpace(ABC):
@@ -44,7 +40,7 @@ class TangentSpace(ABC):
     penalises lengths: −1/w stands for the zero block, ξ is of no consequence, and multipliers are 0.
     """
 
-    def __init__(self, inner: Applied, constraints: ConstraintDerivative, weights: FloatArray | None) -> None:
+    def __init__(self, inner: "InnerProduct", constraints: ConstraintDerivative, weights: FloatArray | None) -> None:
         self._inner, self.constraints, self.weights = inner, constraints, weights
 
     @abstractmethod
@@ -115,24 +111,13 @@ def euclidean_correction(constraints: Constraints, curve: Curve, residual: Float
     return u
 
 
-class WithInverse(Applied, Protocol):
-    """A Gram matrix A whose inverse is at hand, on functions that vanish at pins continued by 0."""
-
-    @property
-    def inverse(self) -> FloatArray:
-        """A⁻¹ in full, shape (n, n), in Fortran order."""
-
-    def solve(self, f: FloatArray) -> FloatArray:
-        """A⁻¹ f, shape (n, k)."""
-
-
 class DenseTangentSpace(TangentSpace):
     """Constraints of full rank, or any with weights; LinAlgError unless A and the Schur complement are definite."""
 
-    _inner: WithInverse
+    _inner: "DenseInnerProduct"
 
     def __init__(
-        self, inner: WithInverse, constraints: ConstraintDerivative, weights: FloatArray | None = None
+        self, inner: "DenseInnerProduct", constraints: ConstraintDerivative, weights: FloatArray | None = None
     ) -> None:
         super().__init__(inner, constraints, weights)
         schur = _schur_complement(inner, constraints)
@@ -154,7 +139,7 @@ class DenseTangentSpace(TangentSpace):
         return free - self._inner.solve(c.apply_transpose(pull)), multipliers
 
 
-def _schur_complement(inner: WithInverse, c: ConstraintDerivative) -> FloatArray:
+def _schur_complement(inner: "DenseInnerProduct", c: ConstraintDerivative) -> FloatArray:
     """C J⁻¹ Cᵀ in Fortran order, the lower triangle.
 
     D A⁻¹ Dᵀ comes from differences of rows and columns, block by block in the processor's cache.
@@ -196,7 +181,9 @@ def substituted(factor: FloatArray, right: FloatArray) -> FloatArray:
 class SparseTangentSpace(TangentSpace):
     """Constraints of full rank, or lengths with weights, for a sparse A; LinAlgError if singular."""
 
-    def __init__(self, inner: "Sparse", constraints: ConstraintDerivative, weights: FloatArray | None = None) -> None:
+    def __init__(
+        self, inner: "SparseInnerProduct", constraints: ConstraintDerivative, weights: FloatArray | None = None
+    ) -> None:
         super().__init__(inner, constraints, weights)
         n, m = constraints.shape
         self._free = np.ones((n, 1))  # 0 at pins, whose rows and columns are those of the identity
@@ -222,14 +209,6 @@ class SparseTangentSpace(TangentSpace):
         pull = np.linalg.solve(self._held, self._border @ free - missing[len(c.edges) :])
         both = free - self._response @ pull
         return both[:size].reshape(n, m), np.concatenate([both[size:], np.zeros(len(c.edges) - rows), pull])
-
-
-class Sparse(Applied, Protocol):
-    """A Gram matrix that has few entries a row."""
-
-    @property
-    def matrix(self) -> sp.csr_array:
-        """A, shape (n, n)."""
 
 
 def factorised(matrix: sp.sparray) -> SuperLU:
