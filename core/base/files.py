@@ -43,23 +43,39 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[Path]:
         if found is not None and not os.access(path, os.W_OK):
             # the replacement itself would succeed, since it needs rights on the directory only
             raise MobiusFlowError(f"{path}: is write-protected")
-        replaced = found is None or (stat.S_ISREG(found.st_mode) and own_stream(found) is None)
-        target = Path(os.path.realpath(path)) if replaced else Path(path)
-        temporary = _create(target, found, beside=replaced)
+        stream = None if found is None else own_stream(found)
+        is_file = found is None or (stat.S_ISREG(found.st_mode) and stream is None)
+        target = Path(os.path.realpath(path)) if is_file else Path(path)
+        temporary = _create(target, found, beside=is_file)
         yield temporary
         # on the disk, so that a power cut cannot leave a renamed empty file
-        with temporary.open("rb+") as stream:
-            os.fsync(stream.fileno())
-        if not (temporary.parent == target.parent and _replace(temporary, target, found)):
-            _copy(temporary, target, found)
-            temporary.unlink()
-    except BaseException as error:
+        with temporary.open("rb+") as written:
+            os.fsync(written.fileno())
+        if is_file and temporary.parent == target.parent:
+            try:
+                temporary.replace(target)
+                return
+            except OSError as error:
+                if found is None or error.errno not in _NOT_REPLACEABLE:
+                    raise
+        if is_file:
+            with target.open("r+b", buffering=0) as file:
+                old = file.read()
+                try:
+                    _overwrite(file.fileno(), temporary.read_bytes())
+                except BaseException:
+                    _overwrite(file.fileno(), old)
+                    raise
+        else:
+            with temporary.open("rb") as file, open(stream or target, "wb", closefd=stream is None) as device:
+                shutil.copyfileobj(file, device)
+    except (OSError, ValueError) as error:  # a ValueError for a path with a null character
+        if isinstance(error, MobiusFlowError):
+            raise
+        raise OutputError(path, error) from error
+    finally:
         if temporary is not None:
             temporary.unlink(missing_ok=True)
-        # a ValueError for a path with a null character
-        if isinstance(error, OSError | ValueError) and not isinstance(error, MobiusFlowError):
-            raise OutputError(path, error) from error
-        raise
 
 
 def check_place(path: str | os.PathLike[str]) -> None:
@@ -112,35 +128,6 @@ def _create(target: Path, found: os.stat_result | None, beside: bool) -> Path:
     descriptor, name = tempfile.mkstemp(suffix)
     os.close(descriptor)
     return Path(name)
-
-
-def _replace(temporary: Path, target: Path, found: os.stat_result | None) -> bool:
-    try:
-        temporary.replace(target)
-    except OSError as error:
-        if found is None or error.errno not in _NOT_REPLACEABLE:
-            raise
-        return False
-    return True
-
-
-def _copy(source: Path, target: Path, found: os.stat_result | None) -> None:
-    """Write a file's contents into one that exists; a regular file gets its old contents back if that fails."""
-    stream = None if found is None else own_stream(found)
-    if stream is not None or (found is not None and not stat.S_ISREG(found.st_mode)):
-        with (
-            source.open("rb") as file,
-            open(target if stream is None else stream, "wb", closefd=stream is None) as device,
-        ):
-            shutil.copyfileobj(file, device)
-        return
-    with target.open("r+b", buffering=0) as file:
-        old = file.read()
-        try:
-            _overwrite(file.fileno(), source.read_bytes())
-        except BaseException:
-            _overwrite(file.fileno(), old)
-            raise
 
 
 def _overwrite(descriptor: int, data: bytes) -> None:

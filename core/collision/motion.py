@@ -71,17 +71,10 @@ def free_motion(
     Neighbour edges are not tested: when they fold onto each other, one of them meets the edge after the other. In
     triangles and at the ends of arcs, where there is no such edge, a vertex is tested against an edge (`folds`).
 
-    ``start`` and ``end`` are the vertices at both ends, shape (n, m) with m = 2 or 3, or a ValueError says so; the
-    proof is about exactly these floating-point numbers.  Obstacles are in the same units, and in space only.  Unless
-    the search is exhaustive it ends with any contact, not the first.
+    ``start`` and ``end`` are the vertices at both ends, shape (n, m) with m = 2 or 3; the proof is about exactly these
+    floating-point numbers.  Obstacles are in the same units, and in space only.  Unless the search is exhaustive it
+    ends with any contact, not the first.
     """
-    if start.shape != end.shape or start.shape not in ((mesh.size, 2), (mesh.size, 3)):
-        raise ValueError(
-            f"start and end have shapes {start.shape} and {end.shape}; "
-            f"both must be ({mesh.size}, 2) or ({mesh.size}, 3)"
-        )
-    if obstacles and start.shape == (mesh.size, 2):
-        raise ValueError(f"start and end have shapes {start.shape}, but obstacles are in space")
     size = np.maximum(np.abs(start).max(), np.abs(end).max())
     if not np.isfinite(size):  # NumPy's maximum, unlike Python's, is NaN if one is
         return FreeMotion(0.0, None, Limit.NOT_FINITE)

@@ -237,7 +237,10 @@ def test_copying_that_fails_brings_the_old_contents_back(tmp_path, monkeypatch):
             raise OSError(28, "No space left on device")
         return write(descriptor, data)
 
-    monkeypatch.setattr("mobius_flow.core.base.files._replace", lambda *_: False)
+    def mounted(*_):
+        raise OSError(16, "Device or resource busy")
+
+    monkeypatch.setattr(os, "replace", mounted)
     monkeypatch.setattr(os, "write", full)
     with pytest.raises(OutputError, match="No space"), atomic_write(target) as temporary:
         temporary.write_text("new and longer")

@@ -1,7 +1,5 @@
 """Free motions of whole curves."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 from exact_decisions import meet, until
@@ -164,15 +162,6 @@ def test_not_finite_is_never_free() -> None:
         end[3, 1] = bad
         assert free_motion(Mesh((60,)), CIRCLE, end) == FreeMotion(0.0, None, Limit.NOT_FINITE)
         assert not is_free(Mesh((60,)), end, CIRCLE)
-
-
-def test_wrong_shapes_are_refused() -> None:
-    mesh = Mesh((5,))
-    for start, end in pairwise([np.zeros((5, 3)), np.zeros((5, 2)), np.zeros((4, 2)), np.zeros((4, 2))]):
-        with pytest.raises(ValueError, match="must be"):
-            free_motion(mesh, start, end)
-    with pytest.raises(ValueError, match="must be"):
-        is_free(mesh, np.zeros((5, 4)), np.zeros((5, 4)))
 
 
 def test_thousands_of_components() -> None:

@@ -89,9 +89,3 @@ def test_the_tree_of_obstacles_is_built_once() -> None:
     assert sorted(still.tree.order) == list(range(sum(len(each.faces) for each in obstacles)))
     for k in (0, 575, 576, 577):
         assert still.obstacle_of(k) is obstacles[k >= len(obstacles[0].faces)]
-
-
-def test_obstacles_are_in_space() -> None:
-    circle = regular_polygon(10, dimension=2)
-    with pytest.raises(ValueError, match="obstacles are in space"):
-        free_motion(circle.mesh, circle.vertices, circle.vertices, (plate(3.0),))
