@@ -24,7 +24,7 @@ from ..base import CurveOptionError, FloatArray, IntArray, checked
 from .curve import Curve
 from .distances import strand_gaps
 from .mesh import Mesh
-from .pins import NO_PINS, NOWHERE, Pins, arcs, holds
+from .pins import NOWHERE, arcs, holds
 
 DEFAULT_VERTICES = 200  # per component: enough for energies to a tenth of a per cent
 COMPONENTS = 10  # that get so many each; more of them share what ten would have
@@ -195,48 +195,25 @@ def superfluous(curve: Curve, spacing: FloatArray, kept: IntArray = NOWHERE) -> 
     return np.array(chosen, dtype=np.intp)
 
 
-def onto_chords(curve: Curve, vertices: IntArray) -> FloatArray:
-    """All vertices after the given ones have moved onto the chords of their neighbours; shape (n, m)."""
-    mesh = curve.mesh
-    moved = curve.vertices.copy()
+def onto_chords(curve: Curve, vertices: IntArray) -> Curve:
+    """The polygon after some vertices have moved onto the chords of their neighbours."""
+    mesh, moved = curve.mesh, curve.vertices.copy()
     before = curve.vertices[mesh.tails[mesh.incoming[vertices]]]
-    after = curve.vertices[mesh.heads[mesh.outgoing[vertices]]]
-    chord = after - before
+    chord = curve.vertices[mesh.heads[mesh.outgoing[vertices]]] - before
     along = np.einsum("ij,ij->i", curve.vertices[vertices] - before, chord) / np.einsum("ij,ij->i", chord, chord)
     moved[vertices] = before + np.clip(along, 0.2, 0.8)[:, None] * chord
-    return moved
+    return curve.with_vertices(moved)
 
 
-@dataclass(frozen=True, eq=False)
-class Remeshed:
-    """A change of mesh."""
-
-    moved: Curve  # the old polygon after its superfluous vertices have moved onto their chords
-    curve: Curve  # the new one: the same set of points, up to rounding
-    lengths: FloatArray  # wanted on the new mesh; they add up to the total of each arc between pins; shape (edges',)
-    pins: Pins  # the old ones on the new mesh
-
-
-def remesh(
-    curve: Curve, resolution: Resolution, removable: IntArray, spacing: FloatArray, pins: Pins = NO_PINS
-) -> Remeshed:
-    """Remove the given vertices after moving them onto their chords, and split edges that are too long."""
-    moved = curve.with_vertices(onto_chords(curve, removable))
-    keep = np.ones(len(curve), dtype=bool)
-    keep[removable] = False
+def collapsed(curve: Curve, vertices: IntArray, spacing: FloatArray) -> Curve:
+    """The same set of points, up to rounding, without vertices that lie on the chords of their neighbours, and with
+    edges split that are too long for the spacing."""
+    keep = ~holds(curve.mesh, vertices)
     sizes = tuple(int(np.count_nonzero(keep[part])) for part in curve.mesh.slices)
-    coarse = Curve(moved.vertices[keep], Mesh(sizes, curve.mesh.closed))
+    coarse = Curve(curve.vertices[keep], Mesh(sizes, curve.mesh.closed))
     wanted = spacing[keep[curve.mesh.tails]]
     pieces = np.where(coarse.edge_lengths > SPLIT * wanted, np.ceil(coarse.edge_lengths / wanted), 1.0)
-    fine = subdivide(coarse, pieces.astype(np.intp))
-    held = pins.on(fine)
-    return Remeshed(moved, fine, normalised(fine, graded_spacing(fine, resolution), held.vertices), held)
-
-
-def needs_remesh(curve: Curve, spacing: FloatArray, kept: IntArray = NOWHERE) -> bool:
-    """Whether an edge is too long for its neighbourhood, or a tenth of the vertices are superfluous."""
-    too_long = bool((curve.edge_lengths > SPLIT * spacing).any())
-    return too_long or len(superfluous(curve, spacing, kept)) > 0.1 * len(curve)
+    return subdivide(coarse, pieces.astype(np.intp))
 
 
 def normalised(curve: Curve, spacing: FloatArray, pins: IntArray) -> FloatArray:

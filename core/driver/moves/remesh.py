@@ -13,14 +13,15 @@ from ...collision import Contact, survives_rounding
 from ...curve import Curve, arcs
 from ...curve.measures import bending_radii
 from ...curve.refine import (
-    Remeshed,
+    SPLIT,
     Resolution,
     affordable_pieces,
     apportion,
+    collapsed,
     graded_spacing,
     halved,
-    needs_remesh,
-    remesh,
+    normalised,
+    onto_chords,
     smoothed,
     subdivide,
     superfluous,
@@ -66,34 +67,41 @@ class Remesh(Move):
             for edge in stuck.edges:
                 near = curve.mesh.index_distance(np.full_like(edges, edge), edges) <= 2
                 spacing[near] = np.minimum(spacing[near], 0.5 * curve.edge_lengths[near])
-        elif not needs_remesh(curve, spacing, pins):
+        removable = superfluous(curve, spacing, pins)
+        # where it is not stuck, the mesh is good unless edges are too long, or a tenth of the vertices superfluous
+        if stuck is None and len(removable) <= 0.1 * len(curve) and not (curve.edge_lengths > SPLIT * spacing).any():
             return None
-        found = proved_remesh(problem, curve, resolution, superfluous(curve, spacing, pins), spacing)
+        found = proved_remesh(problem, curve, removable, spacing)
         if found is None:
             return None
-        step, remeshed = found
-        lengths = remeshed.lengths / problem.units.scale
-        constraints = replace(problem.constraints, lengths=lengths, pins=remeshed.pins)
-        problem = replace(problem, mesh=remeshed.curve.mesh, constraints=constraints)
-        return Change((step,), problem.at_curve(remeshed.curve))
+        step, other = found
+        held = problem.constraints.pins.on(other)
+        lengths = normalised(other, graded_spacing(other, resolution), held.vertices) / problem.units.scale
+        constraints = replace(problem.constraints, lengths=lengths, pins=held)
+        problem = replace(problem, mesh=other.mesh, constraints=constraints)
+        return Change((step,), problem.at_curve(other))
 
 
 def proved_remesh(
-    problem: Problem, curve: Curve, resolution: Resolution, removable: IntArray, spacing: FloatArray
-) -> tuple[Step, Remeshed] | None:
-    """The last motion on the old mesh and the new one, with all collapses that are free; None if vertices coincide."""
+    problem: Problem, curve: Curve, removable: IntArray, spacing: FloatArray
+) -> tuple[Step, Curve] | None:
+    """The last motion on the old mesh, and the curve on the new one, with all collapses that are free.
+
+    None if vertices would coincide.
+    """
     while True:
-        change = remesh(curve, resolution, removable, spacing, problem.constraints.pins)
-        free = problem.free_motion(curve.vertices, change.moved.vertices)
+        moved = onto_chords(curve, removable)
+        free = problem.free_motion(curve.vertices, moved.vertices)
         if free.time == 1.0 or not len(removable):
             break
         assert free.contact is not None
         ends = [end[list(free.contact.edges)] for end in (curve.mesh.tails, curve.mesh.heads)]
         guilty = np.isin(removable, ends)
         removable = removable[~guilty] if guilty.any() else removable[:0]
-    if not all(survives_rounding(each, problem.obstacles) for each in (change.moved, change.curve)):
+    other = collapsed(moved, removable, spacing)
+    if not all(survives_rounding(each, problem.obstacles) for each in (moved, other)):
         return None
-    return Step((Leg(problem.at_curve(change.moved), free),), 0.0, None), change
+    return Step((Leg(problem.at_curve(moved), free),), 0.0, None), other
 
 
 @dataclass(eq=False)
@@ -271,12 +279,11 @@ class CoarseStart(Move):
         spacing = graded_spacing(curve, Resolution())
         unsplit = np.maximum(spacing, curve.edge_lengths)  # so that no arc has more vertices than in the end
         # a pass leaves out up to a third of the vertices
-        found = proved_remesh(problem, curve, Resolution(), superfluous(curve, spacing, _kept(problem)), unsplit)
-        if found is None or len(found[1].curve) >= len(curve):
+        found = proved_remesh(problem, curve, superfluous(curve, spacing, _kept(problem)), unsplit)
+        if found is None or len(found[1]) >= len(curve):
             return None
-        step, remeshed = found
-        self._coarse = remeshed.curve
-        return Change((step,), problem.on(remeshed.curve))
+        step, self._coarse = found
+        return Change((step,), problem.on(self._coarse))
 
     def stepped(self, step: Step) -> Change | None:
         return self._back(self.run.iterations_left <= 2 or not self.run.makes_headway)

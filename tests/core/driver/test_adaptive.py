@@ -6,15 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, RelaxOptions, Status, Trajectory, minimize, relax
-from mobius_flow.core.curve.pins import Pins
 from mobius_flow.core.curve.refine import (
     MIN_VERTICES,
     SPLIT,
     Resolution,
+    collapsed,
     graded_spacing,
-    needs_remesh,
     onto_chords,
-    remesh,
     superfluous,
 )
 from mobius_flow.core.driver.move import Change
@@ -57,8 +55,9 @@ def test_spacing_follows_gaps_and_obstacles_and_is_graded():
 def test_remesh_reaches_the_rule():
     curve = near_strands(0.01)
     spacing = graded_spacing(curve, RULE)
-    assert needs_remesh(curve, spacing)
-    fine = remesh(curve, RULE, superfluous(curve, spacing), spacing, Pins()).curve
+    chosen = superfluous(curve, spacing)
+    assert (curve.edge_lengths > SPLIT * spacing).any()
+    fine = collapsed(onto_chords(curve, chosen), chosen, spacing)
     assert (fine.edge_lengths <= SPLIT * 1.01 * graded_spacing(fine, RULE)).all()
     assert fine.length == pytest.approx(curve.length)
 
@@ -69,7 +68,7 @@ def test_collapse_keeps_far_vertices_and_few_per_component():
     chosen = superfluous(curve, spacing)
     assert len(chosen) == 300
     assert (np.diff(np.concatenate([chosen, [chosen[0] + 900]])) >= 3).all()
-    moved = onto_chords(curve, chosen)
+    moved = onto_chords(curve, chosen).vertices
     kept = np.setdiff1d(np.arange(900), chosen)
     np.testing.assert_array_equal(moved[kept], curve.vertices[kept])
     chord = curve.vertices[(chosen + 1) % 900] - curve.vertices[chosen - 1]
