@@ -72,7 +72,7 @@ MEASURE_ITEMS = _enum_items(_MEASURES)
 
 def shown() -> list[Option]:
     """The options of a relaxation that Blender has settings for."""
-    return [each for each in declared(RelaxOptions) if each.is_setting]
+    return [each for each in declared(RelaxOptions) if not each.repeated]
 
 
 def _property(option: Option, options: set[str]) -> Any:

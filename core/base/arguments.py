@@ -167,14 +167,9 @@ class Option:
     read: Callable[[str], Iterable[object]] = field(default=str, repr=False)
     metavar: str = "NAME"  # placeholder of its value in the command line's help
     row: bool = False  # whether Blender's panel shows it, as what artists might set; scripts can set them all
-    repeated: bool = False  # whether its value is a tuple, whose items are checked
+    repeated: bool = False  # whether its value is a tuple, whose items are checked; Blender has no settings for those
     flag: str = ""  # what it is called on the command line, if not by its name
     example: str = ""  # a tuple that is allowed, for messages, or a word
-
-    @property
-    def is_setting(self) -> bool:
-        """Whether it is among Blender's settings."""
-        return not self.repeated
 
     @property
     def phrase(self) -> str:

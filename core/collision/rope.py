@@ -26,11 +26,6 @@ from .boxes import BoxTree, Level, Test, contact_window, corners, still_triangle
 from .motion import Contact, FreeMotion, Limit, free_motion, is_free
 from .planes import cross, march
 
-# in which the border of points half a circle apart is followed, more where they do not suffice: those up to the part
-# of π r nearer are tested, too
-_STEPS = (4, 16)
-_HALVINGS = 14  # of the time, until a corner is given up
-_BATCH = 1 << 13
 _TINY = np.finfo(np.float64).tiny
 _SLACK = 1e-10  # relative to the size of coordinates, far above rounding and far below any radius
 
@@ -110,7 +105,7 @@ def _near(
     # no edge is longer on the way than at both its ends, as the norm is convex
     longest = np.sqrt(np.maximum(*(np.einsum("me,me->e", e, e) for e in spans))) * (1.0 + _SLACK) + _SLACK
     position, around = np.cumsum(longest - saved) - longest, np.add.reduceat(longest - saved, mesh.edge_offsets[:-1])
-    once_round = np.where(mesh.closed, around, np.inf)
+    once_round, batch = np.where(mesh.closed, around, np.inf), 1 << 13
 
     def within(width: float) -> Test:
         width = min(width, 2.5)  # more than boxes can be apart, and less than those that only pad the tree are
@@ -133,13 +128,13 @@ def _near(
         counts = (ways + longest[i] + longest[j] >= half).all(axis=0)
         i, j, ways, half = i[counts], j[counts], ways[:, counts], half[counts]
         whole = (ways >= half).all(axis=0)
-        for k in range(0, int(whole.sum()), _BATCH):
-            a, b = i[whole][k : k + _BATCH], j[whole][k : k + _BATCH]
+        for k in range(0, int(whole.sum()), batch):
+            a, b = i[whole][k : k + batch], j[whole][k : k + batch]
             yield points, corners(mesh, a, b), np.stack([a, b]), radius[component[a]] + radius[component[b]]
         # of others only the parts that are half a circle apart or more count, but for a step: from the distance u on of
         # i, and from v to w of j, counted as shares of the edges from the ends that are nearer along the curve
         i, j, ways, half = i[~whole], j[~whole], ways[:, ~whole], half[~whole]
-        for steps in _STEPS:
+        for steps in (4, 16):  # in which that border is followed, more where they do not suffice
             back, rest, step = ways[1] < ways[0], half - ways.min(axis=0), np.arange(steps)[:, None] / steps
             u = np.maximum(rest * (1.0 - step - 1.0 / steps), 0.0) / longest[i]
             v = rest * step / longest[j]
@@ -154,7 +149,7 @@ def _near(
             )
             vertices: IntArray = np.arange(4 * len(pair)).reshape(4, -1)
             width = 2.0 * radius[component[i[pair]]]
-            if steps == _STEPS[-1]:
+            if steps == 16:
                 yield (start, end), vertices, np.stack([i[pair], j[pair]]), width
                 continue
             near = np.unique(pair[march(start, end, vertices, np.zeros(len(pair)), 1.0, width) < 1.0])
@@ -166,8 +161,8 @@ def _near(
         corners_of = np.ldexp(still.vertices.T, -exponent)
         first, last = (np.concatenate([p, corners_of], axis=1) for p in points)
         for a, b in tree.pairs_with(still.tree, within(widest)):
-            for k in range(0, len(a), _BATCH):
-                edges, others = a[k : k + _BATCH], b[k : k + _BATCH]
+            for k in range(0, len(a), batch):
+                edges, others = a[k : k + batch], b[k : k + batch]
                 vertices = np.concatenate([tree.corners[:, edges], mesh.size + still.tree.corners[:, others]])
                 names = np.stack([tree.order[edges], still.tree.order[others]])
                 yield (first, last), vertices, names, radius[component[names[0]]]
@@ -227,7 +222,9 @@ def shortcut(x: FloatArray) -> FloatArray:
     return np.maximum(small, large)
 
 
-def _bends(mesh: Mesh, spans: list[FloatArray], radius: FloatArray) -> tuple[float, int, FloatArray]:
+def _bends(
+    mesh: Mesh, spans: list[FloatArray], radius: FloatArray, halvings: int = 14
+) -> tuple[float, int, FloatArray]:
     """The time up to which arcs fit into corners, 1 if always, the edge that limits it, and what they save on the way.
 
     ``spans`` are the edges at both times, each (m, edges), radii are by edge; the last is what the arc at the tail of
@@ -251,7 +248,7 @@ def _bends(mesh: Mesh, spans: list[FloatArray], radius: FloatArray) -> tuple[flo
         return 0.0, int(which[0]), saved
     first, size, k, limit, worst = np.zeros(len(which)), 1.0, np.arange(len(which)), 1.0, int(which[0])
     tail, head = corners(before[which], which), corners(which, after[which])
-    for _ in range(_HALVINGS):
+    for _ in range(halvings):
         tail, head, size = tail.halves(k), head.halves(k), 0.5 * size
         which, first = np.tile(which[k], 2), np.concatenate([first[k], first[k] + size])
         (low, high, _, own), (below, above, _, _) = tail.tangents(), head.tangents()

@@ -5,9 +5,6 @@ import numpy as np
 from ..base import CurveError, FloatArray
 from .curve import Curve
 
-_ROWS = 64  # of edge pairs processed together
-_TINY = 1e-20  # avoids division by 0 where edges double back
-
 
 def bending(curve: Curve) -> float:
     """L ∫ κ² ds, L the total length: 4π² on a round circle, more on every other closed curve.
@@ -25,7 +22,7 @@ def bending_and_derivative(curve: Curve) -> tuple[float, FloatArray]:
     tau = curve.edge_vectors / ell[:, None]
     turn = tau[after] - tau[before]  # at each inner vertex, of length 2 sin(θ/2)
     sine, per_length = np.einsum("ij,ij->i", turn, turn), 2.0 / (ell[after] + ell[before])
-    cosine = np.maximum(4.0 - sine, _TINY)  # (2 cos(θ/2))²
+    cosine = np.maximum(4.0 - sine, 1e-20)  # (2 cos(θ/2))², which is 0 where edges double back
     bends, length = 4.0 * per_length * sine / cosine, curve.length
     by_turn = (32.0 * per_length / cosine**2)[:, None] * turn
     by_tangent = np.zeros_like(tau)
@@ -40,22 +37,22 @@ def bending_and_derivative(curve: Curve) -> tuple[float, FloatArray]:
     return length * total, mesh.scatter(-by_edge, by_edge)
 
 
-def writhe_and_crossings(curve: Curve) -> tuple[float, float]:
+def writhe_and_crossings(curve: Curve, rows: int = 64) -> tuple[float, float]:
     """Writhe and average crossing number, crossings between components included; a CurveError unless it is in space.
 
     Both are averages over all directions of view, with signs and without.  Gauss's integral over a pair of edges is the
     area of the directions in which they are seen to cross, a spherical quadrilateral (Banchoff, *Indiana Univ. Math.
-    J.* 25, 1976).
+    J.* 25, 1976).  So many ``rows`` of pairs of edges are processed together.
     """
     if curve.dimension != 3:
         raise CurveError(f"the curve has dimension {curve.dimension}; only curves in space have a writhe")
     writhe = crossings = 0.0
-    for first in range(0, curve.mesh.edges, _ROWS):
+    for first in range(0, curve.mesh.edges, rows):
         # signed areas with all later edges but neighbours: each of two triangles between the directions of chords (van
         # Oosterom and Strackee, *IEEE Trans. Biomed. Eng.* 30, 1983), whose triple products are equal
         mesh = curve.mesh
         tails, heads = curve.vertices[mesh.tails], curve.vertices[mesh.heads]
-        i, j = slice(first, first + _ROWS), slice(first, None)
+        i, j = slice(first, first + rows), slice(first, None)
         a, b, d, c = (end[None, j] - start[i, None] for start in (tails, heads) for end in (tails, heads))
         volume = _dot(np.cross(curve.edge_vectors[None, j], curve.edge_vectors[i, None]), a)
         size_a, size_c = (np.sqrt(_dot(x, x)) for x in (a, c))
@@ -63,8 +60,8 @@ def writhe_and_crossings(curve: Curve) -> tuple[float, float]:
         for x in (b, d):
             across = (size_a * size_c + _dot(a, c)) * np.sqrt(_dot(x, x))
             area += 2.0 * np.arctan2(volume, across + _dot(a, x) * size_c + _dot(c, x) * size_a)
-        rows, columns = np.arange(mesh.edges)[i, None], np.arange(mesh.edges)[None, j]
-        counted = (columns > rows) & mesh.disjoint(rows, columns)
+        one, other = np.arange(mesh.edges)[i, None], np.arange(mesh.edges)[None, j]
+        counted = (other > one) & mesh.disjoint(one, other)
         areas = np.asarray(np.where(counted, area, 0.0))
         writhe += float(areas.sum())
         crossings += float(np.abs(areas).sum())

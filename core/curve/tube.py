@@ -114,7 +114,11 @@ def normals(points: FloatArray, closed: bool = True) -> FloatArray:
     bare[:, 0] = unit(axis - _dot(axis, tau[:, 0])[..., None] * tau[:, 0])
     for i in range(1, tau.shape[1]):
         bare[:, i] = carried(bare[:, i - 1], tau[:, i - 1], tau[:, i])
-    share = _shares_of_length(points) if closed else np.zeros(points.shape[:2])  # of what is missing at the end
+    share = np.zeros(points.shape[:2])  # of what is missing at the end, by the length before each vertex
+    if closed:
+        lengths = np.linalg.norm(np.roll(points, -1, axis=1) - points, axis=-1)
+        passed = np.cumsum(lengths, axis=1)
+        share = (passed - lengths) / passed[:, -1:]
     holonomy = signed_angle(bare[:, 0], carried(bare[:, -1], tau[:, -1], tau[:, 0]), tau[:, 0])
     angles = -holonomy[:, None] * share
     normal = np.empty_like(bare)
@@ -169,13 +173,6 @@ def signed_angle(start: FloatArray, end: FloatArray, tau: FloatArray) -> FloatAr
 
 def unit(vectors: FloatArray) -> FloatArray:
     return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), _TINY))
-
-
-def _shares_of_length(points: FloatArray) -> FloatArray:
-    """Which part of the length lies before each vertex; (keys, n, 3) to (keys, n)."""
-    lengths = np.linalg.norm(np.roll(points, -1, axis=1) - points, axis=-1)
-    passed = np.cumsum(lengths, axis=1)
-    return np.asarray((passed - lengths) / passed[:, -1:])
 
 
 def _dot(a: FloatArray, b: FloatArray) -> FloatArray:

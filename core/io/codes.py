@@ -114,8 +114,6 @@ def _polygons(curve: Curve) -> list[Polygon]:
 def _written(text_of: Callable[[Diagram], str], curve: Curve, stream: TextIO) -> None:
     """Write the code of a view of the curve; raises CurveError if no view is clear, or a component is open."""
     check_closed(curve, "codes of diagrams")
-    if curve.dimension != 3:
-        raise CurveError(f"codes are of curves in space, not of dimension {curve.dimension}; use .json")
     found = min(views(curve, 4), key=lambda diagram: diagram.crossings)
     stream.write(text_of(found) + "\n")
 

@@ -21,11 +21,15 @@ class Format:
     description: str  # for help texts
     read: Callable[[Source], list[Polygon]]  # raises CurveFileError
     write: Callable[[Curve, TextIO], None] | None  # raises CurveError for what it cannot hold; None if only read
+    dimensions: Sequence[int] = ()  # that curves may have to be written; any if empty
 
     def text(self, curve: Curve) -> str:
         """The contents of a file of the curve; raises CurveError if the format cannot hold it, or is only read."""
         if self.write is None:
             raise CurveError("this format is only read; choose another one to write")
+        if self.dimensions and curve.dimension not in self.dimensions:
+            held = " or ".join(map(str, self.dimensions))
+            raise CurveError(f"this format holds curves of dimension {held}, not {curve.dimension}; use .json")
         stream = io.StringIO()
         self.write(curve, stream)
         return stream.getvalue()
@@ -35,28 +39,31 @@ _COLUMNS = Format(
     "x y z per line, as KnotPlot writes it too, a blank line between components, # comments, # open before an open one",
     xyz.read,
     xyz.separated(" "),
+    (2, 3),
 )
 
 _FORMATS: Mapping[str, Format] = {
     ".txt": _COLUMNS,
     ".xyz": _COLUMNS,
-    ".obj": Format("Wavefront OBJ, vertices (v) and polylines (l)", obj.read, obj.write),
-    ".vect": Format("Geomview VECT, polylines", vect.read, vect.write),
+    ".obj": Format("Wavefront OBJ, vertices (v) and polylines (l)", obj.read, obj.write, (2, 3)),
+    ".vect": Format("Geomview VECT, polylines", vect.read, vect.write, (2, 3)),
     ".json": Format(
         '{"components": [[[x, y, z], ...], ...], "closed": [true, ...]}, "closed" only if some are open',
         json_lists.read,
         json_lists.write,
     ),
-    ".csv": Format("x, y, z between commas, with or without a first line of names", xyz.read, xyz.separated(",", True)),
-    ".tsv": Format("x y z between tabs, or Knoodle's crossings", codes.read_tsv, xyz.separated("\t")),
+    ".csv": Format(
+        "x, y, z between commas, with or without a first line of names", xyz.read, xyz.separated(",", True), (2, 3)
+    ),
+    ".tsv": Format("x y z between tabs, or Knoodle's crossings", codes.read_tsv, xyz.separated("\t"), (2, 3)),
     ".raw": _COLUMNS,
     ".kp": _COLUMNS,
     ".kndlxyz": _COLUMNS,
     ".pdb": Format("Protein Data Bank, the alpha carbons of each chain as an open arc (read only)", pdb.read, None),
     ".cif": Format("PDBx/mmCIF, likewise (read only)", pdb.read_cif, None),
-    ".pd": Format("planar diagram code of a knot or link, PD[X[1,5,2,4], ...]", codes.read_pd, codes.write_pd),
+    ".pd": Format("planar diagram code of a knot or link, PD[X[1,5,2,4], ...]", codes.read_pd, codes.write_pd, (3,)),
     ".dt": Format("Dowker-Thistlethwaite code, DT: [4 6 2] or DT: cacbca (read only)", codes.read_dt, None),
-    ".gauss": Format("Gauss code, 1 -2 3 ... or with signs O1+U2+O3+...", codes.read_gauss, codes.write_gauss),
+    ".gauss": Format("Gauss code, 1 -2 3 ... or with signs O1+U2+O3+...", codes.read_gauss, codes.write_gauss, (3,)),
 }
 FORMATS: Mapping[str, Format] = Table("mobius_flow.formats", lambda it: isinstance(it, Format), _FORMATS)
 """Every format, by suffix; packages join by entry points in ``mobius_flow.formats``, named ``.suffix``."""

@@ -12,7 +12,6 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import NamedTuple, TextIO
 
-from ..base.errors import CurveError
 from ..curve.curve import Curve
 from .source import Polygon, Source, shown
 
@@ -164,9 +163,7 @@ def _chains(source: Source, links: Sequence[ObjEdge]) -> list[tuple[list[int], b
 
 
 def write(curve: Curve, stream: TextIO) -> None:
-    """Write one ``l`` per component; a plane curve gets z = 0. Raises CurveError beyond three dimensions."""
-    if curve.dimension > 3:
-        raise CurveError(f"OBJ holds curves of dimension 3, not {curve.dimension}; use .json")
+    """Write one ``l`` per component; a plane curve gets z = 0."""
     padding = [0.0] * (3 - curve.dimension)
     stream.writelines(f"v {' '.join(map(repr, point + padding))}\n" for point in curve.vertices.tolist())
     for part, closed in zip(curve.mesh.slices, curve.mesh.closed, strict=True):

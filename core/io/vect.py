@@ -9,7 +9,6 @@ Source: the Geomview manual, section "VECT".
 from itertools import islice
 from typing import TextIO
 
-from ..base.errors import CurveError
 from ..curve.curve import Curve
 from .source import Polygon, Source, shown
 
@@ -66,9 +65,7 @@ def read(source: Source) -> list[Polygon]:
 
 
 def write(curve: Curve, stream: TextIO) -> None:
-    """Write polylines without colours; a plane curve gets z = 0. Raises CurveError beyond three dimensions."""
-    if curve.dimension > 3:
-        raise CurveError(f"VECT holds curves of dimension 3, not {curve.dimension}; use .json")
+    """Write polylines without colours; a plane curve gets z = 0."""
     sizes = [-n if closed else n for n, closed in zip(curve.mesh.component_sizes, curve.mesh.closed, strict=True)]
     stream.write(f"VECT\n{len(sizes)} {len(curve)} 0\n")
     stream.write(" ".join(map(str, sizes)) + "\n" + " ".join("0" for _ in sizes) + "\n")

@@ -9,7 +9,6 @@ import re
 from collections.abc import Callable
 from typing import TextIO
 
-from ..base.errors import CurveError
 from ..curve.curve import Curve
 from .source import Polygon, Source
 
@@ -50,11 +49,9 @@ def read(source: Source) -> list[Polygon]:
 
 
 def separated(separator: str, head: bool = False) -> Callable[[Curve, TextIO], None]:
-    """A writer of components separated by blank lines, with or without axes' names; CurveError beyond 3 dimensions."""
+    """A writer of components separated by blank lines, with or without axes' names."""
 
     def write(curve: Curve, stream: TextIO) -> None:
-        if curve.dimension > 3:
-            raise CurveError(f"columns hold curves of dimension 2 or 3, not {curve.dimension}; use .json")
         stream.write(separator.join("xyz"[: curve.dimension]) + "\n" if head else "")
         lines = ("\n".join(separator.join(map(repr, point)) for point in part.tolist()) for part in curve.components)
         marks = ("" if closed else f"# {_OPEN}\n" for closed in curve.mesh.closed)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..base.errors import MobiusFlowError
+from ..base.arguments import checked
 from ..base.types import FloatArray
 from .checker import Archive, Verdict, check
 from .filter import FloatingSieve
@@ -17,16 +17,12 @@ from .filter import FloatingSieve
 __all__ = ["Verdict", "verify"]
 
 
-def verify(path: Path | str, callback: Callable[[int, int], None] | None = None) -> Verdict:
+@checked
+def verify(path: str | os.PathLike[str], callback: Callable[[int, int], None] | None = None) -> Verdict:
     """Check a trajectory file; damaged files and failed checks give a verdict that is not accepted.
 
     ``callback`` is called after every leg with the number of legs checked and, by its headers, of those in the file.
-    Raises MobiusFlowError if ``path`` is not a path or ``callback`` not a function.
     """
-    if not isinstance(path, str | os.PathLike):
-        raise MobiusFlowError(f"path is of type {type(path).__name__}; give the name of a trajectory file")
-    if callback is not None and not callable(callback):
-        raise MobiusFlowError(f"callback is of type {type(callback).__name__}; give a function of two numbers")
     return check(path, FloatingSieve, callback)
 
 

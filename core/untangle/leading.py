@@ -7,7 +7,7 @@ import numpy as np
 
 from ..base.types import BoolArray, FloatArray, IntArray
 from ..curve.refine import arc_lengths
-from ..knots.diagrams.rerouting import Move
+from ..knots.diagrams.rerouting import StrandMove
 from .drawing import PlaneDrawing
 from .rope import ElasticRope, Springs
 from .ways import Way
@@ -18,7 +18,7 @@ HOLD = 30.0  # stiffness of springs
 class Lead:
     """A strand that is led: its vertices, where they lie, the way to which they are led, and what that costs."""
 
-    def __init__(self, rope: ElasticRope, drawing: PlaneDrawing, move: Move, way: Way) -> None:
+    def __init__(self, rope: ElasticRope, drawing: PlaneDrawing, move: StrandMove, way: Way) -> None:
         self.move, mesh = move, rope.mesh
         start, end = way.ends
         part = mesh.slices[mesh.component[int(start)]]

@@ -20,8 +20,8 @@ from ..curve.pins import NOWHERE, Pins, holds
 from ..knots.diagrams.diagram import Diagram
 from ..knots.diagrams.projection import rotation
 from ..knots.diagrams.rerouting import (
-    Move,
     Strand,
+    StrandMove,
     factors,
     is_least,
     reduced,
@@ -177,7 +177,7 @@ def _choose(
             continue
         way = plane.way(strand)
         if way is not None and len(way.route) < len(strand.inner):
-            each = Lead(rope, drawing, Move(diagram, strand, way.route), way)
+            each = Lead(rope, drawing, StrandMove(diagram, strand, way.route), way)
             own = set(each.vertices.tolist())
             if each.count > 3 and not any(2 * len(other & own) > len(other | own) for other in left_alone):
                 found.append(each)

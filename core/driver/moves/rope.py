@@ -4,7 +4,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...base.arguments import number
 from ...descent import NoStep, Point, Step
 from ...energies.components import energy_scale
 from ...energies.rope import Rope
@@ -20,11 +19,11 @@ class GiveWay(Move):
     there is more patience, as saddles of flow and rope are left in a dozen steps.
     """
 
-    share: float = number(0.8, most=1)  # that is left of the radius each time
+    share: float = 0.8  # that is left of the radius each time
     first: tuple[int, float] = (15, 0.08)  # steps that must gain this part of the promise, the first time
     later: tuple[int, float] = (5, 0.5)
-    every: int = number(3)  # steps, to save time
-    worth: float = number(1e-3)  # part of the energy that the promise must be
+    every: int = 3  # steps, to save time
+    worth: float = 1e-3  # part of the energy that the promise must be
     _start: float = field(default=0.0, init=False)  # radius before it gave way, if it did
     _energies: list[float] = field(default_factory=list, init=False)  # on this mesh
 
@@ -35,13 +34,12 @@ class GiveWay(Move):
     def started(self) -> Change | None:
         """Nothing is in the way of a curve that is at rest by itself."""
         self._energies.clear()
-        point = self.run.point
-        own = self._released()
-        at_rest = gradient_bound(self.run.options, point.problem.mesh, own.energy)
-        return Change(point=own) if own is not point and own.gradient_norm <= at_rest else None
+        own = self._released
+        at_rest = gradient_bound(self.run.options, own.problem.mesh, own.energy)
+        return Change(point=own) if own is not self.run.point and own.gradient_norm <= at_rest else None
 
     def stepped(self, step: Step) -> Change | None:
-        if self._has_let_go and step.limited_by is not None:
+        if self._may and step.limited_by is not None and self.run.problem.objective.rope is None:
             return self._thinner()
         self._energies.append(self.run.point.energy)
         steps, part = self.later if self._start else self.first
@@ -51,13 +49,13 @@ class GiveWay(Move):
 
     def converged(self, outcome: Outcome) -> Change | None:
         """Give way, or let go: the barrier is over, and the proof stays, so that the curve is at rest by itself."""
-        own = self._released()
+        own = self._released
         return self._where_in_the_way(0.0) or (Change(point=own) if own is not self.run.point else None)
 
     def _where_in_the_way(self, least: float) -> Change | None:
         """A thinner rope, if it promises more than that, and enough."""
-        point, rope = self.run.point, self._rope
-        if rope is None:
+        point, rope = self.run.point, self.run.problem.objective.rope
+        if rope is None or not self._may:
             return None
         pressure, derivative = rope.value_and_derivative(point.curve)
         # Euler's theorem, as E stays the same if rope and curve are scaled; lengths that weigh its terms count little
@@ -66,9 +64,9 @@ class GiveWay(Move):
         return self._thinner() if worth and promise > least else None
 
     def stuck(self, found: NoStep) -> Change | None:
-        rope = self._rope  # which may have nothing to do with it
+        rope = self.run.problem.objective.rope  # which may have nothing to do with it, or be let go
         in_the_way = found.limited_by if rope is None else rope.value(self.run.point.curve)
-        return self._thinner() if in_the_way and (rope is not None or self._has_let_go) else None
+        return self._thinner() if in_the_way and self._may else None
 
     def summarised(self, outcome: Outcome) -> Outcome:
         now = self.run.problem.radius
@@ -79,27 +77,18 @@ class GiveWay(Move):
         told = "the rope gave way from radius {start:.3g} to {end:.3g}, as it was in its own way"
         return outcome.adding(told, start=self._start, end=float(now.max()))
 
+    @property
     def _released(self) -> Point:
-        """The point without the barrier of a rope that may give way."""
+        """The point without the barrier of a rope that may give way: it is still proved to be a rope."""
         point = self.run.point
-        free = point.problem.objective.having(Rope, None)
-        return point if self._rope is None else point.changing(objective=free)
-
-    @property
-    def _rope(self) -> Rope | None:
-        """The barrier of a rope that may give way."""
-        return self.run.problem.objective.rope if self._may else None
-
-    @property
-    def _has_let_go(self) -> bool:
-        """Whether the curve is proved to be a rope, but no barrier is left."""
-        problem = self.run.problem
-        return self._may and problem.radius is not None and problem.objective.rope is None
+        kept = not self._may or point.problem.objective.rope is None
+        return point if kept else point.changing(objective=point.problem.objective.having(Rope, None))
 
     @property
     def _may(self) -> bool:
-        """Whether the rope may give way: what a hand does is no reason."""
-        return self.run.options.radius == "keep" and self.run.problem.objective.pull is None
+        """Whether there is a rope that may give way: what a hand does is no reason."""
+        problem = self.run.problem
+        return self.run.options.radius == "keep" and problem.radius is not None and problem.objective.pull is None
 
     def _thinner(self) -> Change:
         point = self.run.point

@@ -25,7 +25,7 @@ class Strand(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Move:
+class StrandMove:
     """A strand of a diagram rerouted: ``route`` are the darts that it crosses from the left from now on."""
 
     before: Diagram
@@ -53,21 +53,21 @@ class Move:
         return len(self.strand.inner) - len(self.route)
 
 
-def shortened(diagram: Diagram) -> Move | None:
+def shortened(diagram: Diagram) -> StrandMove | None:
     """Reroute the longest strand that can cross fewer edges; None if there is none."""
     return next(shortenings(diagram), None)
 
 
-def shortenings(diagram: Diagram, rng: np.random.Generator | None = None) -> Iterator[Move]:
+def shortenings(diagram: Diagram, rng: np.random.Generator | None = None) -> Iterator[StrandMove]:
     """All strands that can cross fewer edges rerouted across fewest, the longest ones first, or in random order."""
     every = sorted(strands(diagram), key=lambda strand: -len(strand.inner))
     for k in range(len(every)) if rng is None else rng.permutation(len(every)):
         route = shortest_route(diagram, every[k], len(every[k].inner))
         if route is not None:
-            yield Move(diagram, every[k], route)
+            yield StrandMove(diagram, every[k], route)
 
 
-def shuffled(diagram: Diagram, rng: np.random.Generator) -> Move | None:
+def shuffled(diagram: Diagram, rng: np.random.Generator) -> StrandMove | None:
     """Reroute a piece of a strand, chosen at random, across as many edges; None if there is no route."""
     every = list(strands(diagram))
     strand = every[rng.integers(len(every))]
@@ -75,7 +75,7 @@ def shuffled(diagram: Diagram, rng: np.random.Generator) -> Move | None:
     inner = strand.inner[begin:end]
     piece = Strand(inner, diagram.previous[inner[0]], strand.over)
     route = shortest_route(diagram, piece, len(inner) + 1, rng)
-    return None if route is None else Move(diagram, piece, route)
+    return None if route is None else StrandMove(diagram, piece, route)
 
 
 def strands(diagram: Diagram) -> Iterator[Strand]:

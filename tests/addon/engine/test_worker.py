@@ -25,7 +25,7 @@ from shapes import hopf_link
 
 HERE = Placement(np.eye(3), np.zeros(3))
 THERE = Placement(np.array([[2.0, 1.0, 0.0], [0.0, -1.0, 0.5], [0.0, 0.0, 3.0]]), np.array([5.0, 6.0, 7.0]))
-GIVEN = {each.name: unlike_default(each) for each in declared(RelaxOptions) if each.is_setting}
+GIVEN = {each.name: unlike_default(each) for each in declared(RelaxOptions) if not each.repeated}
 
 
 def job(avoid, placement=HERE):

@@ -12,7 +12,7 @@ from mobius_flow.core.knots import knot, scramble
 from mobius_flow.core.knots.diagrams import is_least, jones, simplified
 from mobius_flow.core.knots.diagrams.diagram import ENDS, PIN
 from mobius_flow.core.knots.diagrams.projection import rotation
-from mobius_flow.core.knots.diagrams.rerouting import Move, shortened, strands
+from mobius_flow.core.knots.diagrams.rerouting import StrandMove, shortened, strands
 from mobius_flow.core.untangle.drawing import PlaneDrawing
 from mobius_flow.core.untangle.leading import Lead, lead
 from mobius_flow.core.untangle.rope import ElasticRope, Springs, _Model
@@ -70,7 +70,7 @@ def test_ways_lead_to_diagrams_of_the_same_knot(name: str, is_open: bool) -> Non
         way = plane.way(strand)
         if way is None:
             continue
-        after = Move(seen.diagram, strand, way.route).after
+        after = StrandMove(seen.diagram, strand, way.route).after
         assert after.is_planar
         if not is_open:
             known = known or jones(simplified(seen.diagram))
@@ -181,7 +181,7 @@ def test_a_move_in_space_leads_to_the_diagram_that_was_planned(name: str) -> Non
     plane = Plane(seen, rope.face)
     found = ((strand, plane.way(strand)) for strand in strands(seen.diagram))
     strand, way = next((strand, way) for strand, way in found if way and len(way.route) < len(strand.inner))
-    move = Move(seen.diagram, strand, way.route)
+    move = StrandMove(seen.diagram, strand, way.route)
     assert lead(rope, [Lead(rope, seen, move, way)])
     after = drawing(rope).diagram
     assert after.crossings <= move.after.crossings
