@@ -32,10 +32,9 @@ from typing import Any
 import numpy as np
 from hard_curves import bent_trefoil
 from mobius_flow.cli import options as relax_options
-from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, Task
+from mobius_flow.core import METHODS, Curve, MobiusFlowError, RelaxOptions, Task
 from mobius_flow.core.base.threads import BLAS
 from mobius_flow.core.descent import NoStep
-from mobius_flow.core.descent.methods import METRIC_STEPS
 from mobius_flow.core.descent.step import leg
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.driver.run import Run
@@ -95,14 +94,15 @@ def measured(size: int, options: RelaxOptions) -> Row:
     seconds = {name: median(each[name] for each in rounds) for name in rounds[0]}
     # an iteration: the median of the means of three groups, as long as methods may keep their metric
     each: list[float] = []
-    while len(each) < 3 * METRIC_STEPS:
+    group = METHODS["lbfgs"].rule.metric_steps
+    while len(each) < 3 * group:
         begin = time.process_time()
         step = run.step()
         if isinstance(step, NoStep):
             break
         run.accept(step)
         each.append(time.process_time() - begin)
-    seconds["iteration"] = median(fmean(each[k : k + METRIC_STEPS]) for k in range(0, len(each), METRIC_STEPS))
+    seconds["iteration"] = median(fmean(each[k : k + group]) for k in range(0, len(each), group))
     # memory in a separate pass, to the end of the first iteration: while it is traced everything takes longer
     tracemalloc.start()
     traced = started(curve, options)

@@ -7,7 +7,6 @@ from ..base.types import BoolArray, FloatArray, IntArray
 from .curve import Curve
 
 STRAND_RATIO = 2.0  # points are on different strands if their distance along the curve is this many times their gap
-CLOSING_IN = 0.6  # ratio below which strands close in on each other: four times nearer to a corner its sides do
 TINY = float(np.finfo(np.float64).tiny)  # avoids division by 0: far from the origin sample points may coincide
 
 
@@ -160,5 +159,6 @@ def _sides_of_corners(curve: Curve, i: IntArray, j: IntArray) -> BoolArray:
 
     forward = np.where(closed, (end - start) % length, end - start)
     other_way = np.where(closed, forward - length, forward)
-    closing = [apart(arc, 0.25) < CLOSING_IN * apart(arc, 1.0) for arc in (forward, other_way)]
+    # strands that close in on each other: four times nearer to a corner its sides do
+    closing = [apart(arc, 0.25) < 0.6 * apart(arc, 1.0) for arc in (forward, other_way)]
     return np.asarray((component == curve.mesh.component[j]) & (closing[0] | closing[1]))

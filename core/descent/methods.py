@@ -21,7 +21,6 @@ from .second_order import BackwardEuler, TrustRegion
 from .step import NoStep, SearchState, Step
 
 _GRADIENTS = "projected fractional Sobolev gradients"
-METRIC_STEPS = 3  # of L-BFGS: with more, more steps take back what is saved; conjugacy bears no change
 
 
 @dataclass(frozen=True)
@@ -171,7 +170,8 @@ def _all() -> Iterator[Method]:
         f"L-BFGS on the constraint manifold with {_GRADIENTS}, metric J_C, made anew every third step; Armijo's rule "
         "with ¼; Newton's steps at the end"
     )
-    yield Method("lbfgs", text, LineSearch(LimitedMemoryBFGS(), quasi_newton, METRIC_STEPS), label="Sobolev L-BFGS")
+    # with more steps on one metric, more steps take back what is saved; conjugacy bears no change
+    yield Method("lbfgs", text, LineSearch(LimitedMemoryBFGS(), quasi_newton, 3), label="Sobolev L-BFGS")
     text = f"conjugate gradients (PR+) on the constraint manifold with {_GRADIENTS}, metric J_C"
     yield Method("cg", text, LineSearch(ConjugateGradient(), armijo), label="Sobolev Conjugate Gradients")
     text = f"trust region in a subspace with Newton's direction, and {_GRADIENTS}, metric J_C"

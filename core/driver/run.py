@@ -3,7 +3,7 @@
 from collections import deque
 from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -21,8 +21,6 @@ from .prepare import Symmetrised
 if TYPE_CHECKING:
     from .moves.hand import Hand
 
-HEADWAY, LOOKING_BACK = 0.01, 100  # part of the energy that goes in so many iterations as long as the flow gets ahead
-
 Relaxation = Generator[Iterate, None, Outcome]
 
 
@@ -34,6 +32,10 @@ class Run:
     increases of the energy.  The options give the ``limit`` of iterations unless another one is passed.  A ``hand``
     may drag the curve, and ``symmetrised`` is the symmetric curve that it begins with, if it is to be symmetric.
     """
+
+    # part of the energy that goes in so many iterations as long as the flow makes headway
+    headway: ClassVar[float] = 0.01
+    looking_back: ClassVar[int] = 100
 
     def __init__(self, problem: Problem, start: Curve, options: RelaxOptions, limit: int | None = None) -> None:
         self.options = options.resolved
@@ -47,7 +49,7 @@ class Run:
         self.memory = SearchState()
         self.charged = 0  # iterations of trials, less iterates of strand moves
         self.strand_moves: StrandMoves | None = None
-        self.energies: deque[float] = deque(maxlen=LOOKING_BACK + 1)  # of the last iterates
+        self.energies: deque[float] = deque(maxlen=self.looking_back + 1)  # of the last iterates
         self.point = problem.at_curve(start).anchored
         self.certified = problem.certifiable  # an embedded start, and so far no motion
         self.iterate = self.described(0)
@@ -80,7 +82,7 @@ class Run:
     def makes_headway(self) -> bool:
         """Whether the last hundred iterations have lowered the energy by a hundredth; so do fewer, until shown."""
         energies = self.energies
-        return len(energies) <= LOOKING_BACK or energies[-1] < (1.0 - HEADWAY) * energies[0]
+        return len(energies) <= self.looking_back or energies[-1] < (1.0 - self.headway) * energies[0]
 
     def described(self, index: int, step_size: float = 0.0, path: tuple[FloatArray, ...] = ()) -> Iterate:
         """The point as an iterate with a number."""

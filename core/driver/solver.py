@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import ClassVar
 
 from ..base import VERTEX_COUNT, CurveError, Message, OptionError
 from ..curve import Curve, Obstacle
@@ -15,12 +16,6 @@ from ..solve.metrics import METRICS, Metric
 from ..solve.saddle.iterative import Tolerances
 from .options import RelaxOptions
 
-# vertices up to which dense iterations are faster on any curve, and from which hierarchical ones are
-DENSE_UP_TO, HIERARCHICAL_FROM = 1000, 5000
-# In between, counts decide: all n² pairs of edges, or the blocks of the inner product.  The number of blocks stands for
-# the work of conjugate gradients, as both blocks and iterations are many where strands are near.
-PAIRS_PER_BLOCK = 1700  # that take as long as one block, by `benchmarks/speed.py` on knots and tangles
-
 
 @dataclass(frozen=True)
 class Solver:
@@ -28,6 +23,9 @@ class Solver:
 
     options: RelaxOptions
     hierarchical: bool = False  # whether distant pairs of edges are summed cluster by cluster
+    # vertices up to which dense iterations are faster on any curve, and from which hierarchical ones are
+    dense_up_to: ClassVar[int] = 1000
+    hierarchical_from: ClassVar[int] = 5000
 
     def on(self, curve: Curve) -> "Solver":
         """The solver for a curve: the requested one, or the faster one; a CurveError if it has too many vertices."""
@@ -77,7 +75,7 @@ class Solver:
         wanted, name = self.options.vertices, self._method.name
         metric, solver = self._metric, self.options.resolved.solver
         largest = max(len(curve), wanted or 0)
-        if self._may_be_hierarchical and (solver == "hierarchical" or largest > HIERARCHICAL_FROM):
+        if self._may_be_hierarchical and (solver == "hierarchical" or largest > self.hierarchical_from):
             given = isinstance(self.options.metric, Metric)
             most = min(MAX_VERTICES, compressed(metric, Tolerances()).most_vertices if given else MAX_VERTICES)
         else:
@@ -126,8 +124,12 @@ class Solver:
 
 @lru_cache(maxsize=1)
 def _pays(curve: Curve) -> bool:
-    """Whether hierarchical iterations are likely to be faster, judged by counts that are the same on all machines."""
+    """Whether hierarchical iterations are likely to be faster, judged by counts that are the same on all machines.
+
+    In between these are all n² pairs of edges and the blocks of the inner product, whose number stands for the work of
+    conjugate gradients, as both blocks and iterations are many where strands are near.
+    """
     n = len(curve)
-    if not DENSE_UP_TO < n <= HIERARCHICAL_FROM:
-        return n > HIERARCHICAL_FROM
-    return PAIRS_PER_BLOCK * block_count(curve) < n * n
+    if not Solver.dense_up_to < n <= Solver.hierarchical_from:
+        return n > Solver.hierarchical_from
+    return 1700 * block_count(curve) < n * n  # pairs take as long, by `benchmarks/speed.py` on knots and tangles

@@ -10,7 +10,6 @@ from ..base.types import BoolArray, FloatArray, IntArray
 from .planes import doubtful, overlapping
 
 SLACK = 1e-12  # relative to the size of coordinates and lengths, far above their rounding
-STEPS = (4, 16)  # the last as `checker.RopeLeg` has
 
 
 def crowded(
@@ -62,7 +61,7 @@ def crowded(
         yield from zip(left[0].tolist(), left[2].tolist(), repeat(None))
         # of the others parts, whose ends are points of their own
         i, j, half, ways = i[~whole], j[~whole], half[~whole], ways[:, ~whole]
-        for steps in STEPS:
+        for steps in (4, 16):  # the last as `checker.RopeLeg` has
             back, rest, k = ways[1] < ways[0], half - ways.min(axis=0), np.arange(steps)[:, None]
             u = rest * (1.0 - (k + 1) / steps) / longest[i]
             v, w = rest * k / steps / longest[j], np.where(k + 1 == steps, 1.0, rest * (k + 1) / steps / longest[j])

@@ -26,7 +26,7 @@ from ...untangle import Stage, untangled, worth
 from ..move import Change, Move
 from ..outcome import Outcome
 from ..prepare import target_lengths
-from ..run import HEADWAY, Run
+from ..run import Run
 from .links import shrinking_ball
 
 # directions, of length 1, in which ends are joined far out
@@ -94,7 +94,7 @@ class Untangling(Move):
         held = run.frozen or run.problem.objective.pull is not None or not run.problem.geometry.prescribes
         if not wanted or held or not self._ends_are_pinned or run.iterations_left < self.room:
             return None
-        if not run.iterate.energy < (1.0 - HEADWAY) * self._stuck_at:
+        if not run.iterate.energy < (1.0 - run.headway) * self._stuck_at:
             return None  # the last ones have not helped
         least = self.many if run.iterate.pins else 1
         gone, left = worth(curve, least)

@@ -10,6 +10,7 @@ transform, but insensitive to the mesh.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 import scipy.sparse as sp
@@ -24,8 +25,6 @@ LEAST = 1e-6  # modulated value, relative to the largest one: where edges double
 
 Symbol = Callable[[FloatArray], FloatArray]
 """A positive function of frequencies."""
-
-SPACING = 3.5  # of log σ: with 2.3 there is no iteration less, with 5 there are half as many more
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,17 +209,19 @@ class Resolvents:
     A LinAlgError says if A is not positive definite.
     """
 
+    spacing: ClassVar[float] = 3.5  # of log σ: with 2.3 there is no iteration less, with 5 there are half as many more
+
     def __init__(self, mesh: Mesh, lengths: FloatArray, apply: LinearMap) -> None:
         mass, d = 0.5 * mesh.scatter(lengths, lengths), mesh.difference
         parameter = Parameter.of_steps(mesh, mesh.at_tails(lengths))
         # nine in ten edges are shorter than half of any wave tried
         symbol = parameter.symbol(apply, mass, np.pi / float(np.quantile(lengths, 0.9)))
         least, largest = (2.0 * np.pi / float(parameter.periods.max())) ** 2, 4.0 / float(lengths.min()) ** 2
-        sigma = np.exp(np.arange(np.log(least), np.log(largest) + SPACING, SPACING))
+        sigma = np.exp(np.arange(np.log(least), np.log(largest) + self.spacing, self.spacing))
         self._mass, self._lengths = mass[:, None], lengths[:, None]
         at_vertices = d.T @ sp.diags_array(1.0 / lengths) @ d
         at_edges = d @ sp.diags_array(1.0 / mass) @ d.T
-        self._weights = 2.0 / np.pi * SPACING * sigma**2 / symbol(np.sqrt(sigma))
+        self._weights = 2.0 / np.pi * self.spacing * sigma**2 / symbol(np.sqrt(sigma))
         self._sigma, self._symbol = sigma, symbol
         self._at_vertices = [factorised(at_vertices + s * sp.diags_array(mass)) for s in sigma]
         self._at_edges = [factorised(at_edges + s * sp.diags_array(lengths)) for s in sigma]
@@ -236,7 +237,7 @@ class Resolvents:
         lengths = self._lengths[:, 0]
         symbol = modulated(lambda w: w**2 / self._symbol(w), tangents * self._lengths, lengths)
         stiffness = np.maximum.accumulate(1.0 / symbol(np.sqrt(self._sigma)))
-        weights = SPACING / np.pi * (stiffness - stiffness[0])
+        weights = self.spacing / np.pi * (stiffness - stiffness[0])
 
         def tension(change: FloatArray) -> FloatArray:
             right = lengths * change

@@ -6,7 +6,7 @@ from mobius_flow.core import Curve, Iterate, Objective, OptionError, RelaxOption
 from mobius_flow.core.curve import refine
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.driver.run import Run
-from mobius_flow.core.driver.solver import DENSE_UP_TO, HIERARCHICAL_FROM
+from mobius_flow.core.driver.solver import Solver
 from mobius_flow.core.energies.hierarchy import HierarchicalMoebiusEnergy
 from mobius_flow.core.knots import knot
 from shapes import torus_trefoil
@@ -85,7 +85,7 @@ def test_small_and_large_curves_are_not_looked_at(monkeypatch: pytest.MonkeyPatc
         raise AssertionError("blocks are counted")
 
     monkeypatch.setattr("mobius_flow.core.driver.solver.block_count", counted)
-    assert not is_hierarchical(torus_trefoil(DENSE_UP_TO))
-    assert is_hierarchical(torus_trefoil(HIERARCHICAL_FROM + 1))
+    assert not is_hierarchical(torus_trefoil(Solver.dense_up_to))
+    assert is_hierarchical(torus_trefoil(Solver.hierarchical_from + 1))
     with pytest.raises(AssertionError):
-        is_hierarchical(torus_trefoil(DENSE_UP_TO + 1))
+        is_hierarchical(torus_trefoil(Solver.dense_up_to + 1))
