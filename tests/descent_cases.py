@@ -8,8 +8,7 @@ from mobius_flow.core.collision import Contact, FreeMotion, Limit
 from mobius_flow.core.descent import Point, Problem
 from mobius_flow.core.descent.directions import ConjugateGradient, LimitedMemoryBFGS, SteepestDescent
 from mobius_flow.core.descent.line_searches import Accelerated, Armijo, WeakWolfe
-from mobius_flow.core.descent.methods import Constrained, Penalised, StepRule
-from mobius_flow.core.descent.problem import Geometry
+from mobius_flow.core.descent.methods import Constrained, Geometry, Penalised, StepRule
 from mobius_flow.core.descent.second_order import BackwardEuler, TrustRegion
 from shapes import torus_trefoil
 

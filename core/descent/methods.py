@@ -9,14 +9,14 @@ from typing import Protocol
 
 import numpy as np
 
-from ..base import FloatArray, OptionError, Table
+from ..base import FloatArray, Table
 from ..curve import Curve, free_edges
 from ..solve.constraints import ConstraintDerivative
 from ..solve.metrics import METRICS, InnerProduct, Metric, MoebiusMetric
 from ..solve.saddle import TangentSpace
 from .directions import ConjugateGradient, LimitedMemoryBFGS, SteepestDescent
 from .line_searches import Accelerated, Armijo, FirstTrial, LineSearch, WeakWolfe
-from .problem import Geometry, Point, Problem
+from .problem import Point, Problem
 from .second_order import BackwardEuler, TrustRegion
 from .step import NoStep, SearchState, Step
 
@@ -36,15 +36,18 @@ class Constrained:
     small: float = 1e-3
     # least rate of both; where it is slower, a shorter step is cheaper than more iterations
     contraction: float = 0.6
-    prescribes = True
+    prescribes = True  # so that there are multipliers and a residual
 
     def value_and_derivative(self, problem: Problem, curve: Curve) -> tuple[float, FloatArray]:
+        """What is minimised on the set, and its derivative, shape (n, m)."""
         return problem.objective.value_and_derivative(curve)
 
     def tangent_space(self, problem: Problem, curve: Curve, inner: InnerProduct) -> TangentSpace:
+        """Where directions at a curve lie, with the metric there."""
         return inner.tangent_space(problem.constraints.derivative(curve))
 
     def residual(self, problem: Problem, curve: Curve) -> FloatArray:
+        """How far a curve is from the set; shape (rows of the constraints,)."""
         return problem.constraints.residual(curve)
 
     def retract(self, base: Point, vertices: FloatArray, level: FloatArray, space: TangentSpace) -> Point | None:
@@ -76,10 +79,8 @@ class Constrained:
         return None
 
     def transport(self, point: Point, u: FloatArray) -> FloatArray:
+        """A vector of another tangent space moved to that of a point; shape (n, m)."""
         return point.tangent_space.project(u)
-
-    def weighted(self, penalty: float) -> "Constrained":
-        raise OptionError(f"penalty is {penalty}; the method keeps lengths and has no penalty")
 
 
 @dataclass(frozen=True)
@@ -120,11 +121,9 @@ class Penalised:
         """There is only one tangent space."""
         return u
 
-    def weighted(self, penalty: float) -> "Penalised":
-        return replace(self, penalty=penalty)
 
-
-_CONSTRAINED = Constrained()
+Geometry = Constrained | Penalised
+"""The set that iterates lie on, its tangent spaces, and the ways from these back to the set."""
 
 
 class StepRule(Protocol):
@@ -151,7 +150,7 @@ class Method:
     description: str
     rule: StepRule = field(repr=False)  # how steps are found
     metric: Metric = field(default=METRICS["moebius"], repr=False)  # the inner product that gradients are taken in
-    geometry: Geometry = field(default=_CONSTRAINED, repr=False)  # whether lengths are prescribed or penalised
+    geometry: Geometry = field(default=Constrained(), repr=False)  # whether lengths are prescribed or penalised
     label: str = ""  # what people call it, as a title; its name if nothing else is given
     comparison: bool = False  # whether it is there to be compared with, rather than to be used
 

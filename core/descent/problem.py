@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -19,6 +19,9 @@ from ..solve.constraints import Block, Constraints
 from ..solve.metrics import InnerProduct, Metric, SparseInnerProduct
 from ..solve.saddle import TangentSpace
 from .task import Units
+
+if TYPE_CHECKING:
+    from .methods import Geometry
 
 
 class PairSums(Protocol):
@@ -36,32 +39,6 @@ class PairSums(Protocol):
 
     def of_metric(self, metric: Metric) -> Metric:
         """Another metric in the form that this solver works with."""
-
-
-class Geometry(Protocol):
-    """The set that iterates lie on, its tangent spaces, and the ways from these back to the set."""
-
-    @property
-    def prescribes(self) -> bool:
-        """Whether the constraints are prescribed, so that there are multipliers and a residual."""
-
-    def value_and_derivative(self, problem: "Problem", curve: Curve) -> tuple[float, FloatArray]:
-        """What is minimised on the set, and its derivative, shape (n, m)."""
-
-    def tangent_space(self, problem: "Problem", curve: Curve, inner: InnerProduct) -> TangentSpace:
-        """Where directions at a curve lie, with the metric there."""
-
-    def residual(self, problem: "Problem", curve: Curve) -> FloatArray:
-        """How far a curve is from the set; shape (rows of the constraints,)."""
-
-    def retract(self, base: "Point", vertices: FloatArray, level: FloatArray, space: TangentSpace) -> "Point | None":
-        """The point of a level of the residual that vertices lead to, in the metric of ``space``; None if too far."""
-
-    def transport(self, point: "Point", u: FloatArray) -> FloatArray:
-        """A vector of another tangent space moved to that of a point; shape (n, m)."""
-
-    def weighted(self, penalty: float) -> "Geometry":
-        """The same with another weight α of length errors; an OptionError if there is none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -232,7 +209,7 @@ class Point:
         return bool(np.isfinite(self.vertices).all() and self.curve.edge_lengths.min() > 0.0)
 
     def retract(self, vertices: FloatArray, level: FloatArray, space: TangentSpace | None = None) -> "Point | None":
-        """The point that vertices near this one are led to, as `Geometry.retract` does; by default in this metric."""
+        """The point of a level of the residual that vertices lead to, in this metric by default; None if too far."""
         return self.problem.geometry.retract(self, vertices, level, self.tangent_space if space is None else space)
 
     def transport(self, u: FloatArray) -> FloatArray:

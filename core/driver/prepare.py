@@ -12,6 +12,7 @@ from ..curve.measures import bending_radii
 from ..curve.refine import Resolution, graded_spacing, normalised, refined_alike
 from ..curve.symmetry import TOLERANCE, Symmetry, SymmetryGroup, symmetries
 from ..descent import METHODS, Problem, Task
+from ..descent.methods import Penalised
 from ..energies import Term, TwiceDifferentiable, is_moebius_invariant
 from ..energies.rope import Rope
 from ..solve.metrics import Metric
@@ -36,7 +37,11 @@ def start_problem(given: Task | Curve, options: RelaxOptions) -> Problem:
     """
     task, method, options = Task.of(given), METHODS[options.method], options.resolved
     pins = task.held
-    geometry = method.geometry if options.penalty is None else method.geometry.weighted(options.penalty)
+    geometry = method.geometry
+    if options.penalty is not None:
+        if not isinstance(geometry, Penalised):
+            raise OptionError(f"penalty is {options.penalty}; the method keeps lengths and has no penalty")
+        geometry = replace(geometry, penalty=options.penalty)
     lengths = target_lengths(task.curve, pins.vertices, task.obstacles, options)
     if options.radius != "none" and not method.geometry.prescribes:
         raise OptionError(f"radius needs lengths that stay, but method {method.name} penalises them; leave it out")

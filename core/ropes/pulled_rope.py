@@ -88,7 +88,7 @@ class PulledRope:
                 np.arange(first, part.stop - 1, every).astype(np.intp)
                 for first, part in zip(firsts, mesh.slices, strict=True)
             ]
-            moved = self.curve.with_vertices(onto_chords(self.curve, np.concatenate(gone)))
+            moved = onto_chords(self.curve, np.concatenate(gone))
             rest = [
                 np.delete(points, k - part.start, axis=0)
                 for points, k, part in zip(moved.components, gone, mesh.slices, strict=True)

@@ -45,8 +45,12 @@ class MoebiusImages:
     def of_vertices(self, q: FloatArray) -> tuple[float, FloatArray]:
         """Logarithm of the bending of the image of the vertices, and its derivative by q, shape (m + 1,)."""
         points = self._unit(self._curve.vertices)
-        value, derivative = bending_and_derivative(self._curve.with_vertices(moebius_image(points, q)))
+        value, derivative = bending_and_derivative(self.vertices(q))
         return float(np.log(value)), moebius_pullback(points, q, derivative / value)
+
+    def vertices(self, q: FloatArray) -> Curve:
+        """The polygon of the images of the vertices, in another unit of length."""
+        return self._curve.with_vertices(moebius_image(self._unit(self._curve.vertices), q))
 
     def at(self, q: FloatArray) -> Curve:
         pieces = []
