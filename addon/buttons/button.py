@@ -6,9 +6,11 @@ from typing import Any
 import bpy
 
 from ...core import MobiusFlowError
+from ...core.base import Message
 from ..live.modal import redraw_views
 from ..live.requirements import Refusal, Requirement, first, require
-from ..translations import rpt_, tip_
+from ..sidebar.layout import Draw
+from ..translations import iface_, rpt_, tip_
 
 _Act = Callable[[Any, Any], object]
 _PREFIX = "CURVE_OT_"
@@ -71,12 +73,26 @@ class LiveButton(Button):
             return self.fail(error)
 
     def asks(self, _context: bpy.types.Context) -> bool:
-        """Ask something first, if need be; another operator then does the job."""
+        """Offer something else first, if need be."""
         return False
 
     def begin(self, context: bpy.types.Context) -> set[str]:
         """Begin the job; raises MobiusFlowError."""
         raise NotImplementedError
+
+
+def offer(context: bpy.types.Context, title: Message, *choices: Draw, told: Sequence[str] = ()) -> bool:
+    """Show a menu with buttons to press instead, below what is to be known of them."""
+
+    def draw(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
+        menu.layout.operator_context = "INVOKE_DEFAULT"
+        for line in told:
+            menu.layout.label(text=iface_(line), translate=False)
+        for each in choices:
+            each(menu.layout, context)
+
+    context.window_manager.popup_menu(draw, title=iface_(title), icon="QUESTION")
+    return True
 
 
 def button(label: str, *needs: Requirement, base: type[Button] = Button, **more: Any) -> Callable[[_Act], type]:

@@ -13,8 +13,9 @@ from ..live.requirements import FILMABLE, Condition, idle, shown_curves
 from ..pictures import staging
 from ..pictures.movie import CHOICES, Filming, is_rendering, is_there, play, target
 from ..scripting import Relaxation
+from ..sidebar import layout
 from ..translations import iface_, rpt_
-from .button import Button, LiveButton, button
+from .button import Button, LiveButton, button, offer
 
 _STAGE = Condition(
     "The scene has no stage; press Set Up Stage first", lambda context: not staging.own_stage(context.scene)
@@ -61,18 +62,25 @@ def remove_stage(_operator: Button, context: bpy.types.Context) -> None:
     staging.strike(context.scene)
 
 
-class _OfFilm:
-    """File and look of a film, by default those of the scene's settings."""
+_SCRIPTED = {"SKIP_SAVE", "HIDDEN"}
 
-    __annotations__ = {
-        "filepath": StringProperty(name="File", description="Where the film goes", options={"SKIP_SAVE", "HIDDEN"}),
-        "look": EnumProperty(
-            name="Look",
-            description="What the stage and the curves on it are made of, and how frames are rendered",
-            items=[(name, *words) for name, words in CHOICES.items()],
-            options={"SKIP_SAVE", "HIDDEN"},
-        ),
-    }
+
+class CURVE_OT_mobius_flow_render_film(LiveButton, bpy.types.Operator):
+    """Render all frames that the scene plays to an MP4. Esc over the render's window cancels, and leaves no file"""
+
+    bl_label = "Render Film"
+    bl_options = {"REGISTER"}
+    needs = (_FREE, idle, _CAMERA)
+
+    # by default those of the scene's settings
+    filepath: StringProperty(name="File", description="Where the film goes", options=_SCRIPTED)
+    look: EnumProperty(
+        name="Look",
+        description="What the stage and the curves on it are made of, and how frames are rendered",
+        items=[(name, *words) for name, words in CHOICES.items()],
+        options=_SCRIPTED,
+    )
+    overwrite: BoolProperty(name="Overwrite", description="Replace an existing file", options=_SCRIPTED)
 
     def given(self) -> dict[str, Any]:
         return {name: getattr(self, name) for name in ("filepath", "look") if self.properties.is_property_set(name)}
@@ -81,20 +89,6 @@ class _OfFilm:
         settings, given = context.scene.mobius_flow_film, self.given()
         return given.get("filepath", settings.filepath), given.get("look", settings.look)
 
-
-class CURVE_OT_mobius_flow_render_film(_OfFilm, LiveButton, bpy.types.Operator):
-    """Render all frames that the scene plays to an MP4. Esc over the render's window cancels, and leaves no file"""
-
-    bl_label = "Render Film"
-    bl_options = {"REGISTER"}
-    needs = (_FREE, idle, _CAMERA)
-    __annotations__ = {
-        "overwrite": BoolProperty(
-            name="Overwrite", description="Replace an existing file", options={"SKIP_SAVE", "HIDDEN"}
-        ),
-        **_OfFilm.__annotations__,
-    }
-
     def act(self, context: bpy.types.Context) -> None:
         self.filming = Filming(context.scene, *self.wanted(context), self.overwrite)
         self.filming.render()
@@ -102,9 +96,10 @@ class CURVE_OT_mobius_flow_render_film(_OfFilm, LiveButton, bpy.types.Operator):
 
     def asks(self, context: bpy.types.Context) -> bool:
         """Ask whether a film that is there may be replaced."""
-        if is_there := target(self.wanted(context)[0]).exists() and not self.overwrite:
-            bpy.ops.curve.mobius_flow_replace_film("INVOKE_DEFAULT", **self.given())
-        return bool(is_there)
+        path = target(self.wanted(context)[0])
+        replace = layout.button("render_film", "RENDER_ANIMATION", Message("Overwrite"), overwrite=True, **self.given())
+        there = path.exists() and not self.overwrite
+        return there and offer(context, Message("{name} is there already", name=path.name), replace)
 
     def begin(self, context: bpy.types.Context) -> set[str]:
         self.filming = Filming(context.scene, *self.wanted(context), self.overwrite)
@@ -152,19 +147,3 @@ _MADE = Condition(
 def play_film(_operator: Button, context: bpy.types.Context) -> None:
     """Play the film that was rendered"""
     play(target(context.scene.mobius_flow_film.filepath))
-
-
-class CURVE_OT_mobius_flow_replace_film(_OfFilm, Button, bpy.types.Operator):
-    """Ask whether a film that is there may be replaced, then render"""
-
-    bl_label = "Overwrite"
-    bl_options = {"INTERNAL"}
-
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        message = iface_("{name} is there already", name=target(self.wanted(context)[0]).name)
-        title = iface_("Overwrite the film?")
-        manager = context.window_manager
-        return set(manager.invoke_confirm(self, event, title=title, message=message, icon="WARNING"))
-
-    def act(self, _context: bpy.types.Context) -> None:
-        bpy.ops.curve.mobius_flow_render_film("INVOKE_DEFAULT", overwrite=True, **self.given())

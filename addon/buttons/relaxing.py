@@ -1,7 +1,6 @@
 """The operators that relax, anew or further, and those for the resulting animations."""
 
 import time
-from functools import partial
 from typing import Any
 
 import bpy
@@ -35,8 +34,9 @@ from ..live.requirements import (
 from ..live.run import LiveRun, Refresh, RunState
 from ..properties import SETTINGS, settings
 from ..scripting import Relaxation, begin, implied
-from ..translations import iface_, rpt_
-from .button import Button, LiveButton, button
+from ..sidebar import layout
+from ..translations import rpt_
+from .button import Button, LiveButton, button, offer
 
 _ANIMATED = Condition(
     "Select a curve that was baked first", lambda context: bake.scene_range(shown_curves(context)) is None
@@ -79,15 +79,18 @@ class Relaxing(Listening, LiveButton):
 
     def asks(self, context: bpy.types.Context) -> bool:
         """Ask if keys are replaced, or smooth splines have to become polygons."""
+        name = type(self).bl_idname.partition("mobius_flow_")[2]
         keyed = (obj for obj in self.moving(context) if obj.type == "CURVE" and bake.is_baked(obj.data))
         if not (self.again or self.continues) and any(keyed):
-            ask = partial(_go_on_or_begin_anew, type(self).bl_idname)
-            context.window_manager.popup_menu(ask, title=iface_("Already Animated"), icon="QUESTION")
-            return True
+            further = layout.button("continue", "FF", Message("Continue from the Last Key"))
+            anew = layout.button(name, "NONE", Message("Start Again, and Replace the Keys"), again=True)
+            return offer(context, Message("Already Animated"), *([further] if name == "relax" else []), anew)
         context.view_layer.update()
-        if smooth := POLYGONS.of(selected_curves(context)) and not self.sample_splines:
-            bpy.ops.curve.mobius_flow_sample("INVOKE_DEFAULT")
-        return bool(smooth)
+        if self.sample_splines or not POLYGONS.of(selected_curves(context)):
+            return False
+        sample = layout.button(name, "NONE", Message("Sample and Relax"), sample_splines=True, again=True)
+        more = Message("For more or fewer points change the curve's Resolution Preview U.")
+        return offer(context, Message("Smooth Splines"), sample, told=[*questions(selected_curves(context)), more])
 
     def begin(self, context: bpy.types.Context) -> set[str]:
         values = self.values(context)
@@ -132,15 +135,6 @@ class CURVE_OT_mobius_flow_relax(Relaxing, bpy.types.Operator):
 Asks first whether curves that have keys go on from their end; in a script they begin anew"""
 
     bl_label = "Relax"
-
-
-def _go_on_or_begin_anew(name: str, menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
-    """Offer to press the operator of that name again, which then replaces keys."""
-    menu.layout.operator_context = "INVOKE_DEFAULT"
-    if name == CURVE_OT_mobius_flow_relax.bl_idname:
-        menu.layout.operator("curve.mobius_flow_continue", text=iface_("Continue from the Last Key"), icon="FF")
-    anew = menu.layout.operator(name, text=iface_("Start Again, and Replace the Keys"))
-    anew.again = True
 
 
 def _in_turn(context: bpy.types.Context) -> list[bpy.types.Object]:
@@ -332,28 +326,6 @@ class CURVE_OT_mobius_flow_recover(Listening, LiveButton, bpy.types.Operator):
         require(RELAXABLE.of(run.session.objects))
         run.recover()
         return run
-
-
-class CURVE_OT_mobius_flow_sample(Button, bpy.types.Operator):
-    """Ask whether smooth splines may become polygons, then relax"""
-
-    bl_label = "Sample and Relax"
-    bl_options = {"INTERNAL"}
-
-    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        try:
-            self.questions = questions(selected_curves(context))
-        except MobiusFlowError as error:
-            return self.fail(error)
-        return set(context.window_manager.invoke_props_dialog(self, width=420))
-
-    def draw(self, _context: bpy.types.Context) -> None:
-        for question in self.questions:
-            self.layout.label(text=iface_(question), icon="QUESTION")
-        self.layout.label(text=iface_("For more or fewer points change the curve's Resolution Preview U."))
-
-    def act(self, _context: bpy.types.Context) -> None:
-        bpy.ops.curve.mobius_flow_relax("INVOKE_DEFAULT", sample_splines=True, again=True)
 
 
 @button("Show", _TROUBLE)

@@ -144,7 +144,7 @@ def asked(name, monkeypatch, **values):
     cls = getattr(relaxing, f"CURVE_OT_mobius_flow_{name}")
     pressed = type("Pressed", (SimpleNamespace,), {"bl_idname": cls.bl_idname, "moving": cls.moving, "asks": cls.asks})
     with monkeypatch.context() as patch:
-        patch.setattr(button, "bpy", SimpleNamespace(app=SimpleNamespace(background=False)))
+        patch.setattr(button, "bpy", SimpleNamespace(app=SimpleNamespace(background=False), types=bpy.types))
         begins = {"begin": lambda _context: {"RUNNING_MODAL"}, "sample_splines": False, "again": False}
         said = cls.invoke(pressed(**begins | {"continues": cls.continues} | values), here, None)
     assert said == ({"CANCELLED"} if menus else {"RUNNING_MODAL"})
@@ -159,7 +159,7 @@ def test_relax_on_a_film_asks_and_a_script_says_what_it_replaces(capfd, monkeypa
     offered = []
 
     class Layout:
-        def operator(self, name, text, icon="NONE"):
+        def operator(self, name, text, **_):
             offered.append((name, self.operator_context, text))
             return self
 
@@ -185,6 +185,19 @@ def test_relax_on_a_film_asks_and_a_script_says_what_it_replaces(capfd, monkeypa
     bpy.context.view_layer.objects.active = other
     assert not asked("relax", monkeypatch)
     assert obj.data.shape_keys
+
+
+def test_smooth_splines_are_offered_as_polygons_by_the_button_that_was_pressed(monkeypatch):
+    bpy.ops.curve.primitive_bezier_circle_add()
+    offered, told = [], []
+    layout = SimpleNamespace(
+        operator=lambda name, **_: offered.append(name) or layout, label=lambda text, **_: told.append(text)
+    )
+    asked("pack", monkeypatch)[0](SimpleNamespace(layout=layout), bpy.context)
+    assert offered == ["curve.mobius_flow_pack"]
+    assert "it becomes a polygon of 48 points" in told[0]
+    assert (layout.sample_splines, layout.again) == (True, True)
+    assert not asked("pack", monkeypatch, sample_splines=True)
 
 
 def test_a_bevel_that_was_changed_since_still_counts_as_the_artists_own(settings):
