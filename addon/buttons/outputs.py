@@ -219,7 +219,7 @@ def write_values(mesh: bpy.types.Mesh, values: Mapping[str, FloatArray]) -> None
     """Keep numbers of curve vertices, (n,) each, as attributes of their rings' vertices."""
     for name, array in values.items():
         attribute = mesh.attributes.new(name, "FLOAT", "POINT")
-        attribute.data.foreach_set("value", _on_rings(mesh, array))
+        attribute.data.foreach_set("value", np.repeat(array, len(mesh.vertices) // len(array)).astype(np.float32))
 
 
 def write_colours(mesh: bpy.types.Mesh, colours: FloatArray) -> None:
@@ -228,15 +228,12 @@ def write_colours(mesh: bpy.types.Mesh, colours: FloatArray) -> None:
     attribute = mesh.color_attributes.new(COLOUR, "BYTE_COLOR", "CORNER")
     opaque = np.column_stack([colours, np.ones(len(colours))])
     corners = read(mesh.loops, "vertex_index", dtype=np.int32)
-    attribute.data.foreach_set("color", _on_rings(mesh, opaque)[corners].ravel())
+    shown = opaque[corners // (len(mesh.vertices) // len(colours))]
+    attribute.data.foreach_set("color", shown.astype(np.float32).ravel())
     mesh.color_attributes.active_color_index = mesh.color_attributes.render_color_index = 0
     mesh.materials.clear()
     mesh.materials.append(vertex_colours(COLOUR))
     mesh.polygons.foreach_set("material_index", np.zeros(len(mesh.polygons), dtype=np.int32))
-
-
-def _on_rings(mesh: bpy.types.Mesh, values: FloatArray) -> FloatArray:
-    return np.repeat(values, len(mesh.vertices) // len(values), axis=0).astype(np.float32)
 
 
 def smooth_objects(

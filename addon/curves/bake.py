@@ -46,12 +46,8 @@ def remember(
         record["frames"], record["course"] = frames.tolist(), np.concatenate(course).tolist()
     elif data.shape_keys:
         shown = [Similarity()] * (len(data.shape_keys.key_blocks) - len(shown) + 1) + [*shown[1:]]
-    _note_sizes(data, shown)
+    record["sizes"] = [float(value) for size in shown for value in (size.factor, *size.shift)]
     update(data, timing)
-
-
-def _note_sizes(data: bpy.types.Curve, shown: Sequence[Similarity]) -> None:
-    data[_RECORD]["sizes"] = [float(value) for size in shown for value in (size.factor, *size.shift)]
 
 
 def key_count(data: bpy.types.Curve) -> int:
@@ -73,7 +69,7 @@ def _noted(data: bpy.types.Curve) -> list[Similarity]:
 
 def resize(obj: bpy.types.Object, shown: Sequence[Similarity]) -> None:
     """Show a baked curve in other sizes at its shape keys."""
-    _note_sizes(obj.data, shown)
+    obj.data[_RECORD]["sizes"] = [float(value) for size in shown for value in (size.factor, *size.shift)]
     drive(obj, shown)
 
 

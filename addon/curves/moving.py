@@ -94,24 +94,21 @@ def _nodes_of(tree: bpy.types.NodeTree | None, seen: set[bpy.types.NodeTree]) ->
 def unsteady(avoided: Iterable[bpy.types.Object], relaxed: Sequence[bpy.types.Object]) -> Message | None:
     """Say what changes in avoided objects, or in curves that avoid them, or return None if nothing does."""
     avoided = list(avoided)
-    if said := next((said for obj in avoided if (said := unsteady_object(obj, relaxed))), None):
-        return said
-    sentence = (
-        "'{name}' is moved by {mover}, and curves that avoid something must keep their places; "
-        "remove that, or avoid nothing"
-    )
-    moved = ((obj, mover) for obj in relaxed if avoided and (mover := what_moves(obj)))
-    return next((Message(sentence, name=obj.name, mover=mover) for obj, mover in moved), None)
-
-
-def unsteady_object(obj: bpy.types.Object, relaxed: Sequence[bpy.types.Object]) -> Message | None:
-    """Say why an object that does not stand still cannot be avoided, or return None if it stands still."""
-    sentence = (
+    still = (
         "'{name}' is moved by {mover}, and what is avoided must stand still; "
         "remove that, or leave it out of what is avoided"
     )
-    mover = what_changes(obj, relaxed)
-    return Message(sentence, name=obj.name, mover=mover) if mover else None
+    placed = (
+        "'{name}' is moved by {mover}, and curves that avoid something must keep their places; "
+        "remove that, or avoid nothing"
+    )
+    changing = ((obj, mover) for obj in avoided if (mover := what_changes(obj, relaxed)))
+    moved = ((obj, mover) for obj in relaxed if avoided and (mover := what_moves(obj)))
+    said = chain(
+        (Message(still, name=obj.name, mover=mover) for obj, mover in changing),
+        (Message(placed, name=obj.name, mover=mover) for obj, mover in moved),
+    )
+    return next(said, None)
 
 
 def what_changes(

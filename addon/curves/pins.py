@@ -23,14 +23,16 @@ def marked(spline: bpy.types.Spline) -> BoolArray:
     return np.asarray(read(control_points(spline), _MARK) == _PINNED)
 
 
-def pin(spline: bpy.types.Spline, chosen: BoolArray) -> None:
+def pin(spline: bpy.types.Spline, chosen: BoolArray, weight: float = _PINNED) -> None:
     """Pin points of a spline, (points,)."""
-    _mark(spline, chosen, _PINNED)
+    weights = read(control_points(spline), _MARK)
+    weights[chosen] = weight
+    control_points(spline).foreach_set(_MARK, weights)
 
 
 def unpin(spline: bpy.types.Spline, chosen: BoolArray) -> None:
     """Let pinned points of a spline, (points,), move again; others keep the weights that they have."""
-    _mark(spline, chosen & marked(spline), 1.0)
+    pin(spline, chosen & marked(spline), 1.0)
 
 
 def pin_only(objects: Sequence[bpy.types.Object], vertices: Sequence[int]) -> None:
@@ -92,9 +94,3 @@ def pinned_vertices(objects: Sequence[bpy.types.Object], mesh: Mesh) -> tuple[in
                 inside = np.where(inside == 0, 0, piece.stop - piece.start - 1)
             found.append(piece.start + inside)
     return tuple(map(int, np.concatenate(found)))
-
-
-def _mark(spline: bpy.types.Spline, chosen: BoolArray, weight: float) -> None:
-    weights = read(control_points(spline), _MARK)
-    weights[chosen] = weight
-    control_points(spline).foreach_set(_MARK, weights)

@@ -14,7 +14,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from ...core import Curve, Hand, Iterate, Obstacle, Outcome, RelaxOptions, Status, Task, WithOutcome
+from ...core import Curve, Hand, Iterate, Obstacle, Outcome, RelaxOptions, Task, WithOutcome
 from ...core.base import CurveError, FloatArray, Message, MobiusFlowError, OptionError, Place, Sentence
 from ...core.collision import is_rope
 from ...core.driver.prepare import rope_radius
@@ -80,11 +80,6 @@ class Report:
             said = Message(mixed, keys=said, **{name: self.kinds[kind] for name, kind in zip(names, Kind, strict=True)})
         facts |= {"keys": said, "frame": self.last_frame}
         return Message("{names} {outcome}; {keys} up to frame {frame:g}, {proof}", **facts)
-
-    @property
-    def clean(self) -> bool:
-        """Whether nothing needs the user's attention."""
-        return self.certified and self.outcome.status is not Status.STALLED
 
 
 # what is to be written: the keys, and for each of them its scene frame, how far the relaxation has come there, and the
@@ -279,17 +274,15 @@ class Session:
     def end(self, outcome: Outcome) -> None:
         if self._too_thick:
             outcome = outcome.adding("the bevel is too thick to be kept apart from itself")
-        self.outcome = replace(outcome, clauses=tuple(map(self._in_our_words, outcome.clauses)))
+        names = spline_names(self.names, self.link.counts)
+        self.outcome = replace(outcome, clauses=tuple(in_blenders_words(each, names) for each in outcome.clauses))
 
     def reworded(self, error: CurveError) -> CurveError:
-        """The core's error in Blender's words; those about options use the names that options have."""
+        """The core's error, with the splines named by their objects; those about options use the names of options."""
         if isinstance(error, OptionError):
             return error
-        return CurveError(Sentence("{reason}", reason=self._in_our_words(str(error))), error.place)
-
-    def _in_our_words(self, message: str) -> str:
-        """The core's message about the link and what it avoids, with the splines named by their objects."""
-        return in_blenders_words(message, spline_names(self.names, self.link.counts))
+        reason = in_blenders_words(str(error), spline_names(self.names, self.link.counts))
+        return CurveError(Sentence("{reason}", reason=reason), error.place)
 
     def spots(self, place: Place | None, curve: Curve) -> list[Spot]:
         """The spots on the objects of a place on the link, or on the same link with other vertices."""

@@ -13,7 +13,7 @@ from ...core import CurveError, MobiusFlowError, Obstacle
 from ...core.base import FloatArray, IntArray, Message
 from ...core.driver.words import named
 from ...core.keys.placement import Placement
-from .moving import unsteady, unsteady_object
+from .moving import unsteady
 from .splines import Reference, read
 
 STAGE = "mobius_flow_stage"  # custom property of objects that only surround curves, to be seen with them
@@ -138,7 +138,7 @@ def _obstacles(objects: Sequence[bpy.types.Object], relaxed: Sequence[bpy.types.
         source = instance.object.original
         if source.session_uid not in looked_at:
             looked_at.add(source.session_uid)
-            if said := unsteady_object(source, relaxed):
+            if said := unsteady([source], relaxed):
                 raise MobiusFlowError(said)
         # geometry nodes can give an object parts of other types, such as points; curves among them are not made meshes
         evaluated, kind = instance.object, instance.object.type

@@ -42,16 +42,14 @@ def target_of(curve: Curve | Task, options: RelaxOptions, most: int = 2000) -> T
     return None if knotted else Target(CIRCLE, Message("circle = {energy:g}", energy=CIRCLE))
 
 
-@dataclass(frozen=True, eq=False)
-class Plot:
-    """What is drawn, in pixels from the lower left corner."""
+def plot(
+    energies: Sequence[float], target: Target | None, width: float, height: float
+) -> tuple[FloatArray, float | None]:
+    """Lay out the energies of the iterates, of which there is at least one, and their target.
 
-    line: FloatArray  # the energies; shape (k, 2), at most two points for a pixel's width
-    target: float | None  # height of the target's line, if there is one
-
-
-def plot(energies: Sequence[float], target: Target | None, width: float, height: float) -> Plot:
-    """Lay out the energies of the iterates, of which there is at least one, and their target."""
+    Returns the line of the energies, at most two points for a pixel's width, (k, 2), and the height of that of the
+    target, if there is one, in pixels from the lower left corner.
+    """
     count = len(energies)  # of which the first, the last, and evenly spread ones in between are drawn
     chosen = np.unique(np.linspace(0, count - 1, min(count, max(2 * int(width), 2))).round().astype(np.intp))
     values = np.asarray(energies, dtype=np.float64)[chosen]
@@ -65,7 +63,7 @@ def plot(energies: Sequence[float], target: Target | None, width: float, height:
 
     x = width * chosen / max(count - 1, 1)
     level = None if target is None else float(heights(np.array([target.energy]))[0])
-    return Plot(np.column_stack([x, heights(values)]), level)
+    return np.column_stack([x, heights(values)]), level
 
 
 def dashes(length: float, period: float) -> FloatArray:

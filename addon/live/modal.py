@@ -5,7 +5,8 @@ from typing import Any
 import bpy
 import numpy as np
 
-from ...core.base.messages import Message
+from ...core import Status
+from ...core.base import Message
 from ..curves.session import Report
 from ..curves.splines import stretch
 from ..translations import iface_, rpt_
@@ -206,7 +207,7 @@ def report_end(operator: Any, scene: bpy.types.Scene, run: LiveRun) -> None:
 def report_result(operator: Any, scene: bpy.types.Scene, report: Report, failed: bool = False) -> None:
     """Report what was done, and whether the scene plays all of it."""
     hidden = unseen(scene, report.scene_range)
-    clean = report.clean and not failed and hidden is None
+    clean = report.certified and report.outcome.status is not Status.STALLED and not failed and hidden is None
     sentence = Message("{done}. {hidden}", done=report.sentence, hidden=hidden) if hidden else report.sentence
     operator.report({"INFO"} if clean else {"WARNING"}, rpt_(sentence))
 

@@ -103,14 +103,14 @@ def _plot(context: bpy.types.Context, run: LiveRun) -> None:
     if low[0] < 0 or 2 * outer[1] > region.height:
         return
     area(tuple(low), tuple(low + outer), (*style.ground[:3], 0.85))
-    origin, drawn = low + padding, plot(run.energies, run.target, *size)
-    if run.target is not None and drawn.target is not None:
+    origin, (way, level) = low + padding, plot(run.energies, run.target, *size)
+    if run.target is not None and level is not None:
         # draw a dashed line with its label above it, at the left, where the energy is still high
-        start, across = origin + np.array([0.0, drawn.target]), dashes(size[0], style.scale * 8.0)
+        start, across = origin + np.array([0.0, level]), dashes(size[0], style.scale * 8.0)
         pale = [0.5 * (a + b) for a, b in zip(style.ground[:3], style.words[:3], strict=True)]
         line(start + np.column_stack([across, np.zeros(len(across))]), pale, style.scale, kind="LINES")
         text(iface_(run.target.label), (start[0], start[1] + 4 * style.scale), style.words, style.font)
-    line(origin + drawn.line, style.accent, style.scale * _LINE)
+    line(origin + way, style.accent, style.scale * _LINE)
     assert run.last is not None, "it has energies"
     x, y = (origin + np.array([0.0, size[1] + 0.5 * caption])).tolist()
     text(iface_("Energy {energy:.4f}", energy=run.energies[-1]), (x, y), style.words, style.font)
