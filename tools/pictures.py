@@ -26,7 +26,7 @@ from mobius_flow.addon.pictures.export import compose, write_picture, write_stil
 from mobius_flow.addon.pictures.looks import LOOKS
 from mobius_flow.addon.pictures.materials import bundled, colour_components
 from mobius_flow.addon.pictures.rendering import empty_scene, render_still, use_cycles, use_workbench
-from mobius_flow.addon.pictures.stage import Stage, build
+from mobius_flow.addon.pictures.stage import Ground, build
 from mobius_flow.core import (
     Curve,
     Iterate,
@@ -74,7 +74,7 @@ def knots() -> None:
     scene = bpy.context.scene
     width, height = step * columns, step * (len(names) // columns)
     middle = np.array([0.5 * (width - step), -0.5 * (height - step), 0.0])
-    floor = build(scene.collection, Stage(np.eye(3), middle, 0.6 * width, 0.5 * np.pi, 1.0), LOOKS[look])
+    floor = build(scene.collection, Ground(np.eye(3), middle, 0.6 * width, 0.5 * np.pi, 1.0), LOOKS[look])
     floor.location = middle - [0.0, 0.0, 1.0]
     scene.world = bundled("worlds", LOOKS[look].label)
     data = bpy.data.cameras.new("Camera")
@@ -110,7 +110,7 @@ def cables() -> None:
         middle = 0.5 * (curve.vertices.min(axis=0) + curve.vertices.max(axis=0))
         height = 1.08 * float(np.ptp(curve.vertices[:, 2]))
         upright = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
-        build(scene.collection, Stage(upright, middle, 0.6 * height, 0.5 * np.pi, 1.0), look).location = [
+        build(scene.collection, Ground(upright, middle, 0.6 * height, 0.5 * np.pi, 1.0), look).location = [
             0.0,
             100.0,
             0.0,

@@ -16,13 +16,14 @@ from ..pictures.materials import colour_components
 from .button import Button
 
 OBJECT_MODE = Condition("Go back to Object Mode first", lambda context: context.mode != "OBJECT")
-_SHOWN = {
-    "TABLE": ("knot",),
-    "TORUS": ("p", "q"),
-    "BRAID": ("word",),
-    "LISSAJOUS": ("frequency_x", "frequency_y", "frequency_z", "phase_x", "phase_y"),
-    "CABLE": ("companion", "strands", "turns"),
-    "DOUBLE": ("companion", "twists", "left_clasp"),
+_OSCILLATIONS = ("frequency_x", "frequency_y", "frequency_z", "phase_x", "phase_y")
+_KINDS = {  # what makes a knot: its title, its description, and the settings it has
+    "TABLE": ("Name", "A knot or link of the table", ("knot",)),
+    "TORUS": ("Torus", "The torus knot or link T(p, q)", ("p", "q")),
+    "BRAID": ("Braid", "Strands that cross one by one and close in a circle", ("word",)),
+    "LISSAJOUS": ("Lissajous", "Three oscillations at right angles", _OSCILLATIONS),
+    "CABLE": ("Cable", "Strands along a knot, wound around each other", ("companion", "strands", "turns")),
+    "DOUBLE": ("Double", "Two strands along a knot that hook into each other", ("companion", "twists", "left_clasp")),
 }
 
 
@@ -140,14 +141,7 @@ numbers: a torus knot, braid, Lissajous curve, or two strands along a knot"""
     kind: EnumProperty(
         name="Kind",
         description="What makes the knot",
-        items=[
-            ("TABLE", "Name", "A knot or link of the table"),
-            ("TORUS", "Torus", "The torus knot or link T(p, q)"),
-            ("BRAID", "Braid", "Strands that cross one by one and close in a circle"),
-            ("LISSAJOUS", "Lissajous", "Three oscillations at right angles"),
-            ("CABLE", "Cable", "Strands along a knot, wound around each other"),
-            ("DOUBLE", "Double", "Two strands along a knot that hook into each other"),
-        ],
+        items=[(key, title, description) for key, (title, description, _) in _KINDS.items()],
         default="TABLE",
     )
     knot: StringProperty(
@@ -210,7 +204,7 @@ numbers: a torus knot, braid, Lissajous curve, or two strands along a knot"""
     def draw_kind(self, layout: bpy.types.UILayout) -> None:
         layout.prop(self, "kind")
         column = layout.column(align=True)
-        for name in _SHOWN[self.kind]:
+        for name in _KINDS[self.kind][2]:
             column.prop(self, name)
 
 

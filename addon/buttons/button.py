@@ -1,6 +1,6 @@
 """The base of operators: if one cannot be used, tooltips and scripts get the reason, and nothing changes."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import bpy
@@ -9,10 +9,10 @@ from ...core import MobiusFlowError
 from ...core.base import Message
 from ..live.modal import redraw_views
 from ..live.requirements import Refusal, Requirement, first, require
-from ..sidebar.layout import Draw
 from ..translations import iface_, rpt_, tip_
 
 _Act = Callable[[Any, Any], object]
+_Given = Mapping[str, Any]
 _PREFIX = "CURVE_OT_"
 
 
@@ -81,15 +81,19 @@ class LiveButton(Button):
         raise NotImplementedError
 
 
-def offer(context: bpy.types.Context, title: Message, *choices: Draw, told: Sequence[str] = ()) -> bool:
-    """Show a menu with buttons to press instead, below what is to be known of them."""
+def offer(
+    context: bpy.types.Context, title: Message, choices: Mapping[Message, tuple[str, _Given]], told: Sequence[str] = ()
+) -> bool:
+    """Show a menu of operators to press instead, with what they are given, below what is to be known of them."""
 
     def draw(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
         menu.layout.operator_context = "INVOKE_DEFAULT"
         for line in told:
             menu.layout.label(text=iface_(line), translate=False)
-        for each in choices:
-            each(menu.layout, context)
+        for text, (name, given) in choices.items():
+            pressed = menu.layout.operator(name, text=iface_(text), translate=False)
+            for key, value in given.items():
+                setattr(pressed, key, value)
 
     context.window_manager.popup_menu(draw, title=iface_(title), icon="QUESTION")
     return True

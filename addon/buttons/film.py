@@ -13,7 +13,6 @@ from ..live.requirements import FILMABLE, Condition, idle, shown_curves
 from ..pictures import staging
 from ..pictures.movie import CHOICES, Filming, is_rendering, is_there, play, target
 from ..scripting import Relaxation
-from ..sidebar import layout
 from ..translations import iface_, rpt_
 from .button import Button, LiveButton, button, offer
 
@@ -97,7 +96,7 @@ class CURVE_OT_mobius_flow_render_film(LiveButton, bpy.types.Operator):
     def asks(self, context: bpy.types.Context) -> bool:
         """Ask whether a film that is there may be replaced."""
         path = target(self.wanted(context)[0])
-        replace = layout.button("render_film", "RENDER_ANIMATION", Message("Overwrite"), overwrite=True, **self.given())
+        replace = {Message("Overwrite"): (type(self).bl_idname, self.given() | {"overwrite": True})}
         there = path.exists() and not self.overwrite
         return there and offer(context, Message("{name} is there already", name=path.name), replace)
 

@@ -1,6 +1,6 @@
 """The operator that remedies refusals: it removes one obstacle from all selected curves for which it is the next."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 
 import bpy
 import numpy as np
@@ -16,34 +16,49 @@ from ..curves.splines import Splines, sampled, shape, write_points
 from ..live.requirements import Remedy, closable, convertible, idle, needing, selected_curves
 from .button import Button
 
-
-def close(obj: bpy.types.Object) -> None:
-    for spline in obj.data.splines:
-        spline.use_cyclic_u = True
+_MENDED: dict[Remedy, Callable[[bpy.types.Object], object]] = {}
 
 
-def make_local(obj: bpy.types.Object) -> None:
-    """Make an object and its curve data this file's own; materials stay linked.
+def _mends(remedy: Remedy) -> Callable[[Callable[[bpy.types.Object], object]], object]:
+    """Let a function be what mends an object, its docstring the tooltip; it may raise a MobiusFlowError."""
+    return lambda mend: _MENDED.setdefault(remedy, mend)
 
-    If the object must stay as it is, because it is in a linked collection, a copy is selected in its place.
-    """
-    local = _own(obj)
-    local.data = _own(local.data)
-    if not local.users_scene:
+
+@_mends(Remedy.OBJECT_MODE)
+def _leave_edit_mode(_obj: bpy.types.Object) -> None:
+    """Leave Edit Mode; what was edited is kept"""
+    bpy.ops.object.mode_set(mode="OBJECT")  # for all objects that are edited together
+
+
+@_mends(Remedy.MAKE_LOCAL)
+def _make_local(obj: bpy.types.Object) -> None:
+    """Make the selected curves of other files this file's own; their materials stay linked"""
+
+    def own(block: bpy.types.ID) -> bpy.types.ID:
+        made = block.make_local(clear_liboverride=True)
+        return made.copy() if made.library else made  # where only other linked data uses it
+
+    local = own(obj)
+    local.data = own(local.data)
+    if not local.users_scene:  # the object must stay as it is, because it is in a linked collection
         show_instead(obj, local)
 
 
-def _own(block: bpy.types.ID) -> bpy.types.ID:
-    """A datablock as this file's own, or a copy of it where only other linked data uses it."""
-    own = block.make_local(clear_liboverride=True)
-    return own.copy() if own.library else own
+@_mends(Remedy.SINGLE_USER)
+def _make_single_user(obj: bpy.types.Object) -> None:
+    """Give each of the selected objects curve data of its own; other objects keep what they share"""
+    obj.data = obj.data.copy()
 
 
-def to_poly(obj: bpy.types.Object) -> None:
-    """Replace smooth splines by the polygons drawn for them.
+@_mends(Remedy.MAKE_3D)
+def _make_3d(obj: bpy.types.Object) -> None:
+    """Let the points of the selected curves leave the plane"""
+    obj.data.dimensions = "3D"
 
-    Raises CurveError if no polygon is drawn for one of them; nothing is changed then.
-    """
+
+@_mends(Remedy.TO_POLY)
+def _to_poly(obj: bpy.types.Object) -> None:
+    """Replace Bézier and NURBS splines of the selected curves by the polygons drawn for them"""
     frames = sampled(obj)
     closed = [flag for *_, flag in shape(obj.data)]
     drawn = Curve.from_components([frame.astype(np.float64) for frame in frames], closed)
@@ -51,25 +66,10 @@ def to_poly(obj: bpy.types.Object) -> None:
     write_points(obj.data, np.concatenate(frames))
 
 
-def to_curve(obj: bpy.types.Object) -> bpy.types.Object:
-    """Make a curve object from a text or a mesh of edges, which stays; return it, the only object selected."""
-    bpy.ops.object.select_all(action="DESELECT")
-    obj.select_set(True)
-    bpy.context.view_layer.objects.active = obj
-    bpy.ops.object.convert(target="CURVE", keep_original=True)
-    curve = bpy.context.object
-    curve.data.materials.clear()  # for meshes Blender leaves them out
-    for slot in obj.material_slots:
-        curve.data.materials.append(slot.material)
-    return curve
-
-
-def still_copy(obj: bpy.types.Object) -> bpy.types.Object:
-    """Copy a curve object as it is shown now, and select the copy in its place; the original stays as it is.
-
-    The copy has neither keys, drivers, constraints nor a parent, and none of the modifiers that may move points. The
-    points are where keys and modifiers have put them; what geometry nodes and a parent do to them is left out.
-    """
+@_mends(Remedy.COPY)
+def _still_copy(obj: bpy.types.Object) -> None:
+    """Copy curves as they are shown now, without keys, modifiers that move points, and all else that moves them"""
+    # what geometry nodes and a parent do to points is left out; the copy is selected in place of the original
     world = obj.matrix_world.copy()
     copy = obj.copy()
     show_instead(obj, copy)
@@ -96,40 +96,26 @@ def still_copy(obj: bpy.types.Object) -> bpy.types.Object:
         copy.matrix_world = world
         bpy.context.view_layer.update()
         copy.data.transform(copy.matrix_world.inverted_safe() @ world)  # shear, which no object has by itself
-    return copy
 
 
-_MENDED: Mapping[Remedy, tuple[Callable[[bpy.types.Object], object], str]] = {  # may raise MobiusFlowErrors
-    Remedy.OBJECT_MODE: (  # of all objects that are edited together
-        lambda _obj: bpy.ops.object.mode_set(mode="OBJECT"),
-        "Leave Edit Mode; what was edited is kept",
-    ),
-    Remedy.MAKE_LOCAL: (
-        make_local,
-        "Make the selected curves of other files this file's own; their materials stay linked",
-    ),
-    Remedy.SINGLE_USER: (
-        lambda obj: setattr(obj, "data", obj.data.copy()),
-        "Give each of the selected objects curve data of its own; other objects keep what they share",
-    ),
-    Remedy.MAKE_3D: (
-        lambda obj: setattr(obj.data, "dimensions", "3D"),
-        "Let the points of the selected curves leave the plane",
-    ),
-    Remedy.TO_POLY: (
-        to_poly,
-        "Replace Bézier and NURBS splines of the selected curves by the polygons drawn for them",
-    ),
-    Remedy.COPY: (
-        still_copy,
-        "Copy curves as they are shown now, without keys, modifiers that move points, and all else that moves them",
-    ),
-    Remedy.TO_CURVE: (
-        to_curve,
-        "Make curves of the selected texts, and of meshes that are edges without faces; these stay as they are",
-    ),
-    Remedy.CLOSE: (close, "Join the two ends of every open spline of the selected curves"),
-}
+@_mends(Remedy.TO_CURVE)
+def _to_curve(obj: bpy.types.Object) -> None:
+    """Make curves of the selected texts, and of meshes that are edges without faces; these stay as they are"""
+    bpy.ops.object.select_all(action="DESELECT")
+    obj.select_set(True)
+    bpy.context.view_layer.objects.active = obj
+    bpy.ops.object.convert(target="CURVE", keep_original=True)
+    curve = bpy.context.object
+    curve.data.materials.clear()  # for meshes Blender leaves them out
+    for slot in obj.material_slots:
+        curve.data.materials.append(slot.material)
+
+
+@_mends(Remedy.CLOSE)
+def _close(obj: bpy.types.Object) -> None:
+    """Join the two ends of every open spline of the selected curves"""
+    for spline in obj.data.splines:
+        spline.use_cyclic_u = True
 
 
 class CURVE_OT_mobius_flow_mend(Button, bpy.types.Operator):
@@ -141,13 +127,13 @@ class CURVE_OT_mobius_flow_mend(Button, bpy.types.Operator):
     remedy: EnumProperty(
         name="Remedy",
         description="What is done about it",
-        items=[(each.name, each.value, description) for each, (_, description) in _MENDED.items()],
+        items=[(each.name, each.value, str(mend.__doc__)) for each, mend in _MENDED.items()],
         default=Remedy.COPY.name,
     )
 
     @classmethod
     def description(cls, _context: bpy.types.Context, operator: "bpy.types.OperatorProperties") -> str:
-        return str(pgettext_tip(_MENDED[Remedy[operator.remedy]][1]))
+        return str(pgettext_tip(str(_MENDED[Remedy[operator.remedy]].__doc__)))
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Mend them all; failures are reported, and leave their objects as they were."""
@@ -163,7 +149,7 @@ class CURVE_OT_mobius_flow_mend(Button, bpy.types.Operator):
         for obj in needy:
             tried = True
             try:
-                _MENDED[remedy][0](obj)
+                _MENDED[remedy](obj)
                 mended = True
             except MobiusFlowError as error:
                 self.fail(error)

@@ -34,7 +34,6 @@ from ..live.requirements import (
 from ..live.run import LiveRun, Refresh, RunState
 from ..properties import SETTINGS, settings
 from ..scripting import Relaxation, begin, implied
-from ..sidebar import layout
 from ..translations import rpt_
 from .button import Button, LiveButton, button, offer
 
@@ -79,18 +78,18 @@ class Relaxing(Listening, LiveButton):
 
     def asks(self, context: bpy.types.Context) -> bool:
         """Ask if keys are replaced, or smooth splines have to become polygons."""
-        name = type(self).bl_idname.partition("mobius_flow_")[2]
+        name, relax = type(self).bl_idname, CURVE_OT_mobius_flow_relax.bl_idname
         keyed = (obj for obj in self.moving(context) if obj.type == "CURVE" and bake.is_baked(obj.data))
         if not (self.again or self.continues) and any(keyed):
-            further = layout.button("continue", "FF", Message("Continue from the Last Key"))
-            anew = layout.button(name, "NONE", Message("Start Again, and Replace the Keys"), again=True)
-            return offer(context, Message("Already Animated"), *([further] if name == "relax" else []), anew)
+            further = {Message("Continue from the Last Key"): ("curve.mobius_flow_continue", {})}
+            anew = {Message("Start Again, and Replace the Keys"): (name, {"again": True})}
+            return offer(context, Message("Already Animated"), (further if name == relax else {}) | anew)
         context.view_layer.update()
         if self.sample_splines or not POLYGONS.of(selected_curves(context)):
             return False
-        sample = layout.button(name, "NONE", Message("Sample and Relax"), sample_splines=True, again=True)
+        sample = {Message("Sample and Relax"): (name, {"sample_splines": True, "again": True})}
         more = Message("For more or fewer points change the curve's Resolution Preview U.")
-        return offer(context, Message("Smooth Splines"), sample, told=[*questions(selected_curves(context)), more])
+        return offer(context, Message("Smooth Splines"), sample, [*questions(selected_curves(context)), more])
 
     def begin(self, context: bpy.types.Context) -> set[str]:
         values = self.values(context)

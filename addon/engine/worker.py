@@ -171,11 +171,7 @@ class Worker:
         if self.process is not None:
             self.process.kill()
             self.process.wait()
-            # its streams belong to the thread, which may be using them, or waiting for room in the queue
-            with contextlib.suppress(queue.Empty):
-                while True:
-                    self._queue.get_nowait()
-        self._thread.join(timeout=0.2 if self.process is not None else 0.0)
+            self._thread.join(timeout=0.2)  # its streams belong to the thread, which may be waiting for room
 
     def _feed(self) -> None:
         """Pass messages on until there are no more or nobody wants them."""

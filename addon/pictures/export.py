@@ -158,7 +158,7 @@ def compose(
     colour_components(data, look=look, along=along)
     # up is where the last shape extends least, rather up than down
     least = np.linalg.svd(points[-1] - points[-1].mean(axis=0, dtype=np.float64), full_matrices=False)[2][2]
-    ground = stage.Stage.around(points, None if cut_out else least * np.sign(least[np.abs(least).argmax()]))
+    ground = stage.Ground.around(points, None if cut_out else least * np.sign(least[np.abs(least).argmax()]))
     size = scene.render.resolution_x, scene.render.resolution_y
     floor = stage.build(scene.collection, ground, LOOKS[look])
     floor.is_shadow_catcher = scene.render.film_transparent = cut_out

@@ -19,7 +19,7 @@ from .looks import Look
 
 
 @dataclass(frozen=True, eq=False)
-class Stage:
+class Ground:
     """Where things stand: an orthonormal frame whose third axis is up, a middle, and a size to measure by."""
 
     axes: FloatArray  # rows: to the right of the picture, away from it, and up
@@ -29,7 +29,7 @@ class Stage:
     margin: float  # how much more than the tube the camera sees
 
     @classmethod
-    def around(cls, shown: Sequence[Frame | FloatArray], up: FloatArray | None) -> "Stage":
+    def around(cls, shown: Sequence[Frame | FloatArray], up: FloatArray | None) -> "Ground":
         """Take in everything shown, arrays of shape (n, 3).
 
         It is to be seen well, if ``up`` is a direction, (3,), or else as it lies, down the third axis.
@@ -69,7 +69,7 @@ def facing(shapes: Sequence[Frame | FloatArray], up: FloatArray) -> tuple[FloatA
     return np.array([rights[best], np.cross(up, rights[best]), up]), float(heights[best])
 
 
-def build(collection: bpy.types.Collection, stage: Stage, look: Look) -> bpy.types.Object:
+def build(collection: bpy.types.Collection, stage: Ground, look: Look) -> bpy.types.Object:
     """Add lights and a floor to a collection; return the floor, which is at the height of the middle."""
     lights = bundled("collections", look.label)
     frame = np.eye(4)
@@ -107,7 +107,7 @@ def add(collection: bpy.types.Collection, name: str, data: bpy.types.ID) -> bpy.
 def follow(
     collection: bpy.types.Collection,
     size: tuple[float, float],
-    stage: Stage,
+    stage: Ground,
     floor: bpy.types.Object,
     points: "Sequence[Frame | FloatArray]",
     radii: FloatArray,

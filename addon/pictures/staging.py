@@ -45,7 +45,7 @@ def set_up(
     a single point; nothing has changed then.  ``played``: the scene that shows how objects move, if it is another.
     """
     frames, points, radii = world_motion(played or scene, objects)
-    ground = stage.Stage.around(points, np.array([0.0, 0.0, 1.0]))
+    ground = stage.Ground.around(points, np.array([0.0, 0.0, 1.0]))
     if not ground.size:
         raise CurveError("All points of the curves are the same; move them apart")
     strike(scene)

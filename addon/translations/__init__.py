@@ -12,6 +12,7 @@ import json
 import logging
 import re
 from collections.abc import Callable, Iterable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -28,24 +29,15 @@ Table = dict[tuple[str, str], str]
 _ENTRY = re.compile(r'(?:msgctxt (".*")\n)?msgid (".*"(?:\n".*")*)\nmsgstr (".*"(?:\n".*")*)')
 
 
-def iface_(template: str, **values: Any) -> str:
-    """Translate text of the interface; ``template`` may be a phrase that is already filled in."""
-    return _said(pgettext_iface, template, values)
-
-
-def tip_(template: str, **values: Any) -> str:
-    """Translate text of a tooltip."""
-    return _said(pgettext_tip, template, values)
-
-
-def rpt_(template: str, **values: Any) -> str:
-    """Translate a report."""
-    return _said(pgettext_rpt, template, values)
-
-
-def _said(gettext: Callable[[str, str], str], template: str, values: dict[str, Any]) -> str:
+def _said(gettext: Callable[[str, str], str], template: str, **values: Any) -> str:
+    """Translate a template, and fill it in, or a phrase that is filled in already."""
     phrase = template if isinstance(template, Message) else Message(template, **values)
     return phrase.said(lambda text: gettext(text, CONTEXT))
+
+
+iface_ = partial(_said, pgettext_iface)  # text of the interface
+tip_ = partial(_said, pgettext_tip)  # of tooltips
+rpt_ = partial(_said, pgettext_rpt)  # of reports
 
 
 def mark(classes: Iterable[type]) -> None:

@@ -226,7 +226,7 @@ def test_workbench_has_its_light_from_where_the_key_light_is(scene):
     assert staging.key_direction(scene) is None
     staging.set_up(scene, [obj])
     bpy.context.view_layer.update()
-    ground = stage.Stage.around(world_motion(scene, [obj])[1], np.array([0.0, 0.0, 1.0]))
+    ground = stage.Ground.around(world_motion(scene, [obj])[1], np.array([0.0, 0.0, 1.0]))
     wanted = np.array([-1.6, 0.4, 2.6]) @ ground.axes  # as assets.blend has it
     assert np.dot(staging.key_direction(scene), wanted) > 0.98 * np.linalg.norm(wanted)
     assert surroundings.warning(bpy.context, [obj]) is None, "the stage is no neighbour to be warned of"
