@@ -7,6 +7,7 @@ examples:
   mobius-flow batch 3_1..7_7 -o results --starts 3
   mobius-flow batch curves/ "more/*.obj" trefoil "T(3,5)" -o results --time-limit 600
   mobius-flow batch 3_1..10_165 -o /shared/results --scheduler tcp://head:8786 --extrapolate
+  mobius-flow batch 3_1..10_165 L2a1..L9n28 -o tight --tighten --starts 10
 
 Start 1 is the input. Start k above 1 is the same knot, scrambled with seed S + k by random moves that are each checked
 to be an isotopy; knots of the table have starts of several kinds. A run that is refused, killed or too slow gets a row
@@ -85,6 +86,8 @@ def add_batch(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("inputs", metavar="INPUT", nargs="+", help=text)
     parser.add_argument("-o", "--output", required=True, metavar="DIR", help="directory of the results")
     parser.add_argument("--starts", type=int, default=1, metavar="K", help="runs per input (default: 1)")
+    text = "pull knots tight instead, each in one run whose K starts compete"
+    parser.add_argument("--tighten", action="store_true", help=text)
     text = "also tell the energy of the smooth curve that finer meshes lead to"
     parser.add_argument("--extrapolate", action="store_true", help=text)
     text = "address of a running Dask scheduler (default: use all cores of this machine)"

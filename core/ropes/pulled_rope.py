@@ -16,6 +16,7 @@ from ..collision.motion import walk
 from ..curve import Curve
 from ..curve.refine import onto_chords, subdivide
 from ..descent.task import check_refined
+from ..driver import Relaxation
 from ..driver.moves.hops import Field, random_flow
 from ..driver.moves.hops import radius as radius_of_gyration
 from ..io.trajectory import Iterate
@@ -78,6 +79,12 @@ class PulledRope:
         self.last = replace(self.last, index=self.last.index + 1, curve=curve, path=(), step_size=0.0)
         yield self.last
 
+    def spread(self, flow: Relaxation) -> Iterator[Iterate]:
+        """The rope along a flow that spreads it out, unless it is tight, or has ends, over which strands could slip."""
+        if not self.is_tight and self.curve.mesh.all_closed:
+            for iterate in flow:
+                yield from self.follow(iterate.path, iterate.gradient_norm, iterate.step_size)
+
     def thinned(self, count: int) -> Iterator[Iterate]:
         """As few vertices, as far as the way of the others onto the chords of their neighbours is proved."""
         while len(self.curve) > count:
@@ -137,15 +144,6 @@ class PulledRope:
                 yield from self.follow([there])
                 return
         self.last = before
-
-    def refined(self, vertices: int) -> Iterator[Iterate]:
-        """The rope pulled tight on more and more vertices."""
-        while len(self.curve) < vertices:
-            before = len(self.curve)
-            yield from self.doubled()
-            if len(self.curve) == before:
-                return
-            yield from self.pulled(vertices)
 
     def pulled(self, vertices: int) -> Iterator[Iterate]:
         """The steps of an interior point, on half as many vertices as the last one, to the end on so many."""

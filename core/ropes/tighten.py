@@ -5,8 +5,9 @@ Few vertices find the shape, more of them the length: the error of a polygon fal
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -27,7 +28,7 @@ from .pulled_rope import GAP, PulledRope
 
 COARSE = 100  # vertices that find the shape, up to twice as many
 MOST = 20_000  # of vertices, starts and seeds
-FINAL = 3  # starts that go on to the end
+FINAL = 3  # starts that are compared on twice as many vertices
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,8 +83,9 @@ def tighten(
     """Pull a knot or link tight: as short as a rope of its radius can be, nine tenths of the curve's thickness.
 
     In the end there are ``vertices`` or up to twice as many.  Of several ``starts`` all but the first are stirred at
-    random; the three that are shortest on few vertices go on, and the best of them is kept.  ``energy`` of iterates is
-    length over radius, ``gradient_norm`` the residual.  The result's outcome is a `Tightened`, unless it was cut short.
+    random; the three that are shortest on few vertices are compared on twice as many, and the best of them goes on.
+    ``energy`` of iterates is length over radius, ``gradient_norm`` the residual.  The result's outcome is a
+    `Tightened`, unless it was cut short.
 
     Open ropes are pulled by their ends, which go straight ahead as rope comes out of the knot.  The start must have
     long ends: nothing keeps strands from slipping over them.
@@ -96,8 +98,11 @@ def tighten(
 
 
 @BLAS.bounded()
-def tightening(task: Task, options: TightenOptions) -> Relaxation:
-    """Yield the curve and all steps on its way; return how it ended, a `Tightened`.  Raises as `tighten` does."""
+def tightening(task: Task, options: TightenOptions, others: Sequence[Curve] = ()) -> Relaxation:
+    """Yield the curve and all steps on its way; return how it ended, a `Tightened`.  Raises as `tighten` does.
+
+    ``others`` are closed curves of the same type, where the way may begin as well; what is no rope is left out.
+    """
     began = time.perf_counter()
     if task.pins or task.obstacles:
         raise OptionError("a knot is pulled tight in free space; leave pins and obstacles out")
@@ -106,47 +111,59 @@ def tightening(task: Task, options: TightenOptions) -> Relaxation:
     # open ropes stay as long as they are, so that edges do not become shorter
     few = COARSE if task.curve.mesh.all_closed else 2 * COARSE
     coarse = options.vertices >> max(0, int(math.log2(options.vertices / few)))
-    start = task.refined(max(len(task.curve), coarse))
-    thick = rope_radius(start, RelaxOptions(radius="keep"))
-    if thick is None:
-        raise CurveError("the curve is no rope: a corner is too sharp, or strands are too near; smooth or relax it")
-    unit, away = float(thick.min()), float(np.abs(start.curve.vertices.mean(axis=0)).max())
+    starts = list[tuple[Task, float]]()
+    for given in (task, *map(Task.of, others)):
+        start = given.refined(max(len(given.curve), coarse))
+        thick = rope_radius(start, RelaxOptions(radius="keep"))
+        if thick is not None:
+            starts.append((start, float(thick.min())))
+        elif given is task:
+            raise CurveError("the curve is no rope: a corner is too sharp, or strands are too near; smooth or relax it")
+    start, unit = starts[0]
+    away = float(np.abs(start.curve.vertices.mean(axis=0)).max())
     if away > 1e3 * unit:  # of such coordinates too few digits are left for strands that touch
         raise CurveError(
             f"the curve is {away:.3g} from the origin, too far for ropes of radius {unit:.3g}; move it there"
         )
     if not start.curve.mesh.all_closed:  # which are not scaled until they fit
-        unit = min(unit, 0.9 * thickness(start.curve))
-    work = BLAS.bounding(_tightened(start, unit, coarse, options))
+        starts[0] = start, min(unit, 0.9 * thickness(start.curve))
+    work = BLAS.bounding(_tightened(starts, coarse, options))
     if options.time_limit is None:
         return work
     return within(TimeLimit(options.time_limit, used=time.perf_counter() - began), work)
 
 
-def _tightened(start: Task, unit: float, coarse: int, wanted: TightenOptions) -> Relaxation:
-    rng, size = np.random.default_rng(wanted.seed), len(start.curve)
+def _tightened(starts: Sequence[tuple[Task, float]], coarse: int, wanted: TightenOptions) -> Relaxation:
+    rng, count = np.random.default_rng(wanted.seed), max(wanted.starts, len(starts))
     loosely = RelaxOptions(mesh="fixed", untangle="never", tolerance=1e-2, max_iterations=500)
-    ends = tuple(start.curve.mesh.ends.ravel().tolist())
-    flow = relax(replace(start, pins=ends), replace(loosely, radius=unit, vertices=size))
-    rope = PulledRope(next(flow), unit)
-    yield rope.last
-    if not rope.is_tight and start.curve.mesh.all_closed:  # strands could slip over ends
-        for iterate in flow:
-            yield from rope.follow(iterate.path, iterate.gradient_norm, iterate.step_size)
-    yield from rope.thinned(coarse)
-    if wanted.starts == 1:
-        yield from rope.pulled(wanted.vertices)
-        yield from rope.refined(wanted.vertices)
-    else:
-        trials = list[tuple[PulledRope, list[Iterate]]]()
-        for k in range(wanted.starts):
-            trial = PulledRope(rope.last, unit)
-            trials.append((trial, [*(trial.stirred(rng) if k else ()), *trial.pulled(wanted.vertices)]))
-        trials = sorted(trials, key=lambda each: each[0].promise)[:FINAL]
-        for trial, way in trials:
-            way += trial.refined(wanted.vertices)
-        rope, way = min(trials, key=lambda each: each[0].promise)
+    trials = list[tuple[PulledRope, list[Iterate]]]()
+    for k in range(count):
+        start, unit = starts[k % len(starts)]
+        ends = tuple(start.curve.mesh.ends.ravel().tolist())
+        flow = relax(replace(start, pins=ends), replace(loosely, radius=unit, vertices=len(start.curve)))
+        rope = PulledRope(next(flow), unit)
+        if k == 0 and len(starts) == 1:
+            yield rope.last
+        stirred = rope.stirred(rng) if k >= len(starts) else ()
+        steps = chain(rope.spread(flow), rope.thinned(coarse), stirred, rope.pulled(wanted.vertices))
+        if count == 1:
+            yield from steps
+        else:
+            trials.append((rope, [*([] if len(starts) == 1 else [rope.last]), *steps]))
+
+    def rank(trial: tuple[PulledRope, list[Iterate]]) -> tuple[int, float]:
+        """Those of about as many vertices are compared, the others are last."""
+        return round(len(trial[0].curve) / coarse), trial[0].promise
+
+    if trials:
+        trials = sorted(trials, key=rank)[:FINAL]
+        for rope, way in trials if coarse < wanted.vertices else ():
+            way += [*rope.doubled(), *rope.pulled(wanted.vertices)]
+        rope, way = min(trials, key=rank)
         yield from way
+    for _ in range(math.ceil(math.log2(max(1.0, wanted.vertices / len(rope.curve))))):
+        yield from rope.doubled()
+        yield from rope.pulled(wanted.vertices)
     point = rope.point
     assert point is not None, "it has been pulled"
     contacts, strands = point.contacts, slice(point.contacts.strands)

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from importlib.util import find_spec
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -25,17 +26,19 @@ from ...core.knots import KNOTS, knot_type
 from ...core.knots.names import table_name
 from ...core.proof import stages, verify
 from ..batch.folder import results
-from ..batch.job import CURVE, TRAJECTORY, folder_name
+from ..batch.job import CURVE, TIGHT, TRAJECTORY, folder_name
 from ..batch.table import Row
 from ..smooth.least import lower_bound
 from ..smooth.minima import balanced, distinct
 from ..smooth.rest import RestingCurve, index_of, is_at_rest
+from ..smooth.ropelength import ropelength_bound
 from .folder import Folder
 
 SMOOTH = "without a smooth shape (run batch with --extrapolate)"
 CHECKED = "that verify did not accept"
 PROVED = "whose type is not proved to be one of the table"
 APART = "whose trajectory does not end at their curve"
+ALONE = "pulled tight, of a type without a curve at rest"
 UNLIKE = "whose curve, or smooth shape, is not of the type reported"
 MOVING = "whose smooth shape is not at rest with the energy reported"
 Values = dict[str, Any]
@@ -43,12 +46,20 @@ Values = dict[str, Any]
 
 @dataclass(frozen=True, eq=False)
 class AtlasRun:
-    """A run that ended as a knot or link of the table, and the smooth curve of the table's chirality that it led to."""
+    """A run that ended as a knot or link of the table, and the smooth curve of the table's chirality that it led to.
+
+    A knot that was pulled tight led to none.
+    """
 
     row: Row
     folder: Path
-    curve: FourierCurve
+    smooth: FourierCurve | None
     mark: str  # the hash of its results
+
+    @property
+    def curve(self) -> FourierCurve:
+        assert self.smooth is not None, "it came to rest"
+        return self.smooth
 
     @property
     def rest(self) -> RestingCurve:
@@ -67,10 +78,10 @@ class AtlasRun:
             return APART
         if not np.array_equal(end.vertices, last):
             return APART
-        for curve in (end, self.curve.polygon(self.curve.sizes)):
+        for curve in (end, *(each.polygon(each.sizes) for each in (self.smooth,) if each)):
             if name not in {each.removeprefix("m") for each in knot_type(curve).names}:
                 return UNLIKE
-        return "" if is_at_rest(self.rest) else MOVING
+        return "" if self.smooth is None or is_at_rest(self.rest) else MOVING
 
 
 @dataclass
@@ -87,7 +98,7 @@ class Runs:
         for directory in {directory.resolve(): directory for directory in directories}.values():
             for folder, report, row in results(directory):
                 try:
-                    curve = FourierCurve.of_lists(report["smooth"])
+                    curve = None if row.kind == TIGHT else FourierCurve.of_lists(report["smooth"])
                 except (KeyError, TypeError, ValueError):
                     found.left_out[SMOOTH].append(folder.name)
                     continue
@@ -97,7 +108,7 @@ class Runs:
                 elif not name:
                     found.left_out[PROVED].append(folder.name)
                 else:
-                    curve = curve.mirrored if mirrored else curve
+                    curve = curve.mirrored if curve and mirrored else curve
                     found.by_type[name].append(AtlasRun(row, folder, curve, json.dumps(report["files"])))
         if not found.by_type:
             raise MobiusFlowError(f"there is nothing for an atlas: {found.missing}")
@@ -138,14 +149,28 @@ def entry(folder: Folder, name: str, runs: Sequence[AtlasRun]) -> tuple[Values |
         by_doubt: dict[str, list[AtlasRun]] = defaultdict(list)
         for run in runs:
             by_doubt[run.doubt(name)].append(run)
-        good = by_doubt.pop("", [])
+        good, tight = [list[AtlasRun]() for _ in range(2)]
+        for run in by_doubt.pop("", []):
+            (good if run.smooth else tight).append(run)
+        if tight and not good:
+            by_doubt[ALONE] += tight
         left_out = {reason: [run.folder.name for run in each] for reason, each in by_doubt.items()}
         groups = enumerate(distinct([run.rest for run in good]), start=1)
         minima = [{"number": number} | _described(name, [good[k] for k in group]) for number, group in groups]
-        made = {"type": name, "lower_bound": lower_bound(name), "runs": len(good), "minima": minima}
+        made = {"type": name, "lower_bound": lower_bound(name), "runs": len(good), **_shortest(tight), "minima": minima}
         known = {"made_from": made_from, "entry": made if good else None, "left_out": left_out}
     folder.put(file, json.dumps(known) + "\n")
     return known["entry"], known["left_out"]
+
+
+def _shortest(runs: Sequence[AtlasRun]) -> Values:
+    """The ropelength of the shortest rope, and what is proved to be no less than the type's."""
+    ropes = [(curve.length / thickness(curve), curve) for curve in (read_curve(run.folder / CURVE) for run in runs)]
+    least, rope = min(ropes, key=itemgetter(0), default=(None, None))
+    bound = None
+    with suppress(CurveError):
+        bound = ropelength_bound(rope) if rope else None
+    return {"tight_ropelength": least, "ropelength_bound": bound}
 
 
 def curve_of(minimum: Mapping[str, Any]) -> FourierCurve:

@@ -127,12 +127,15 @@ def campaign(options: argparse.Namespace) -> int:
     most_starts, most_rows = 10**9, 100  # more than there is time for, and than anyone reads
     if not 1 <= options.starts <= most_starts:
         raise OptionError(f"starts is {options.starts}; it must be from 1 to {most_starts}")
+    if options.tighten and options.extrapolate:
+        raise OptionError("knots that are pulled tight have no energy to --extrapolate; leave one of both out")
     wanted = relax_options.from_arguments(options)
     require(options.scheduler)
     directory = Path(options.output).resolve()
     pins = [pin for text in options.pins for pin in relax_options.pinned(text)]
     still = {"avoid": options.avoid, "pins": pins, "pin_tangents": options.pin_tangents}
-    plan = jobs(inputs(options.inputs), options.starts, directory, wanted, still, options.extrapolate)
+    words = inputs(options.inputs)
+    plan = jobs(words, options.starts, directory, wanted, still, options.extrapolate, options.tighten)
     rows = _found(plan)
     try:
         directory.mkdir(parents=True, exist_ok=True)

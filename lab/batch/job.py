@@ -22,6 +22,7 @@ from ...core.knots.names import table_range
 CURVE, REPORT, TRAJECTORY = "curve.txt", "report.json", "trajectory.npz"
 STILL = ("avoid", "pins", "pin_tangents")  # options of a task, beside those of its relaxation
 CSV, PARQUET = "results.csv", "results.parquet"
+TIGHT = "tight"  # the kind of runs that pull a knot tight
 _FORMULA = tuple("=+-@\t\r\n＝＋－＠")  # characters that begin a formula in a spreadsheet
 
 
@@ -81,6 +82,7 @@ class Job:
     folder: str  # absolute path of the results
     options: Mapping[str, object]  # of the relaxation: obstacles as absolute paths with their hashes
     extrapolate: bool  # whether the smooth curve's energy is wanted
+    tight: int = 0  # starts of a knot that is pulled tight instead; 0 for relaxations
     version: str = __version__  # of the program that made the job
 
     def __hash__(self) -> int:  # options are in a dictionary, which has none
@@ -123,6 +125,7 @@ class Plan:
     directory: Path
     options: Mapping[str, Any]
     extrapolate: bool
+    tight: int
 
     def __len__(self) -> int:
         return self.starts * len(self.inputs)
@@ -139,7 +142,7 @@ class Plan:
     def _job(self, name: str, start: int) -> Job:
         seed = None if start == 1 else self.options["seed"] + start
         folder = str(self.directory / folder_name(name, start))
-        return Job(name, start, seed, *self.inputs[name], folder, self.options, self.extrapolate)
+        return Job(name, start, seed, *self.inputs[name], folder, self.options, self.extrapolate, self.tight)
 
 
 def _started(folder: str, names: Collection[str], starts: int) -> tuple[str, int] | None:
@@ -159,11 +162,13 @@ def jobs(
     options: RelaxOptions,
     still: Mapping[str, Any],
     extrapolate: bool,
+    tighten: bool = False,
 ) -> Plan:
     """The runs of a batch; a MobiusFlowError if two would share a folder.
 
-    ``still`` are the obstacles' files, pins and pin_tangents of all of them.
+    ``still`` are the obstacles' files, pins and pin_tangents of all of them.  Tightening has one run with all starts.
     """
+    starts, tight = (1, starts) if tighten else (starts, 0)
     obstacles = {str(Path(path).resolve()): _hash(Path(path)) for path in still["avoid"]}
     files = list(inputs)
     count = Counter(name.casefold() for name, _ in files)  # some file systems ignore case
@@ -172,7 +177,7 @@ def jobs(
         if count[name.casefold()] > 1 or start > 1 or name.casefold() in (CSV, PARQUET):  # where the tables are
             raise MobiusFlowError(f"{file or name}: another input has its results in {name}; rename it")
     named = {name: (None, None) if file is None else (str(file), _hash(file)) for name, file in files}
-    return Plan(named, starts, directory, {**vars(options.resolved), **still, "avoid": obstacles}, extrapolate)
+    return Plan(named, starts, directory, {**vars(options.resolved), **still, "avoid": obstacles}, extrapolate, tight)
 
 
 def _hash(path: Path) -> str | None:

@@ -1,7 +1,7 @@
 """One run of a batch, from its start to its folder of results."""
 
 import time
-from contextlib import nullcontext
+from contextlib import nullcontext, suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,20 +11,32 @@ from ...cli import curves
 from ...cli.main import explained
 from ...cli.options import provenance
 from ...cli.terminal import one_line
-from ...core import CurveError, MobiusFlowError, RelaxOptions, Result, Task, Trajectory, minimize, read_obstacle
+from ...core import (
+    Curve,
+    CurveError,
+    MobiusFlowError,
+    RelaxOptions,
+    Result,
+    Task,
+    Trajectory,
+    minimize,
+    read_obstacle,
+)
 from ...core.base.errors import OutputError
 from ...core.collision import check_embedded, thickness
 from ...core.curve.measures import writhe_and_crossings
 from ...core.descent.task import check_units
+from ...core.driver import finish
 from ...core.driver.info import PAIRS_UP_TO
 from ...core.io import FORMATS, CurveFile, load_curve
 from ...core.knots import knot_type
 from ...core.proof import verify
+from ...core.ropes import TightenOptions, tightening
 from ..extrapolation import Extrapolation, extrapolated
 from ..smooth.rest import RestingCurve, at_rest
 from ..starts import scrambled, start
 from .folder import finished, new_folder, write_report, write_text
-from .job import CURVE, STILL, TRAJECTORY, Job
+from .job import CURVE, STILL, TIGHT, TRAJECTORY, Job
 from .table import Row, given
 
 
@@ -53,18 +65,18 @@ def _relaxed(job: Job) -> Row:
     with nullcontext() if file is None else curves.refusals(file):
         kind, task = _task(job, file)
         trajectory = Trajectory(origin, task.obstacles)
-        result = minimize(task, options, trajectory.add)
+        result = _tightened(job, task, options, trajectory) if job.tight else minimize(task, options, trajectory.add)
     smooth = _smooth(job, options, result)
     curve, after = result.curve, knot_type(result.curve)
     few = len(curve) <= PAIRS_UP_TO
     writhe, crossings = writhe_and_crossings(curve) if few and curve.dimension == 3 else (None, None)
     found = {
-        "kind": kind,
+        "kind": TIGHT if job.tight else kind,
         "type_before": str(knot_type(task.curve)),
         "type_after": str(after),
         "proved": after.proved,
         "vertices": len(curve),
-        "energy": result.final_energy,
+        "energy": None if job.tight else result.final_energy,
         "gradient_norm": result.last.gradient_norm,
         "index": result.outcome.negative_eigenvalues,
         "ropelength": curve.length / thickness(curve) if few else None,
@@ -79,8 +91,9 @@ def _relaxed(job: Job) -> Row:
         "extrapolated_energy_error": smooth and smooth.error,
     }
     name = one_line(job.name) + ("" if job.seed is None else f", {kind} with seed {job.seed}")
+    measure = f"ropelength {found['ropelength']:.9g}" if job.tight else f"Möbius energy {found['energy']:.9g}"
     head = (
-        f"# {name}: {found['type_after']}, Möbius energy {found['energy']:.9g}, {found['status']}\n"
+        f"# {name}: {found['type_after']}, {measure}, {found['status']}\n"
         f"# mobius-flow {job.version} batch, options {given(job)}\n"
     )
     try:
@@ -114,6 +127,21 @@ def _task(job: Job, file: CurveFile | None) -> tuple[str, Task]:
         kind, curve = scrambled(curve, job.seed)
     obstacles = tuple(map(read_obstacle, still["avoid"]))
     return kind, Task(curve=curve, obstacles=obstacles, pins=pins, pin_tangents=still["pin_tangents"])
+
+
+def _tightened(job: Job, task: Task, options: RelaxOptions, trajectory: Trajectory) -> Result:
+    """The shortest rope from all starts: those of a name, or stirred ones."""
+    others = list[Curve]()
+    for number in range(2, job.tight + 1) if job.file is None else ():
+        with suppress(CurveError):
+            others.append(start(job.name, number, options.seed + number)[1])
+    wanted = TightenOptions(
+        vertices=400 if options.vertices is None else options.vertices,
+        starts=job.tight,
+        seed=options.seed,
+        time_limit=options.time_limit,
+    )
+    return finish(tightening(task, wanted, others), task, trajectory.add)
 
 
 def _smooth(job: Job, options: RelaxOptions, result: Result) -> RestingCurve | Extrapolation | None:

@@ -20,11 +20,13 @@ import yaml
 from batch_results import write_run
 from mobius_flow.addon.pictures import export
 from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, minimize, read_curve, write_curve
+from mobius_flow.core.collision import thickness
 from mobius_flow.core.curve.symmetry import symmetries
 from mobius_flow.core.knots import knot, knot_type
 from mobius_flow.lab.atlas import data, entries, make
 from mobius_flow.lab.batch.table import Row
 from mobius_flow.lab.smooth.rest import at_rest, energy_of
+from mobius_flow.lab.smooth.ropelength import ropelength_bound
 
 HIGHER = 2.0  # energy above the least
 
@@ -48,10 +50,12 @@ def results(tmp_path, trefoil, monkeypatch):
         (3, trefoil.curve, {"type_after": "3_1", "kind": "drawn", "extrapolated_energy": trefoil.energy + HIGHER}),
         (4, trefoil.curve, {"type_after": "3_1", "proved": False}),
         (5, None, {"type_after": "3_1"}),
+        (6, None, {"type_after": "m3_1", "kind": "tight"}),
     ):
         known = {"extrapolated_energy": trefoil.energy, "extrapolated_energy_error": trefoil.error, "proved": True}
         polygon = (curve or trefoil.curve).polygon([100])
         write_run(place, "3_1", start, polygon, curve, **known | {"index": 0} | columns)
+    write_run(place, "3_1", 7, trefoil.curve.polygon([40]), type_after="3_1", proved=True, kind="tight")
     return place
 
 
@@ -87,6 +91,9 @@ def test_minima_are_counted_measured_and_described(atlas, tmp_path, trefoil):
     assert float(least["writhe"]) > 3.3  # right-handed
     assert float(least["lower_bound"]) == pytest.approx(6.0 * np.pi + 4.0)
     assert 0.0 <= float(least["upper_bound"]) - trefoil.energy < 1e-5
+    rope = trefoil.curve.polygon([100])
+    assert float(least["tight_ropelength"]) == pytest.approx(rope.length / thickness(rope))
+    assert float(least["ropelength_bound"]) == ropelength_bound(rope)
     assert least["command"] == "mobius-flow batch 3_1 --starts 1 --extrapolate -o results"
     (short,) = table(place / "data/atlas.csv")
     assert short["energy"] == data.rounded(trefoil.energy, trefoil.error)

@@ -104,6 +104,15 @@ def test_extrapolated_energy_and_index(batch, tmp_path):
     assert FourierCurve.of_lists(report["smooth"]).modes == [36]
 
 
+def test_links_are_pulled_tight_from_starts_that_compete(batch, tmp_path, capsys):
+    (row,) = batch("L2a1", "--tighten", "--starts", 2, "--vertices", 100)
+    assert (row["kind"], row["verified"], row["energy"], row["status"]) == ("tight", "True", "", "converged")
+    assert 8.0 * np.pi < float(row["ropelength"]) < 8.0 * np.pi * 1.002
+    assert "ropelength 25.1" in (tmp_path / "out/L2a1/curve.txt").read_text().splitlines()[0]
+    batch("L2a1", "--tighten", "--extrapolate", status=2)
+    assert "leave one of both out" in capsys.readouterr().err
+
+
 def test_starts_of_knots_of_the_table_are_of_several_kinds(batch, tmp_path):
     rows = batch("m3_1", "T(2,3)", "--starts", 6, "--max-iterations", 0)
     kinds = {name: [kind for each, kind in pick(rows, "name", "kind") if each == name] for name in ("m3_1", "T(2,3)")}
