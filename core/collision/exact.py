@@ -165,14 +165,11 @@ def _gaps(motion: Motion) -> Iterator[Iterator[Polynomial]]:
     D, e, f = motion
     E, F = _plus(D, e), _minus(D, f)  # x₁ − y₀ and x₀ − y₁
     G = _minus(E, f)
-    ff, ee = _dot(f, f), _dot(e, e)
-    for corner in (D, E):  # orthogonal to f: both ends of y are at the same height
-        fc = _dot(f, corner)
-        # ⟨corner·ff − f·fc, other⟩
-        yield (_difference(_times(ff, _dot(corner, other)), _times(fc, _dot(f, other))) for other in (D, E))
-    for corner in (D, F):
-        ec = _dot(e, corner)
-        yield (_difference(_times(ee, _dot(corner, other)), _times(ec, _dot(e, other))) for other in (D, F))
+    for line, ends in ((f, (D, E)), (e, (D, F))):  # orthogonal to an edge, both of whose ends are at the same height
+        square = _dot(line, line)
+        for corner in ends:  # ⟨corner |line|² − line ⟨line, corner⟩, other⟩
+            along = _dot(line, corner)
+            yield (_difference(_times(square, _dot(corner, o)), _times(along, _dot(line, o))) for o in ends)
     for corner in (D, E, F, G):
         yield (_dot(corner, other) for other in (D, E, F, G))
 
@@ -186,18 +183,16 @@ def _crosses(motion: Motion) -> bool:
         (p,), (q,), (r,), (s,) = sides
         return p * q < 0 and r * s < 0
     volume = _volume(motion)
-    return volume[0] * volume[-1] < 0 and all(_well_inside(_frame(motion, k)) for k in (0, 1))
-
-
-def _well_inside(motion: Motion) -> bool:
-    """Whether the points where two lines, standing still, come nearest are plainly inside both edges."""
-    D, e, f = motion
-    normal = _normal(e, f)
-    (whole,) = _dot(normal, normal)
-    for line in (f, e):
-        (part,) = _dot(_normal(line, D), normal)  # s |e × f|² and r |e × f|²
-        if min(part, whole - part) * 10**6 <= whole:
-            return False
+    if volume[0] * volume[-1] >= 0:
+        return False
+    for time in (0, 1):  # where the lines, standing still, come nearest must be plainly inside both edges
+        D, e, f = _frame(motion, time)
+        normal = _normal(e, f)
+        (whole,) = _dot(normal, normal)
+        for line in (f, e):
+            (part,) = _dot(_normal(line, D), normal)  # s |e × f|² and r |e × f|²
+            if min(part, whole - part) * 10**6 <= whole:
+                return False
     return True
 
 

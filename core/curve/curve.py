@@ -129,10 +129,14 @@ class Curve:
         return float(self.edge_lengths.sum())
 
     @property
+    def moments(self) -> FloatArray:
+        """ℓ_I m_I as columns, so that sums over edges are pairwise ones; shape (m, edges)."""
+        return np.ascontiguousarray((self.edge_lengths[:, None] * self.midpoints).T)
+
+    @property
     def barycenter(self) -> FloatArray:
         """Σ ℓ_I m_I / Σ ℓ_I; shape (m,)."""
-        moments = np.ascontiguousarray((self.edge_lengths[:, None] * self.midpoints).T)  # so that sums are pairwise
-        return np.asarray(np.sum(moments, axis=1) / self.length)
+        return np.asarray(np.sum(self.moments, axis=1) / self.length)
 
     @cached_property
     def arc_starts(self) -> FloatArray:

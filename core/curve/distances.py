@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..base.types import BoolArray, FloatArray, IntArray
+from ..base.types import FloatArray, IntArray
 from .curve import Curve
 
 STRAND_RATIO = 2.0  # points are on different strands if their distance along the curve is this many times their gap
@@ -103,17 +103,43 @@ def nearest_strands(curve: Curve, ratio: float, furthest: float = np.inf) -> flo
 
 
 def strand_gaps(curve: Curve, radius: float) -> FloatArray:
-    """Distance from each vertex to the nearest one on another strand, inf beyond ``radius``; shape (n,)."""
+    """Distance from each vertex to the nearest one on another strand, inf beyond ``radius``; shape (n,).
+
+    Sides of a corner are no strands: however sharp, it looks the same at every scale, so that shorter edges do not
+    bring neighbours nearer than its sides.
+    """
     tree = cKDTree(curve.vertices)
     pairs = tree.query_pairs(radius, output_type="ndarray")
     i, j = np.concatenate([pairs, pairs[:, ::-1]]).T  # seen from either end
-    mesh = curve.mesh
+    mesh, positions = curve.mesh, vertex_positions(curve)
     neighbours = j, mesh.heads[mesh.outgoing[j]], mesh.tails[mesh.incoming[j]]
     distance, after, before = (np.linalg.norm(curve.vertices[i] - curve.vertices[k], axis=1) for k in neighbours)
     passing = (distance <= after) & (distance <= before)
     passing &= arc_distance_of_vertices(curve, i, j) > STRAND_RATIO * distance
     i, j, distance = i[passing], j[passing], distance[passing]
-    strands = ~_sides_of_corners(curve, i, j)
+    # arc lengths to the points nearest to vertices i on the edges that meet at vertices j
+    found = []
+    for edge in (mesh.outgoing[j], mesh.incoming[j]):
+        e, ell = curve.edge_vectors[edge], curve.edge_lengths[edge]
+        base = positions[j] - np.where(mesh.tails[edge] == j, 0.0, ell)
+        chord = curve.vertices[i] - curve.vertices[mesh.tails[edge]]
+        t = (np.einsum("km,km->k", chord, e) / np.maximum(ell**2, TINY)).clip(0.0, 1.0)
+        found.append((np.linalg.norm(chord - t[:, None] * e, axis=1), base + t * ell))
+    (after, ahead), (before, behind) = found
+    start, end = positions[i], np.asarray(np.where(after < before, ahead, behind))
+    component = mesh.component[i]
+    closed, length = np.asarray(mesh.closed)[component], curve.component_lengths[component]
+
+    def apart(arc: FloatArray, fraction: float) -> FloatArray:
+        """The distance between the ends of the arc's middle part."""
+        ends = [points_along(curve, component, start + 0.5 * (1.0 + s * fraction) * arc) for s in (-1, 1)]
+        return np.asarray(np.linalg.norm(ends[1] - ends[0], axis=1))
+
+    forward = np.where(closed, (end - start) % length, end - start)
+    other_way = np.where(closed, forward - length, forward)
+    # strands that close in on each other: four times nearer to a corner its sides do
+    closing = [apart(arc, 0.25) < 0.6 * apart(arc, 1.0) for arc in (forward, other_way)]
+    strands = (component != mesh.component[j]) | ~(closing[0] | closing[1])
     gaps = np.full(len(curve), np.inf)
     np.minimum.at(gaps, i[strands], distance[strands])
     return gaps
@@ -132,33 +158,3 @@ def near_by_octave(points: FloatArray, sizes: FloatArray, reach: float) -> tuple
         found.append((large[near["i"]], small[near["j"]], near["v"]))
     i, j, distance = (np.concatenate(each) for each in zip(*found, strict=True))
     return i, j, distance
-
-
-def _sides_of_corners(curve: Curve, i: IntArray, j: IntArray) -> BoolArray:
-    """Whether the curve between vertices ``i`` and the strands that pass them at vertices ``j`` is merely a corner.
-
-    A corner, however sharp, looks the same at every scale: shorter edges do not bring neighbours nearer than its sides.
-    """
-    # arc lengths to the points nearest to vertices i on the edges that meet at vertices j
-    mesh, found, position = curve.mesh, [], vertex_positions(curve)[j]
-    for edge in (mesh.outgoing[j], mesh.incoming[j]):
-        e, ell = curve.edge_vectors[edge], curve.edge_lengths[edge]
-        base = position - np.where(mesh.tails[edge] == j, 0.0, ell)
-        chord = curve.vertices[i] - curve.vertices[mesh.tails[edge]]
-        t = (np.einsum("km,km->k", chord, e) / np.maximum(ell**2, TINY)).clip(0.0, 1.0)
-        found.append((np.linalg.norm(chord - t[:, None] * e, axis=1), base + t * ell))
-    (after, ahead), (before, behind) = found
-    start, end = vertex_positions(curve)[i], np.asarray(np.where(after < before, ahead, behind))
-    component = curve.mesh.component[i]
-    closed, length = np.asarray(curve.mesh.closed)[component], curve.component_lengths[component]
-
-    def apart(arc: FloatArray, fraction: float) -> FloatArray:
-        """The distance between the ends of the arc's middle part."""
-        ends = [points_along(curve, component, start + 0.5 * (1.0 + s * fraction) * arc) for s in (-1, 1)]
-        return np.asarray(np.linalg.norm(ends[1] - ends[0], axis=1))
-
-    forward = np.where(closed, (end - start) % length, end - start)
-    other_way = np.where(closed, forward - length, forward)
-    # strands that close in on each other: four times nearer to a corner its sides do
-    closing = [apart(arc, 0.25) < 0.6 * apart(arc, 1.0) for arc in (forward, other_way)]
-    return np.asarray((component == curve.mesh.component[j]) & (closing[0] | closing[1]))

@@ -154,7 +154,7 @@ def knot_list(path: str | os.PathLike[str]) -> dict[str, str]:
 
 
 def _rows(lines: list[str]) -> Iterator[tuple[str, str]]:
-    """Names and codes, either of which may be empty."""
+    """Names and codes as `knot` reads them, either of which may be empty."""
     lines = [line for line in lines if line.strip() and not line.startswith("#")]
     delimiter = max(",\t|;", key=lines[0].count) if lines else ","
     table = csv.reader(lines, delimiter=delimiter, skipinitialspace=True)
@@ -163,11 +163,16 @@ def _rows(lines: list[str]) -> Iterator[tuple[str, str]]:
     if column is None:
         yield from map(_plain, lines)
         return
-    title = next((head.index(name) for name in _NAMES if name in head), None)
+    title, before = next((head.index(name) for name in _NAMES if name in head), None), CODES[head[column]]
     for row in table:
-        if column < len(row):
-            name = row[title].strip() if title is not None and title < len(row) else ""
-            yield name, _code(row[column].strip(), CODES[head[column]]) or _known(name)
+        if column >= len(row):
+            continue
+        name, cell = row[title].strip() if title is not None and title < len(row) else "", row[column].strip()
+        code = before + cell if _CODE.fullmatch(cell) else ""
+        if before == "braid":
+            strands, letters = match.groups() if (match := _BRAID.fullmatch(cell)) else (None, "")
+            code = f"BR[{strands},{{{letters}}}]" if strands else f"braid({letters})" if match else ""
+        yield name, code or _known(name)
 
 
 def _plain(line: str) -> tuple[str, str]:
@@ -184,14 +189,3 @@ def _known(name: str) -> str:
     """The text that `knot` reads for a row with a name alone."""
     match = _NAME.fullmatch(name)
     return match[1] if match else ""
-
-
-def _code(text: str, before: str) -> str:
-    """The text that `knot` reads for a cell; empty for cells that hold no code."""
-    if before != "braid":
-        return before + text if _CODE.fullmatch(text) else ""
-    match = _BRAID.fullmatch(text)
-    if match is None:
-        return ""
-    strands, letters = match.groups()
-    return f"BR[{strands},{{{letters}}}]" if strands else f"braid({letters})"

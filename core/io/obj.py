@@ -7,13 +7,13 @@ is ignored, including faces ``f`` unless an obstacle is read.
 """
 
 import logging
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import NamedTuple, TextIO
 
+from ..base.errors import shown
 from ..curve.curve import Curve
-from .source import Polygon, Source, shown
+from .source import Polygon, Source
 
 _log = logging.getLogger(__name__)
 
@@ -54,15 +54,41 @@ def read(source: Source) -> list[Polygon]:
     if content.faces:
         _log.warning("%s: %d faces (f) ignored; only polylines (l) are curves", source.path, len(content.faces))
     points, lines = content.points, content.lines
-    if content.links:
-        chains = _chains(source, content.links)
-    elif content.faces:
+    chains: list[tuple[list[int], bool]] = []  # vertices joined by edges, and whether the last is joined to the first
+    if content.faces and not content.links:
         raise source.error("there are faces (f) but no polylines (l); export the curve as edges")
-    elif not points:
+    if not points and not content.links:
         raise source.error("no vertex (v) and no polyline (l) found")
-    else:
+    if not content.links:
         _log.warning("%s: no polyline (l); all %d vertices are taken as one closed polygon", source.path, len(points))
-        chains = [(list(range(len(points))), True)]
+        chains.append((list(range(len(points))), True))
+    at: dict[int, list[ObjEdge]] = {}
+    for link in content.links:
+        if link.tail == link.head:
+            raise source.error(f"an edge joins vertex {link.tail + 1} to itself", link.line)
+        for vertex in link[:2]:
+            at.setdefault(vertex, []).append(link)
+            if len(at[vertex]) > 2:
+                reason = f"a third edge meets vertex {vertex + 1}; curves don't branch, and edges are given once"
+                raise source.error(reason, link.line)
+    # A closed chain starts at its smallest index and follows the direction of the edges there, so a file that lists its
+    # polygon in order keeps that order. An open chain starts at the end with the smaller index.
+    done: set[int] = set()
+    for start in sorted(at, key=lambda vertex: (len(at[vertex]), vertex)):
+        if start in done:
+            continue
+        link = min(at[start], key=lambda link: (link.tail != start, link.head + link.tail))
+        chain, vertex = [start], link.head + link.tail - start
+        while vertex != start:  # to its end, or round to the start
+            chain.append(vertex)
+            onward = [other for other in at[vertex] if other is not link]
+            if not onward:
+                break
+            link = onward[0]
+            vertex = link.head + link.tail - vertex
+        done.update(chain)
+        chains.append((chain, len(at[start]) == 2))
+    chains.sort(key=lambda each: min(each[0]))
     return [
         Polygon([points[i] for i in chain], [lines[i] for i in chain].__getitem__, closed, chain)
         for chain, closed in chains
@@ -71,9 +97,14 @@ def read(source: Source) -> list[Polygon]:
 
 def parsed(source: Source) -> Content:
     """Read all statements; raises CurveFileError naming the line."""
-    content = Content()
-    for line, words in _statements(source):
-        keyword, arguments = words[0], words[1:]
+    content, words, line = Content(), list[str](), 1
+    for number, text in enumerate(source.lines, start=1):
+        body = text.partition("#")[0].rstrip()
+        line = line if words else number
+        words += body.removesuffix("\\").split()
+        if not words or (body.endswith("\\") and number < len(source.lines)):  # it goes on in the next line
+            continue
+        (keyword, *arguments), words = words, []
         if keyword == "v":
             if len(arguments) < 3:
                 raise source.error(f"a vertex needs x y z, found {len(arguments)} numbers", line)
@@ -109,57 +140,6 @@ def index_of(source: Source, argument: str, line: int, known: int) -> int:
     if index == 0 or index < -known:
         raise source.error(f"vertex {index} does not exist; OBJ counts from 1, or back from -1", line)
     return index - 1 if index > 0 else known + index
-
-
-def _statements(source: Source) -> Iterator[tuple[int, list[str]]]:
-    """The words of each statement and the number of its first line; a backslash continues a line."""
-    words: list[str] = []
-    first = 1
-    for number, line in enumerate(source.lines, start=1):
-        body = line.partition("#")[0].rstrip()
-        first = first if words else number
-        words += body.removesuffix("\\").split()
-        if not body.endswith("\\"):
-            if words:
-                yield first, words
-            words = []
-    if words:
-        yield first, words
-
-
-def _chains(source: Source, links: Sequence[ObjEdge]) -> list[tuple[list[int], bool]]:
-    """Chains of vertices joined by edges, and whether each is closed.
-
-    Each closed chain starts at its smallest index and follows the direction of the edges there, so a file that lists
-    its polygon in order keeps that order. An open chain starts at the end with the smaller index.
-    """
-    at: dict[int, list[ObjEdge]] = {}
-    for link in links:
-        if link.tail == link.head:
-            raise source.error(f"an edge joins vertex {link.tail + 1} to itself", link.line)
-        for vertex in link[:2]:
-            at.setdefault(vertex, []).append(link)
-            if len(at[vertex]) > 2:
-                reason = f"a third edge meets vertex {vertex + 1}; curves don't branch, and edges are given once"
-                raise source.error(reason, link.line)
-    found = []
-    done: set[int] = set()
-    for start in sorted(at, key=lambda vertex: (len(at[vertex]), vertex)):
-        if start in done:
-            continue
-        # follow the chain to its end or round to the start
-        link = min(at[start], key=lambda link: (link.tail != start, link.head + link.tail))
-        chain, vertex = [start], link.head + link.tail - start
-        while vertex != start:
-            chain.append(vertex)
-            onward = [other for other in at[vertex] if other is not link]
-            if not onward:
-                break
-            link = onward[0]
-            vertex = link.head + link.tail - vertex
-        done.update(chain)
-        found.append((chain, len(at[start]) == 2))
-    return sorted(found, key=lambda each: min(each[0]))
 
 
 def write(curve: Curve, stream: TextIO) -> None:

@@ -8,7 +8,7 @@ the loop of ``_atom_site`` is read, one atom per line.
 
 import logging
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from itertools import pairwise
 from math import dist
 from typing import NamedTuple
@@ -47,8 +47,18 @@ def read(source: Source) -> list[Polygon]:
 
 def read_cif(source: Source) -> list[Polygon]:
     """Read the chains of an mmCIF file; raises CurveFileError naming the line."""
-    rows = list(_sites(source))
-    if rows and (missing := {f"Cartn_{axis}" for axis in "xyz"}.difference(rows[0][1])):
+    names, rows = list[str](), list[tuple[int, dict[str, str]]]()  # of the loop of atoms; rows with their lines
+    for number, line in enumerate(source.lines, start=1):
+        if line.startswith("_atom_site."):
+            names.append(line.split()[0].partition(".")[2])
+        elif names and line.strip():
+            if line.startswith(("#", "_", "loop_", "data_")):
+                break
+            words = [word[1:-1] if word[0] in "'\"" else word for word in _WORD.findall(line)]
+            if len(words) != len(names):
+                raise source.error(f"{len(words)} values where the loop of atoms has {len(names)} columns", number)
+            rows.append((number, dict(zip(names, words, strict=True))))
+    if rows and (missing := {f"Cartn_{axis}" for axis in "xyz"}.difference(names)):
         raise source.error(f"the loop of atoms, _atom_site, has no {', '.join(sorted(missing))}")
     models = list(dict.fromkeys(row.get("pdbx_PDB_model_num", "1") for _, row in rows))
     atoms = []
@@ -61,21 +71,6 @@ def read_cif(source: Source) -> list[Polygon]:
         point = tuple(source.number(row[f"Cartn_{axis}"], number) for axis in "xyz")
         atoms.append(_Atom(chain, residue, number, point))
     return _arcs(source, atoms, len(models))
-
-
-def _sites(source: Source) -> Iterator[tuple[int, dict[str, str]]]:
-    """The rows of the loop of atoms, by the names of its columns, with their lines."""
-    names: list[str] = []
-    for number, line in enumerate(source.lines, start=1):
-        if line.startswith("_atom_site."):
-            names.append(line.split()[0].partition(".")[2])
-        elif names and line.strip():
-            if line.startswith(("#", "_", "loop_", "data_")):
-                return
-            words = [word[1:-1] if word[0] in "'\"" else word for word in _WORD.findall(line)]
-            if len(words) != len(names):
-                raise source.error(f"{len(words)} values where the loop of atoms has {len(names)} columns", number)
-            yield number, dict(zip(names, words, strict=True))
 
 
 def _arcs(source: Source, atoms: Iterable[_Atom], models: int) -> list[Polygon]:

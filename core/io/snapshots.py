@@ -82,8 +82,10 @@ class _Lines:
 
 def _read_dump(path: Path) -> Iterator[Snapshot]:
     """A text dump of LAMMPS: ids, coordinates of any kind, and image flags and molecules where they are there."""
+    kinds = [[axis + kind for axis in "xyz"] for kind in ("u", "su", "", "s")]
     with path.open(encoding="utf-8") as stream:
-        lines, step, count, box = _Lines(path, stream), None, None, None
+        lines, step, count = _Lines(path, stream), None, None
+        box: tuple[FloatArray, FloatArray, BoolArray] | None = None  # edges as rows, corner, along which it is periodic
         while line := lines.next():
             item, words = line[:17].rstrip(), line.split()[2:]
             if item == "ITEM: TIMESTEP":
@@ -91,9 +93,35 @@ def _read_dump(path: Path) -> Iterator[Snapshot]:
             elif item == "ITEM: NUMBER OF A":
                 count = lines.count(lines.next())
             elif item == "ITEM: BOX BOUNDS" and "abc" not in words:
-                box = _bounds(lines, words[1:])
+                bounds = lines.table(3, range(3 if "xy" in words else 2))
+                xy, xz, yz = bounds[:, 2] if "xy" in words else np.zeros(3)
+                # bounds are those of a box with axes of its own around the one that may be tilted
+                low = bounds[:, 0] - [min(0.0, xy, xz, xy + xz), min(0.0, yz), 0.0]
+                high = bounds[:, 1] - [max(0.0, xy, xz, xy + xz), max(0.0, yz), 0.0]
+                sides = np.diag(high - low)
+                sides[1, 0], sides[2, 0], sides[2, 1] = xy, xz, yz
+                marks = [word for word in words[1:] if word not in ("xy", "xz", "yz")]
+                periodic = np.array(["p" in mark for mark in marks] if len(marks) == 3 else [True] * 3)
+                if (flat := np.flatnonzero(periodic & (sides.diagonal() <= 0.0))).size:
+                    lines.fail(f"the box has no extent along {'xyz'[flat[0]]}")
+                box = sides, low, periodic
             elif item.startswith("ITEM: ATOMS") and count is not None and box is not None:
-                yield _atoms(lines, words, count, step, *box)
+                axes = next((names for names in kinds if set(names) <= set(words)), None)
+                if axes is None or "id" not in words:
+                    lines.fail("atoms need the columns id, x, y and z (or xu, xs, xsu, …)")
+                flags = [name for name in ("ix", "iy", "iz") if name in words]
+                others = ["id", *(["mol"] if "mol" in words else []), *(flags if len(flags) == 3 else [])]
+                table = lines.table(count, [words.index(name) for name in (*axes, *others)])
+                table = table[np.argsort(table[:, 3], kind="stable")]
+                (sides, low, periodic), points = box, table[:, :3]
+                images = np.zeros((count, 3), dtype=np.intp) if "u" in axes[0] else None
+                if images is None and len(flags) == 3:
+                    images = table[:, -3:].astype(np.intp)
+                if "s" in axes[0]:
+                    points = points @ sides + low
+                molecules = table[:, 4].astype(np.intp) if "mol" in words else None
+                names = table[:, 3].astype(np.intp)
+                yield Snapshot(points, sides * periodic[:, None], images, step, names, molecules)
                 step = None
             elif item in ("ITEM: UNITS", "ITEM: TIME"):
                 lines.next()
@@ -101,49 +129,6 @@ def _read_dump(path: Path) -> Iterator[Snapshot]:
                 lines.fail(f"{line.strip()[:40]!r} is not expected here in a LAMMPS dump")
         if step is not None:
             lines.fail("the file is cut off within a snapshot")
-
-
-def _bounds(lines: _Lines, words: list[str]) -> tuple[FloatArray, FloatArray, BoolArray]:
-    """The box: its edges as rows, its corner, and along which it is periodic, as far as that is said."""
-    bounds = lines.table(3, range(3 if "xy" in words else 2))
-    xy, xz, yz = bounds[:, 2] if "xy" in words else np.zeros(3)
-    # bounds are those of a box with axes of its own around the one that may be tilted
-    low = bounds[:, 0] - [min(0.0, xy, xz, xy + xz), min(0.0, yz), 0.0]
-    high = bounds[:, 1] - [max(0.0, xy, xz, xy + xz), max(0.0, yz), 0.0]
-    sides = np.diag(high - low)
-    sides[1, 0], sides[2, 0], sides[2, 1] = xy, xz, yz
-    marks = [word for word in words if word not in ("xy", "xz", "yz")]
-    periodic = np.array(["p" in mark for mark in marks] if len(marks) == 3 else [True] * 3)
-    if (flat := np.flatnonzero(periodic & (sides.diagonal() <= 0.0))).size:
-        lines.fail(f"the box has no extent along {'xyz'[flat[0]]}")
-    return sides, low, periodic
-
-
-def _atoms(
-    lines: _Lines,
-    words: list[str],
-    count: int,
-    step: int | None,
-    sides: FloatArray,
-    low: FloatArray,
-    periodic: BoolArray,
-) -> Snapshot:
-    kinds = [[axis + kind for axis in "xyz"] for kind in ("u", "su", "", "s")]
-    axes = next((names for names in kinds if set(names) <= set(words)), None)
-    if axes is None or "id" not in words:
-        lines.fail("atoms need the columns id, x, y and z (or xu, xs, xsu, …)")
-    flags = [name for name in ("ix", "iy", "iz") if name in words]
-    others = ["id", *(["mol"] if "mol" in words else []), *(flags if len(flags) == 3 else [])]
-    table = lines.table(count, [words.index(name) for name in (*axes, *others)])
-    table = table[np.argsort(table[:, 3], kind="stable")]
-    points, names = table[:, :3], table[:, 3].astype(np.intp)
-    images = np.zeros((count, 3), dtype=np.intp) if "u" in axes[0] else None
-    if images is None and len(flags) == 3:
-        images = table[:, -3:].astype(np.intp)
-    if "s" in axes[0]:
-        points = points @ sides + low
-    molecules = table[:, 4].astype(np.intp) if "mol" in words else None
-    return Snapshot(points, sides * periodic[:, None], images, step, names, molecules)
 
 
 def _read_xyz(path: Path) -> Iterator[Snapshot]:

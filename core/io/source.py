@@ -10,7 +10,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import BinaryIO
 
-from ..base.errors import CurveError, CurveFileError, reason_of
+from ..base.errors import CurveError, CurveFileError, reason_of, shown
 from ..curve.curve import Curve
 
 MAX_BYTES = 16 << 20  # two hundred thousand vertices with all their digits
@@ -84,11 +84,6 @@ class Source:
         if not _INTEGER.fullmatch(token):
             raise self.error(f"{shown(token)} is not a whole number", line)
         return int(token)
-
-
-def shown(token: str) -> str:
-    """Quote a piece of the file in a message: escaped and cut to a readable length."""
-    return ascii(token if len(token) <= 30 else token[:27] + "...")
 
 
 @dataclass(frozen=True)

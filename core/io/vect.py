@@ -9,8 +9,9 @@ Source: the Geomview manual, section "VECT".
 from itertools import islice
 from typing import TextIO
 
+from ..base.errors import shown
 from ..curve.curve import Curve
-from .source import Polygon, Source, shown
+from .source import Polygon, Source
 
 
 def read(source: Source) -> list[Polygon]:

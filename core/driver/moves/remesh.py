@@ -271,19 +271,36 @@ class CoarseStart(Move):
         )
 
     def started(self) -> Change | None:
-        if not self._wanted:
-            return self._smoother()
-        if self.run.iterations_left < 4:  # a motion and a change of mesh, both there and back
-            return None
         curve, problem = self.run.iterate.curve, self.run.problem
-        spacing = graded_spacing(curve, Resolution())
-        unsplit = np.maximum(spacing, curve.edge_lengths)  # so that no arc has more vertices than in the end
-        # a pass leaves out up to a third of the vertices
-        found = proved_remesh(problem, curve, superfluous(curve, spacing, _kept(problem)), unsplit)
-        if found is None or len(found[1]) >= len(curve):
+        if self._wanted:
+            if self.run.iterations_left < 4:  # a motion and a change of mesh, both there and back
+                return None
+            spacing = graded_spacing(curve, Resolution())
+            unsplit = np.maximum(spacing, curve.edge_lengths)  # so that no arc has more vertices than in the end
+            # a pass leaves out up to a third of the vertices
+            found = proved_remesh(problem, curve, superfluous(curve, spacing, _kept(problem)), unsplit)
+            if found is None or len(found[1]) >= len(curve):
+                return None
+            step, self._coarse = found
+            return Change((step,), problem.on(self._coarse))
+        if self._coarse is None:
             return None
-        step, self._coarse = found
-        return Change((step,), problem.on(self._coarse))
+        # all vertices are back: the motion to a smooth curve through the coarse ones, as far as free
+        pins, coarse, self._coarse = problem.constraints.pins, self._coarse, None
+        way = smoothed(coarse, curve.mesh, pins.on(coarse).vertices, pins.vertices).vertices - curve.vertices
+        way[pins.vertices] = 0.0
+        for restores in (True, False):  # back on the constraints, unless that is too far
+            share = 1.0
+            while share > self.min_share:
+                there = problem.at_curve(curve.with_vertices(curve.vertices + share * way))
+                end = there.retract(there.vertices, np.zeros_like(there.residual)) if restores else there
+                if end is None:
+                    break
+                proof = problem.free_motion(curve.vertices, end.placed)
+                if proof.time == 1.0:
+                    return Change((Step((Leg(end, proof),), 0.0, None),))
+                share *= min(0.9, proof.time)
+        return None
 
     def stepped(self, step: Step) -> Change | None:
         return self._back(self.run.iterations_left <= 2 or not self.run.makes_headway)
@@ -309,29 +326,6 @@ class CoarseStart(Move):
             self._coarse = None
             return None
         return Change(point=self.run.problem.on(finest, self._lengths))
-
-    def _smoother(self) -> Change | None:
-        """The motion to a smooth curve through the coarse vertices, as far as free; on the constraints if possible."""
-        if self._coarse is None:
-            return None
-        problem, start = self.run.problem, self.run.iterate.curve
-        pins = problem.constraints.pins
-        old = pins.on(self._coarse).vertices
-        way = smoothed(self._coarse, start.mesh, old, pins.vertices).vertices - start.vertices
-        way[pins.vertices] = 0.0
-        self._coarse = None
-        for restores in (True, False):  # back on the constraints, unless that is too far
-            share = 1.0
-            while share > self.min_share:
-                there = problem.at_curve(start.with_vertices(start.vertices + share * way))
-                end = there.retract(there.vertices, np.zeros_like(there.residual)) if restores else there
-                if end is None:
-                    break
-                proof = problem.free_motion(start.vertices, end.placed)
-                if proof.time == 1.0:
-                    return Change((Step((Leg(end, proof),), 0.0, None),))
-                share *= min(0.9, proof.time)
-        return None
 
 
 def _kept(problem: Problem) -> IntArray:

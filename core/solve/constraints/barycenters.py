@@ -31,7 +31,7 @@ class Barycenters:
         return len(self.target)
 
     def on(self, curve: Curve) -> "Barycenters":
-        moments = _moments(curve)
+        moments = curve.moments
         each = [np.sum(moments * own, axis=1) for own in self.memberships(curve.mesh)]
         return replace(self, target=np.concatenate([np.empty(0), *each]))
 
@@ -107,8 +107,3 @@ class BarycenterDerivative:
 
     def curvature(self, multipliers: FloatArray, v: FloatArray) -> FloatArray:
         return np.zeros_like(v)
-
-
-def _moments(curve: Curve) -> FloatArray:
-    """ℓ_I m_I as columns, so that sums over edges are pairwise ones; shape (m, edges)."""
-    return np.ascontiguousarray((curve.edge_lengths[:, None] * curve.midpoints).T)

@@ -120,7 +120,24 @@ class DenseTangentSpace(TangentSpace):
         self, inner: "DenseInnerProduct", constraints: ConstraintDerivative, weights: FloatArray | None = None
     ) -> None:
         super().__init__(inner, constraints, weights)
-        schur = _schur_complement(inner, constraints)
+        # C J⁻¹ Cᵀ in Fortran order, the lower triangle; D A⁻¹ Dᵀ comes from differences of rows and columns, block by
+        # block in the processor's cache
+        c, edges, rows = constraints, len(constraints.tangents), len(constraints.edges)
+        schur = np.zeros((edges + c.count - rows,) * 2, order="F")
+        inverse, upper, tails, heads = inner.inverse.T, schur.T, c.mesh.tails, c.mesh.heads
+        width = max(1, ROWS_TIMES_COLUMNS // edges)
+        for first in range(0, edges, width):
+            block = slice(first, min(edges, first + width))
+            change = inverse[heads[block]]
+            change -= inverse[tails[block]]
+            part = upper[block, first:edges]
+            np.subtract(change.take(heads[first:], axis=1), change.take(tails[first:], axis=1), out=part)
+            part *= c.tangents[block] @ c.tangents[first:].T
+        if rows < edges:
+            kept = np.concatenate([c.edges, np.arange(edges, len(schur))])
+            schur = np.asfortranarray(schur[np.ix_(kept, kept)])
+        for k, row in enumerate(c.border(), rows):
+            schur[k, :] = c.apply(inner.solve(row))
         if weights is not None:  # (S + 1/w)⁻¹ = √w (√w S √w + 1)⁻¹ √w, a form that allows for w = 0
             schur *= np.sqrt(np.multiply.outer(weights, weights))
             schur[np.diag_indices_from(schur)] += 1.0
@@ -137,30 +154,6 @@ class DenseTangentSpace(TangentSpace):
         else:
             pull = multipliers = substituted(self._schur, right if xi is None else right - xi)
         return free - self._inner.solve(c.apply_transpose(pull)), multipliers
-
-
-def _schur_complement(inner: "DenseInnerProduct", c: ConstraintDerivative) -> FloatArray:
-    """C J⁻¹ Cᵀ in Fortran order, the lower triangle.
-
-    D A⁻¹ Dᵀ comes from differences of rows and columns, block by block in the processor's cache.
-    """
-    edges, rows = len(c.tangents), len(c.edges)
-    schur = np.zeros((edges + c.count - rows,) * 2, order="F")
-    inverse, upper, tails, heads = inner.inverse.T, schur.T, c.mesh.tails, c.mesh.heads
-    width = max(1, ROWS_TIMES_COLUMNS // edges)
-    for first in range(0, edges, width):
-        block = slice(first, min(edges, first + width))
-        change = inverse[heads[block]]
-        change -= inverse[tails[block]]
-        part = upper[block, first:edges]
-        np.subtract(change.take(heads[first:], axis=1), change.take(tails[first:], axis=1), out=part)
-        part *= c.tangents[block] @ c.tangents[first:].T
-    if rows < edges:
-        kept = np.concatenate([c.edges, np.arange(edges, len(schur))])
-        schur = np.asfortranarray(schur[np.ix_(kept, kept)])
-    for k, row in enumerate(c.border(), rows):
-        schur[k, :] = c.apply(inner.solve(row))
-    return schur
 
 
 def cholesky(matrix: FloatArray) -> FloatArray:
