@@ -71,10 +71,6 @@ class FourierCurve:
         """Its mirror image in the plane of the first two coordinates."""
         return FourierCurve(tuple(c * [1.0, 1.0, -1.0] for c in self.coefficients))
 
-    def rounded(self, quantum: float) -> "FourierCurve":
-        """The same with coefficients rounded to multiples of a number."""
-        return FourierCurve(tuple(quantum * np.round(c / quantum) for c in self.coefficients))
-
 
 def _spectrum(samples: FloatArray, modes: int) -> ComplexArray:
     spectrum = np.fft.rfft(samples, axis=0)[: modes + 1] * (2.0 / len(samples))

@@ -94,11 +94,7 @@ class RelaxOptions:
         2000, "Max Iterations", "stop after this many accepted steps and changes of mesh", low=0, metavar="K"
     )
     tolerance: float = option(
-        1e-4,
-        "Tolerance",
-        "stop when the projected gradient's metric norm is at most this times √E",
-        low=0,
-        metavar="T",
+        1e-4, "Tolerance", "stop when the projected gradient's metric norm is at most this times √E", low=0, metavar="T"
     )
     time_limit: float | None = option(
         None,

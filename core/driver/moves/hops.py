@@ -34,10 +34,10 @@ Field = Callable[[FloatArray], FloatArray]
 class RandomMotion(ABC):
     """Move along random fields up to a random energy, within constraints; lengths are RMS in radii of gyration."""
 
-    fields: int
-    distance: float  # that the curve moves along each field
-    stride: float  # of a step at most, halved where a step is not accepted
-    shortest: float  # step at which a field is given up
+    fields: int = 10
+    distance: float = 1.0  # that the curve moves along each field
+    stride: float = 0.1  # of a step at most, halved where a step is not accepted
+    shortest: float = 5e-3  # step at which a field is given up
     # least and greatest ceiling for the energy of the curve, as multiples of the energy scale
     ceilings: tuple[float, float] = (2.0, 16.0)
 
@@ -81,7 +81,6 @@ class Push(RandomMotion):
     """Push along random soft modes, which slide touching strands along each other; flows would press them together."""
 
     fields: int = 3
-    distance: float = 1.0
     stride: float = 0.05  # where strands touch, only short steps are free
     shortest: float = 1e-3
     modes: int = 6  # number of modes in a combination
@@ -108,10 +107,6 @@ class Stir(RandomMotion):
     ceiling lets the curve forget more of the minimum.
     """
 
-    fields: int = 10
-    distance: float = 1.0
-    stride: float = 0.1
-    shortest: float = 5e-3
     waves: int = 4  # number of plane waves that a flow is the sum of
     # standard deviation of each component of their wave vectors, in radians per radius of gyration
     frequency: float = 2.0

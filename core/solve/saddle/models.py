@@ -127,7 +127,11 @@ class Circulants:
         """With D F⁻¹ Dᵀ, which is circulant, modulated by the directions of edges."""
         weighted = self._scale * tangents
         size = np.linalg.norm(weighted, axis=1, keepdims=True)
-        modulated = self._transform.modulated(self._compliance, weighted / size)
+        # Factors of the circulant matrices nearest to Σ_k diag(t_k) F diag(t_k), whose entries are the means along the
+        # diagonals: those of F times the autocorrelation of t (Chan, An optimal circulant preconditioner for Toeplitz
+        # systems, SIAM J. Sci. Stat. Comput. 9, 1988)
+        components = zip(self._transform.sizes, self._transform.rows, self._compliance, strict=True)
+        modulated = (rfft(autocorrelation((weighted / size)[rows]) * irfft(f, n)).real for n, rows, f in components)
         factors = [1.0 / np.maximum(each, LEAST * each.max(axis=1, keepdims=True)) for each in modulated]
         return lambda g: self._transform.filtered(g[:, None] / size, factors)[:, 0] / size[:, 0]
 
@@ -141,31 +145,19 @@ class ComponentTransform:
 
     def __init__(self, mesh: Mesh) -> None:
         sizes = np.asarray(mesh.component_sizes)
-        self._sizes = [int(size) for size in np.unique(sizes)]
-        self._rows = [mesh.offsets[:-1][sizes == size, None] + np.arange(size) for size in self._sizes]
+        self.sizes = [int(size) for size in np.unique(sizes)]
+        self.rows = [mesh.offsets[:-1][sizes == size, None] + np.arange(size) for size in self.sizes]
 
     def sampled(self, symbol: Symbol) -> list[FloatArray]:
         """A symbol at the angles θ ∈ [0, π] from vertex to vertex that every size of components has."""
-        return [symbol(2.0 * np.pi / size * np.arange(size // 2 + 1, dtype=np.float64)) for size in self._sizes]
-
-    def modulated(self, factors: list[FloatArray], t: FloatArray) -> list[FloatArray]:
-        """Factors of the circulant matrices nearest to Σ_k diag(t_k) F diag(t_k), F that of sampled factors.
-
-        Their entries are the means along the diagonals: those of F times the autocorrelation of t on the component
-        (Chan, An optimal circulant preconditioner for Toeplitz systems, SIAM J. Sci. Stat. Comput. 9, 1988).  For every
-        size of components ``factors`` have shape (frequencies,), the result (components, frequencies); t has (n, m).
-        """
-        return [
-            rfft(autocorrelation(t[rows]) * irfft(factor, size)).real
-            for size, rows, factor in zip(self._sizes, self._rows, factors, strict=True)
-        ]
+        return [symbol(2.0 * np.pi / size * np.arange(size // 2 + 1, dtype=np.float64)) for size in self.sizes]
 
     def filtered(self, u: FloatArray, factors: list[FloatArray]) -> FloatArray:
-        """The circulant matrix of sampled factors, or those of modulated ones, times u; shape (n, k)."""
-        if len(self._sizes) == 1:  # all components, one after the other
-            return _filtered(u.reshape(-1, self._sizes[0], u.shape[1]), factors[0]).reshape(u.shape)
+        """Circulant matrices of factors, which may be the same for all components of a size, times u; shape (n, k)."""
+        if len(self.sizes) == 1:  # all components, one after the other
+            return _filtered(u.reshape(-1, self.sizes[0], u.shape[1]), factors[0]).reshape(u.shape)
         result = np.empty_like(u)
-        for rows, factor in zip(self._rows, factors, strict=True):
+        for rows, factor in zip(self.rows, factors, strict=True):
             result[rows] = _filtered(u[rows], factor)
         return result
 

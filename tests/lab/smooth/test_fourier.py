@@ -52,15 +52,9 @@ def test_more_modes_do_not_change_the_curve():
 
 
 def test_curves_as_json():
-    curve = fitted().rounded(2.0**-20)
+    curve = fitted()
     again = FourierCurve.of_lists(json.loads(json.dumps(curve.as_lists)))
     assert all(map(np.array_equal, curve.coefficients, again.coefficients))
-
-
-def test_rounding_is_to_the_nearest_multiple():
-    (c, _), (r, _) = fitted().coefficients, fitted().rounded(2.0**-10).coefficients
-    assert np.array_equal(r * 2.0**10, np.round(r * 2.0**10))
-    assert np.abs((c - r).view(np.float64)).max() <= 2.0**-11
 
 
 def test_parameters_are_those_of_moebius_images_too():
