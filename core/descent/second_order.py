@@ -254,7 +254,9 @@ class Curvature:
         self.point, self._chains = point, Chains(point.tangent_space.constraints)
         gram = point.inner_product.dense()
         hessian = self.point.problem.constraints.symmetry.within(lagrangian_matrix(point), gram)
-        self._hessian, self._metric = self._chains.of_hessian(hessian), self._chains.of_metric(gram)
+        half = self._chains.of_forces(hessian)  # in the unknowns of chains, on one side
+        self._hessian = self._chains.of_forces(np.ascontiguousarray(half.T))
+        self._metric = self._chains.of_metric(gram)
 
     @staticmethod
     def is_known(point: Point) -> bool:

@@ -167,19 +167,11 @@ class CompressedInnerProduct:
         return conjugate_gradients(self.apply, relative(self.model.solve, 1e-10), f, 1000)
 
     def plus(self, other: InnerProduct, weight: float = 1.0) -> InnerProduct:
-        """The sum: compressed with a sparse one or another compressed one, otherwise dense."""
+        """The sum: compressed with a sparse one, otherwise dense."""
         if isinstance(other, SparseInnerProduct):
             indicators = _indicators(self.curve)
             coupling = indicators.T @ other.matrix @ indicators
             return replace(self, local=self.local + weight * other.matrix, coupling=self.coupling + weight * coupling)
-        if isinstance(other, CompressedInnerProduct):
-            return replace(
-                self,
-                local=self.local + weight * other.local,
-                far=self.far + tuple((running, weight * form) for running, form in other.far),
-                vectors=np.hstack([self.vectors, np.sqrt(weight) * other.vectors]),
-                coupling=self.coupling + weight * other.coupling,
-            )
         return DenseInnerProduct(self.dense() + weight * other.dense())
 
     def dense(self) -> FloatArray:

@@ -99,11 +99,6 @@ class Isometry:
     distance: float = np.inf
 
     @classmethod
-    def identity(cls, components: int) -> "Isometry":
-        ones = np.ones(components, dtype=np.intp)
-        return cls(np.eye(3), np.arange(components), ones, np.zeros(components), 0.0)
-
-    @classmethod
     def of(cls, alignment: Alignment, sign: int) -> "Isometry":
         """The isometry of an alignment of a curve with itself, or (−1) with its reflection in its centre."""
         signs = np.where(alignment.backwards, -1, 1)

@@ -168,7 +168,8 @@ def symmetries(curve: Curve, tolerance: float = TOLERANCE) -> SymmetryGroup:
     if components > 10:  # for so many all orders are looked at in a second
         raise CurveError(f"the curve has {components} components; symmetries are found with up to 10")
     centre = curve.barycenter
-    identity = Isometry.identity(components)
+    ones = np.ones(components, dtype=np.intp)
+    identity = Isometry(np.eye(3), np.arange(components), ones, np.zeros(components), 0.0)
     fit = Fit(curve, centre)
     mirrored = curve.with_vertices(2.0 * centre - curve.vertices)
     near = [

@@ -48,10 +48,6 @@ class Chains:
         """Covectors, shape (n·m, c), in the unknowns; shape (k, c)."""
         return np.asarray(self._basis @ self._summed(forces.reshape(self._shape[0], -1)).reshape(forces.shape))
 
-    def of_hessian(self, matrix: FloatArray) -> FloatArray:
-        """A symmetric matrix, shape (n·m, n·m), in the unknowns; shape (k, k)."""
-        return self.of_forces(np.ascontiguousarray(self.of_forces(matrix).T))
-
     def of_metric(self, gram: FloatArray) -> FloatArray:
         """A ⊗ Id_m for a symmetric A, shape (n, n), in the unknowns; shape (k, k)."""
         summed = self._summed(np.ascontiguousarray(self._summed(gram).T))

@@ -78,16 +78,6 @@ def test_sums(name: str, sum_with: str) -> None:
     np.testing.assert_allclose(total.solve(total.apply(u)), u, atol=1e-7)
 
 
-@METRIC
-def test_sums_with_what_is_on_another_curve(name: str) -> None:
-    inner = COMPRESSED[name](CURVES["hopf"])
-    moved = CURVES["hopf"].with_vertices(CURVES["hopf"].vertices * [1.0, 1.3, 0.8])
-    for other in (moebius_inner_product(moved), moebius_inner_product(CURVES["hopf"])):
-        expected = inner.dense() + 0.3 * other.dense()
-        found = inner.plus(other, 0.3).dense()
-        np.testing.assert_allclose(found, expected, atol=1e-12 * np.abs(expected).max(), rtol=0)
-
-
 def test_what_is_solved_with_first_knows_how_much_of_each_term_there_is() -> None:
     """A field constant on each ring is solved for at once, however much of a second metric there is."""
     curve = CURVES["chain"]
