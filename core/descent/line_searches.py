@@ -63,25 +63,15 @@ class NormalStep(NamedTuple):
     # the energy that all of it may cost where there is nothing left to gain: there the first order says nothing
     allowance: float
 
-
-@dataclass(frozen=True)
-class TowardsTargets:
-    """How fast lengths go to their targets."""
-
-    length_change: float = 0.25  # largest logarithmic change of an edge length in one step
-    least_share: float = 0.01  # of that step, taken even where it costs more energy than can be gained
-    # part of the energy, by its scale, that reaching the targets may cost where there is nothing left to gain
-    allowance: float = 1e-3
-
-    def at(self, point: Point, space: TangentSpace) -> NormalStep:
+    @classmethod
+    def at(cls, point: Point, space: TangentSpace) -> "NormalStep":
         """The normal step at a point, none if it is on target; ``space`` gives the pseudo-inverse."""
         if on_target(point):
-            return NormalStep(np.zeros_like(point.vertices), 0.0, 1.0, 1.0, 0.0)
+            return cls(np.zeros_like(point.vertices), 0.0, 1.0, 1.0, 0.0)
         full = space.pseudo_inverse(-point.residual)
-        longest = min(1.0, self.length_change / point.infeasibility)
+        longest = min(1.0, 0.25 / point.infeasibility)  # so much is the logarithmic change of a length
         cost = float(np.sum(point.derivative * full))
-        allowance = self.allowance * energy_scale(point.problem.mesh, point.energy)
-        return NormalStep(full, cost, longest, self.least_share * longest, allowance)
+        return cls(full, cost, longest, 0.01 * longest, 1e-3 * energy_scale(point.problem.mesh, point.energy))
 
 
 class AlongLine(Protocol):
@@ -122,7 +112,6 @@ class Armijo:
 
     decrease: float = 0.5  # required fraction of the predicted decrease: the paper's ½
     first: FirstTrial = field(default_factory=FirstTrial)
-    lengths: TowardsTargets = field(default_factory=TowardsTargets)  # how fast lengths go to their targets
     max_trials: int = 40
 
     def along(self, point: Point, direction: FloatArray, natural: float, last: float) -> Step | NoStep:
@@ -139,7 +128,7 @@ class Armijo:
             # sees no strands, by step sizes that shrink again and again
             longest = 1e-3 / speed
         tau, limited_by = self.first(point, direction, min(natural, longest))
-        normal = self.lengths.at(point, point.tangent_space)
+        normal = NormalStep.at(point, point.tangent_space)
         slope_along = float(np.sum(point.derivative * direction))
         # lengths go on by less only where steps are shorter than they would be by the usual growth: without a bound on
         # it, as in the paper, first trials are far too long near rest, and lengths would never arrive

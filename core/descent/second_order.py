@@ -24,7 +24,7 @@ from ..solve.metrics import Metric, MoebiusMetric
 from ..solve.saddle.indefinite import Chains, FactorisedHessian
 from .directions import LimitedMemoryBFGS
 from .hessian import ASSEMBLED_SIZE, energy_hessian, lagrangian_hessian, lagrangian_matrix, projected_conjugate_gradient
-from .line_searches import NOTHING, Armijo, FirstTrial, LineSearch, on_target
+from .line_searches import NOTHING, Armijo, FirstTrial, LineSearch, NormalStep, on_target
 from .problem import Point
 from .step import Leg, NoStep, SearchState, Step, attempt, judged
 
@@ -163,7 +163,7 @@ class BackwardEuler:
     # krylov_iterations, krylov_tolerance: of its linear systems
     krylov_iterations: int = 60
     krylov_tolerance: float = 0.05
-    armijo: Armijo = field(default_factory=Armijo)  # Armijo's rule, and how fast lengths go to their targets
+    armijo: Armijo = field(default_factory=Armijo)  # Armijo's rule
     second_order: ClassVar[bool] = True
 
     @property
@@ -181,7 +181,7 @@ class BackwardEuler:
         preconditioner, share, limited_by = self.preconditioner.at(point.curve), 1.0, None
         for _ in range(self.armijo.max_trials):
             space = preconditioner.plus(own, 1.0 / tau).tangent_space(flow.constraints)
-            normal = self.armijo.lengths.at(point, space)
+            normal = NormalStep.at(point, space)
             base = point.vertices + share * normal.longest * normal.full
             level = (1.0 - share * normal.longest) * point.residual
             w, first, last, solved = np.zeros_like(point.vertices), 0.0, math.inf, None
@@ -202,7 +202,7 @@ class BackwardEuler:
                 w += projected_conjugate_gradient(implicit, right, space, tolerance, most)
             if solved is not None:
                 slope = float(np.sum(point.derivative * (solved.vertices - point.vertices)))
-                if slope > 0.0 and share > self.armijo.lengths.least_share:
+                if slope > 0.0 and share * normal.longest > normal.least:
                     share *= 0.25  # the way to the target lengths costs more than the flow gains
                     continue
                 judgement = judged(point, solved, partial(self.armijo.sufficient, point, slope, 0.0))
@@ -214,33 +214,26 @@ class BackwardEuler:
         return NoStep.because(limited_by), state
 
 
-@dataclass(frozen=True)
-class Escape:
-    """Halve a step along ± a direction of negative curvature until it lowers the energy and is proved."""
+def step_off(
+    point: Point, direction: FloatArray, curvature: float, decrease: float = 0.1, longest: float = 0.5, most: int = 20
+) -> Step | NoStep:
+    """Halve a step along ± a direction of negative curvature until it lowers the energy enough and is proved.
 
-    decrease: float = 0.1  # required fraction of the predicted decrease
-    longest: float = 0.5  # first step, in the metric's norm
-    first: FirstTrial = field(default_factory=FirstTrial)
-    max_trials: int = 20
-
-    def step(self, point: Point, direction: FloatArray, curvature: float) -> Step | NoStep:
-        """Find a step with E(Q) < E(P) + ½ c τ² curvature, c the required decrease.
-
-        The direction, shape (n, m), is tangent and of length 1 in the metric, the curvature ⟨direction, D²L direction⟩
-        < 0.
-        """
-        limited_by = None
-        for sign in (1.0, -1.0):
-            tau, limited_by = self.first(point, sign * direction, self.longest)
-            for _ in range(self.max_trials):
-                vertices, most = point.vertices + sign * tau * direction, point.energy
-                most += 0.5 * self.decrease * curvature * tau**2
-                trial = attempt(point, vertices, 0.0 * point.residual, lambda q, most=most: q.energy < most)  # type: ignore[misc]
-                if isinstance(trial, Leg):
-                    return Step((trial,), tau, limited_by)
-                limited_by = trial.in_the_way or limited_by
-                tau *= 0.5
-        return NoStep.because(limited_by)
+    E(Q) < E(P) + ½ c τ² curvature, c the required part of the predicted decrease.  The direction, shape (n, m), is
+    tangent and of length 1 in the metric, as the ``longest`` step is, and the curvature ⟨direction, D²L direction⟩ < 0.
+    """
+    limited_by = None
+    for sign in (1.0, -1.0):
+        tau, limited_by = FirstTrial()(point, sign * direction, longest)
+        for _ in range(most):
+            bound = point.energy + 0.5 * decrease * curvature * tau**2
+            lower = partial(lambda bound, trial: trial.energy < bound, bound)
+            trial = attempt(point, point.vertices + sign * tau * direction, 0.0 * point.residual, lower)
+            if isinstance(trial, Leg):
+                return Step((trial,), tau, limited_by)
+            limited_by = trial.in_the_way or limited_by
+            tau *= 0.5
+    return NoStep.because(limited_by)
 
 
 class Curvature:

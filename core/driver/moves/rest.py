@@ -16,7 +16,7 @@ from ...curve.symmetry import NO_SYMMETRY
 from ...descent import METHODS, Method, NoStep, Point, Step
 from ...descent.hessian import SoftModes, smooth_starts, soft_modes
 from ...descent.line_searches import on_target
-from ...descent.second_order import Curvature, Escape, Newton
+from ...descent.second_order import Curvature, Newton, step_off
 from ...energies.barrier import replaced_pairs
 from ...energies.components import energy_scale
 from ...energies.hierarchy import HierarchicalMoebiusEnergy, SampledErrors
@@ -159,15 +159,13 @@ def unresolved(curve: Curve) -> float:
 class EscapeSaddle(Move):
     """Step off a saddle along its most negative direction."""
 
-    search: Escape = field(default_factory=Escape)
-
     def converged(self, outcome: Outcome) -> Outcome | Change | None:
         if not self.run.options.escape_saddles:
             return None
         found = stability(self.run.point)
         if not found.index:
             return None
-        step = self.search.step(self.run.point, found.modes.vectors[0], float(found.modes.values[0]))
+        step = step_off(self.run.point, found.modes.vectors[0], float(found.modes.values[0]))
         return Change((step,)) if isinstance(step, Step) else outcome.adding("no step down from it was found")
 
 

@@ -12,7 +12,7 @@ from mobius_flow.core.descent import Point, SearchState, Step
 from mobius_flow.core.descent.directions import SteepestDescent
 from mobius_flow.core.descent.hessian import lagrangian_hessian
 from mobius_flow.core.descent.line_searches import Accelerated, Armijo, FirstTrial, LineSearch, WeakWolfe
-from mobius_flow.core.descent.second_order import BackwardEuler, Escape, TrustRegion
+from mobius_flow.core.descent.second_order import BackwardEuler, TrustRegion, step_off
 
 
 def test_armijo_asks_for_half_of_the_predicted_decrease() -> None:
@@ -122,7 +122,7 @@ def test_escape_leaves_a_maximum_along_a_line() -> None:
     """From a point of negative curvature both ways lead down by the required decrease."""
     point = start()
     direction = point.gradient / point.gradient_norm  # not critical, but one of the two ways leads down all the same
-    step = Escape().step(point, direction, -1.0)
+    step = step_off(point, direction, -1.0)
     assert isinstance(step, Step)
     assert step.point.energy < point.energy - 0.05 * step.size**2
     assert_certified(point, step)
