@@ -1,8 +1,9 @@
 """The shortest rope of radius 1: a primal–dual interior-point method, whose multipliers are the forces at contacts.
 
-    minimise  f = Σ √(m Σ ℓ²)  over components of m edges,  subject to  c ≥ 0  (`contacts`)
+    minimise  f = Σ √(Σ p Σ ℓ²/p)  over components,  subject to  c ≥ 0  (`contacts`)
 
-f is the length where edges are equally long, and makes them so.  Steps are Newton's for  ∇f = Σ z ∇c  and  z = −B'(c):
+f is the length where edges have the proportions p, and makes them so.  Steps are Newton's for  ∇f = Σ z ∇c  and
+z = −B'(c):
 
     (D²f − Σ z D²c + Σ k ∇c ∇cᵀ + δ D²f) dx = −∇f − Σ B' ∇c,    dz = −B' − z − k ⟨∇c, dx⟩,
 
@@ -32,8 +33,14 @@ from .contacts import Contacts
 CENTRED = 0.001  # decrease that Newton's step promises, in μ for each constraint, below which μ falls
 PATIENCE = 15  # steps that bring as little: then it falls, too
 FALL = 0.2  # of μ
-LONGEST = 0.5  # that a vertex moves at once, in radii: strands cannot change places
 LEAST_MARGIN = 0.005
+
+
+def outward(curve: Curve) -> FloatArray:
+    """Where ends of arcs are pulled, straight ahead; unit vectors of shape (arcs, 2, m)."""
+    x, ends = curve.vertices, curve.mesh.ends
+    ahead = x[ends] - x[ends + np.array([1, -1])]
+    return np.asarray(ahead / np.linalg.norm(ahead, axis=2, keepdims=True))
 
 
 @dataclass(eq=False)
@@ -48,6 +55,9 @@ class InteriorPoint:
     mu: float
     proved: Callable[[FloatArray], bool]
     margin: float = 0.3  # of distances beyond 2, at which the barrier begins
+    longest: float = 0.5  # that a vertex moves at once
+    proportions: FloatArray | None = None  # of edges; None for equally long ones
+    drawn: float = 0.0  # out of the knot, by ends that were led on
     gap: float = field(default=np.inf, init=False)
     residual: float = field(default=np.inf, init=False)
     contacts: Contacts = field(init=False)
@@ -88,16 +98,13 @@ class InteriorPoint:
 
     @property
     def merit(self) -> float:
-        """The length and the barrier function: what comes down at one μ."""
-        return self.excess + self._walls(self.contacts.values(self.curve.vertices))
+        """The length without what was drawn out, and the barrier function: what comes down at one μ."""
+        return self.curve.length - self.drawn + self._walls(self.contacts.values(self.curve.vertices))
 
     @property
     def excess(self) -> float:
-        """The length, less how far out ends are in their own directions: of straight ropes nothing is left."""
-        x, (first, last) = self.curve.vertices, self.curve.mesh.ends.T
-        ends, inner = np.append(first, last), np.append(first + 1, last - 1)
-        outward = (x[ends] - x[inner]) / np.linalg.norm(x[ends] - x[inner], axis=1)[:, None]
-        return self.curve.length - float(np.sum(outward * x[ends]))
+        """The length, less how far out ends are where they are pulled, at rest: of straight ropes nothing is left."""
+        return self.curve.length - float(np.sum(outward(self.curve) * self.curve.vertices[self.curve.mesh.ends]))
 
     def step(self) -> tuple[float, float]:
         """Take a step; the share of Newton's that is taken, and by how much the barrier function was to fall."""
@@ -110,9 +117,10 @@ class InteriorPoint:
         push = self._push(c)
         k = z / c + 2.0 * np.sqrt(self.mu * push / c) / self.margin
         # f = Σ w ℓ²/2 with these weights, to first order; elsewhere it is less
-        squares = np.add.reduceat(self.curve.edge_lengths**2, mesh.edge_offsets[:-1])
-        weight = np.sqrt(mesh.edge_counts / squares)
-        self._elastic = mesh.difference.T @ sp.diags_array(weight[mesh.edge_component]) @ mesh.difference
+        p = np.ones(mesh.edges) if self.proportions is None else self.proportions
+        sums, squares = (np.add.reduceat(each, mesh.edge_offsets[:-1]) for each in (p, self.curve.edge_lengths**2 / p))
+        weight = np.sqrt(sums / squares)[mesh.edge_component] / p
+        self._elastic = mesh.difference.T @ sp.diags_array(weight) @ mesh.difference
         slope = self._elastic @ x
         residual = (slope - contacts.sum_of(first, z))[self._free]
         self.residual = float(np.linalg.norm(residual) / np.linalg.norm(slope))
@@ -129,7 +137,7 @@ class InteriorPoint:
             falls = value <= now - 1e-4 * share * decrement + 1e-13 * abs(now) and bool((values > 0.1 * c).all())
             return (there, value, values) if falls and self.proved(there) else None
 
-        now, longest = self._barrier(x)[0], LONGEST / max(float(np.linalg.norm(dx, axis=1).max()), 1e-12)
+        now, longest = self._barrier(x)[0], self.longest / max(float(np.linalg.norm(dx, axis=1).max()), 1e-12)
         share = min(1.0, longest)
         # walls are curved: the way bends so that constraints change as they would along a straight one
         missed = c + share * contacts.along(first, dx) - contacts.values(x + share * dx)

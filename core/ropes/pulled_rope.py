@@ -7,6 +7,7 @@ which cuts corners.
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -21,7 +22,7 @@ from ..driver.moves.hops import Field, random_flow
 from ..driver.moves.hops import radius as radius_of_gyration
 from ..io.trajectory import Iterate
 from .contacts import Contacts
-from .interior_point import FALL, InteriorPoint
+from .interior_point import FALL, InteriorPoint, outward
 
 GAP = 1e-6  # of forces times clearances, relative to the length, at rest
 ROOM = 1e-6  # of the radius, which motions are proved with: between their ends strands come a little nearer
@@ -35,7 +36,7 @@ class PulledRope:
     def __init__(self, last: Iterate, unit: float) -> None:
         radius = (unit * (1.0 - ROOM),) * len(last.curve.mesh.component_sizes)
         self.last = replace(last, pins=(), radius=radius, energy=last.curve.length / unit)
-        self.unit, self.center = unit, last.curve.vertices.mean(axis=0)
+        self.unit, self.center, self.lengths = unit, last.curve.vertices.mean(axis=0), last.curve.component_lengths
         self.point: InteriorPoint | None = None
 
     @property
@@ -129,13 +130,22 @@ class PulledRope:
 
     def doubled(self) -> Iterator[Iterate]:
         """Twice as many vertices on a smoother curve, larger if the rope needs room; nothing if that is blocked."""
-        before, finer = self.last, subdivide(self.curve, np.full(self.curve.mesh.edges, 2))
+        before, point = self.last, self.point
+        assert point is not None, "it has been pulled"
+        counts = np.full(self.curve.mesh.edges, 2)
+        touching = np.concatenate([each[: point.contacts.strands] for each in (point.contacts.i, point.contacts.j)])
+        if len(touching) and not self.curve.mesh.all_closed:
+            # ends stay as they are, up to a few edges from where strands touch
+            counts[:], beyond = 1, 4
+            for first, last in pairwise(self.curve.mesh.edge_offsets):
+                if len(own := touching[(touching >= first) & (touching < last)]):
+                    counts[max(own.min() - beyond, first) : min(own.max() + beyond + 1, last)] = 2
+        finer = subdivide(self.curve, counts)
         check_refined(self.curve, finer, ())
-        onward = finer.mesh.at_tails(0.5 * finer.edge_vectors)
+        onward = finer.mesh.at_tails(0.5 * finer.edge_vectors * np.repeat(counts > 1, counts)[:, None])
         onward[finer.mesh.ends] = 0.0
         moved = finer.with_vertices(finer.vertices + onward)
-        assert self.point is not None, "it has been pulled"
-        larger = max(1.0, (1.0 + 0.5 * self.point.gap) * self.unit / thickness(moved))
+        larger = max(1.0, (1.0 + 0.5 * point.gap) * self.unit / thickness(moved))
         halved = [*self.remeshed(finer)]
         for scale in larger + 0.002 * np.arange(10):
             there = self.center + scale * (moved.vertices - self.center)
@@ -158,19 +168,22 @@ class PulledRope:
         def placed(vertices: FloatArray) -> FloatArray:
             return np.asarray(self.center + self.unit * vertices)
 
+        closed = curve.mesh.all_closed
         self.point = point = InteriorPoint(curve, mu, lambda vertices: self.proves(placed(vertices)), margin)
+        if not closed:
+            point.longest, point.proportions = 2.0, curve.edge_lengths
+            point.drawn = 0.0 if last is None else last.drawn
         for share in point.run(GAP if len(curve) >= vertices else None):
             if share > 0.0:
                 path = [placed(point.curve.vertices)]
-                longer = curve.component_lengths - point.curve.component_lengths
-                if not curve.mesh.all_closed and longer.min() > 0.0:
-                    # what rope has come out of the knot leads ends on, straight ahead
-                    ahead = point.curve.vertices.copy()
-                    for first, last in curve.mesh.ends:
-                        for end, inner in ((first, first + 1), (last, last - 1)):
-                            edge = ahead[end] - ahead[inner]
-                            ahead[end] += 0.5 * longer[curve.mesh.component[end]] * edge / np.linalg.norm(edge)
+                if not closed:  # what rope comes out of the knot leads ends on, what is pulled in leads them back
+                    ahead, ends = point.curve.vertices.copy(), curve.mesh.ends
+                    out = 0.5 * (self.lengths / self.unit - point.curve.component_lengths)
+                    if last is not None:  # knots may slide along their ropes without effort; where they are they stay
+                        out[:] = out.mean()
+                    ahead[ends] += out[curve.mesh.component[ends], None] * outward(point.curve)
                     if is_rope(curve.mesh, path[0], placed(ahead), np.array(self.last.radius)):
                         path.append(placed(ahead))
                         point.curve = point.curve.with_vertices(ahead)
+                        point.drawn += 2.0 * float(out.sum())
                 yield from self.follow(path, point.residual, share)

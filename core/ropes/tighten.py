@@ -108,9 +108,11 @@ def tightening(task: Task, options: TightenOptions, others: Sequence[Curve] = ()
         raise OptionError("a knot is pulled tight in free space; leave pins and obstacles out")
     if task.curve.dimension != 3:
         raise CurveError(f"the curve has dimension {task.curve.dimension}; only curves in space are pulled tight")
-    # open ropes stay as long as they are, so that edges do not become shorter
+    # open ropes stay as long as they are, so that edges become shorter only where they are cut, once at least
     few = COARSE if task.curve.mesh.all_closed else 2 * COARSE
     coarse = options.vertices >> max(0, int(math.log2(options.vertices / few)))
+    if not task.curve.mesh.all_closed:
+        options = replace(options, vertices=max(options.vertices, coarse + 1))
     starts = list[tuple[Task, float]]()
     for given in (task, *map(Task.of, others)):
         start = given.refined(max(len(given.curve), coarse))
