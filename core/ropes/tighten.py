@@ -163,8 +163,10 @@ def _tightened(starts: Sequence[tuple[Task, float]], coarse: int, wanted: Tighte
             way += [*rope.doubled(), *rope.pulled(wanted.vertices)]
         rope, way = min(trials, key=rank)
         yield from way
-    for _ in range(math.ceil(math.log2(max(1.0, wanted.vertices / len(rope.curve))))):
+    while (before := len(rope.curve)) < wanted.vertices:
         yield from rope.doubled()
+        if len(rope.curve) == before:  # it is blocked
+            break
         yield from rope.pulled(wanted.vertices)
     point = rope.point
     assert point is not None, "it has been pulled"
