@@ -49,7 +49,7 @@ def add_hopf_link(n: int = 24) -> bpy.types.Object:
 def relax(**options: object) -> bpy.types.Object:
     """Relax the active object; it is drawn as a line, so that its evaluated mesh shows its points."""
     obj = bpy.context.object
-    assert bpy.ops.curve.mobius_flow_relax(**{"fit_bevel": False, "timing": "ITERATE"} | options) == {"FINISHED"}
+    assert bpy.ops.curve.mobius_flow_relax(**{"fit_bevel": False} | options) == {"FINISHED"}
     return obj
 
 

@@ -33,7 +33,7 @@ class Operator:
 
     def __init__(self, continues=False, **values):
         self.events, self.reports, self.continues = None, [], continues
-        self.given = {"view_every": 1, "avoid": (), "timing": "DISTANCE"} | values  # iterates are keys
+        self.given = {"view_every": 1, "avoid": ()} | values
 
     def report(self, kind, message):
         self.reports.append((kind, message))

@@ -24,12 +24,22 @@ def addon():
 def empty_file(request):
     """Start every test from an empty file; the preferences stay, which takes a fifth of the time.
 
-    Keys are the flow's own iterates, so that they can be compared with the library's.
+    Keys are the flow's own iterates, a frame each, so that they can be compared with the library's. Those in between,
+    which make longer motions smooth, and ropes take most of the time to prove: tests ask for them that are about them.
     """
     if bpy is not None:
         request.getfixturevalue("addon")
         bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-        bpy.context.scene.mobius_flow.keep_size = "LENGTH"
+        settings = bpy.context.scene.mobius_flow
+        settings.keep_size, settings.timing, settings.radius = "LENGTH", "ITERATE", "none"
+
+
+@pytest.fixture
+def defaults(empty_file):
+    """The timing and the ropes of a new scene."""
+    settings = bpy.context.scene.mobius_flow
+    settings.options = ""
+    settings.property_unset("timing")
 
 
 @pytest.fixture

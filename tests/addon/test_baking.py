@@ -27,6 +27,7 @@ def test_clear_takes_a_fitted_tube_back_but_not_ones_own():
     assert obj.data.bevel_depth == 0.125
 
 
+@pytest.mark.usefixtures("defaults")
 def test_frames_per_iterate_alone_means_by_iterate():
     obj = add_trefoil()
     bpy.ops.curve.mobius_flow_relax(max_iterations=4, frames_per_iterate=2.5)
@@ -62,7 +63,7 @@ def test_constant_thickness_is_the_least():
     constant = [block.data[0].radius * obj.data.bevel_depth for block in obj.data.shape_keys.key_blocks]
     assert max(radii) > 1.05 * min(radii)
     assert constant == pytest.approx([min(radii)] * len(radii), rel=1e-5)
-    assert bpy.ops.curve.mobius_flow_continue(max_iterations=8, timing="ITERATE") == {"FINISHED"}
+    assert bpy.ops.curve.mobius_flow_continue(max_iterations=8) == {"FINISHED"}
     further = [block.data[0].radius for block in obj.data.shape_keys.key_blocks[len(constant) :]]
     assert len(further) == 8
     assert np.ptp(further) < 1e-6
@@ -122,7 +123,7 @@ def test_baked_apart_they_go_on_together():
     ends = [keyframes.keyed_points(obj.data)[-1] for obj in pair]
     for obj in pair:
         obj.select_set(True)
-    go_on(max_iterations=2, timing="ITERATE")
+    go_on(max_iterations=2)
     for obj, end in zip(pair, ends, strict=True):
         np.testing.assert_array_equal(evaluated(obj, 6), end)
         assert last_frame(obj) == 8
@@ -134,7 +135,7 @@ def test_retimed_keys_go_on_where_they_end_now():
     curve = curve_of(obj)
     for point in curve.keyframe_points:
         point.co[0] = 10 * point.co[0]
-    go_on(max_iterations=2, timing="ITERATE")
+    go_on(max_iterations=2)
     assert [point.co[0] for point in curve_of(obj).keyframe_points] == [10, 20, 30, 31, 32]
 
 
@@ -143,9 +144,9 @@ def test_an_animation_without_motion_goes_on(keyframes_as):
     obj = add_trefoil()
     relax(max_iterations=0, keyframes=keyframes_as)
     assert last_frame(obj) == 1
-    go_on(max_iterations=3, timing="ITERATE")
+    go_on(max_iterations=3)
     assert last_frame(obj) == 4
-    again(max_iterations=400, keyframes=keyframes_as, timing="ITERATE")
+    again(max_iterations=400, keyframes=keyframes_as)
     end, shown = last_frame(obj), keyframes.keyed_points(obj.data)[-1]
     go_on(max_iterations=400, tolerance=0.01)  # there is nothing left to do
     assert last_frame(obj) == end
@@ -242,7 +243,7 @@ MOVES = {"untangle": "always", "max_iterations": 3}
 
 
 def test_strand_moves_are_shown_and_tubes_fitted_at_all_keys(operator):
-    obj = add_curve([knot("goeritz").vertices])
+    obj = add_curve([knot("braid(1,-2,3)", 40).vertices])
     obj.data.bevel_depth = 0.1
     operator.given |= MOVES | {"fit_bevel": True, "any_bevel": True}
     operator.start()

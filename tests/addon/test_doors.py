@@ -15,7 +15,7 @@ from mobius_flow.core import MobiusFlowError
 from other_kinds import KINDS, KNOT, POINTS, STROKES, THICK, TINT, add_edges, add_hair, add_loop, nodes, points
 from processes import finished
 
-FEW = {"max_iterations": 3}
+FEW = {"max_iterations": 3, "timing": "ITERATE", "radius": "none"}
 
 
 def there(points, wanted):

@@ -11,7 +11,7 @@ from mobius_flow.addon.scripting import begin
 from mobius_flow.core import MobiusFlowError
 from mobius_flow.core.knots import knot
 
-SHORT = {"vertices": 12, "length": 30, "untangle": "never"}
+SHORT = {"vertices": 12, "length": 30, "untangle": "never", "radius": "none", "timing": "DISTANCE"}
 RECTANGLE = [(0.0, 0, 0), (3, 0, 0.3), (3, 1, 0), (0, 1, 0.3)]  # not flat, which takes exact decisions
 ZIGZAG = [(0.0, 0, 0), (1, 0, 0.5), (2, 0, 0), (2, 2, -0.5), (1, 1, -1), (0, 2, 0)]
 

@@ -29,6 +29,7 @@ def cyclic(obj):
     return [spline.use_cyclic_u for spline in obj.data.splines]
 
 
+@pytest.mark.usefixtures("defaults")
 def test_the_result_is_the_librarys_and_a_spline_that_is_closed_later_is_another():
     obj = add_arc()
     start = Curve(stored(obj.data).astype(np.float64), Mesh((60,), (False,)))

@@ -11,7 +11,8 @@ from mobius_flow.addon.curves import bake
 from mobius_flow.addon.curves.keyframes import all_fcurves, frames_of
 from mobius_flow.addon.curves.recorded import Recorded
 
-EVEN = {"timing": "EVEN", "length": 40, "max_iterations": 8}
+pytestmark = pytest.mark.usefixtures("defaults")
+EVEN = {"radius": "none", "timing": "EVEN", "length": 40, "max_iterations": 8}
 
 
 @pytest.fixture
@@ -153,6 +154,7 @@ def asked(name, monkeypatch, **values):
 
 def test_relax_on_a_film_asks_and_a_script_says_what_it_replaces(capfd, monkeypatch):
     obj = add_trefoil()
+    bpy.context.scene.mobius_flow.timing = "ITERATE"
     relax(max_iterations=3)
     relax(max_iterations=2)
     assert "; 3 keys in place of 4 up to frame 3, " in capfd.readouterr().out

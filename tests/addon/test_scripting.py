@@ -17,6 +17,7 @@ from shapes import hopf_link, regular_polygon
 SHORT = {"max_iterations": 5, "vertices": 100, "length": 10, "timing": "DISTANCE"}
 
 
+@pytest.mark.usefixtures("defaults")
 def test_a_script_and_the_button_do_the_same():
     bpy.context.scene.mobius_flow.max_iterations = 1  # which scripts do not look at
     bpy.context.scene.mobius_flow.length = 77

@@ -15,6 +15,7 @@ from option_values import unlike_default
 from panel_layout import shown
 from shapes import torus_trefoil
 
+pytestmark = pytest.mark.usefixtures("defaults")
 SHOWN = {each.name: each for each in declared(RelaxOptions) if not each.repeated}
 GIVEN = {name: unlike_default(each) for name, each in SHOWN.items()}
 

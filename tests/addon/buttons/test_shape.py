@@ -346,4 +346,4 @@ def test_a_tube_of_constant_thickness_stays_one_until_it_is_fitted_otherwise():
         for _ in range(2):
             drawn = obj.data.bevel_depth * np.array([block.data[0].radius for block in obj.data.shape_keys.key_blocks])
             assert (np.ptp(drawn) < 1e-6) == constant == bevel.is_constant(obj.data)
-            OPS.mobius_flow_relax(max_iterations=8, vertices=120, timing="ITERATE", radius="none")
+            OPS.mobius_flow_relax(max_iterations=8, vertices=120)

@@ -15,7 +15,7 @@ from mobius_flow.core.keys.tube import free_radius, thickest_radius
 from mobius_flow.core.knots import knot
 from shapes import hopf_link, torus_trefoil
 
-SHORT = {"max_iterations": 4, "timing": "ITERATE"}
+SHORT = {"max_iterations": 4}
 
 
 def add_tight():

@@ -22,7 +22,7 @@ def library_frames(obj, **options):
     """The library's iterates for an object at the origin, as 32-bit floats."""
     splits = np.cumsum([len(spline.points) for spline in obj.data.splines])[:-1]
     components = np.split(stored(obj.data).astype(np.float64), splits)
-    iterates = iterates_of(Curve.from_components(components), RelaxOptions(**options))
+    iterates = iterates_of(Curve.from_components(components), RelaxOptions(radius="none", **options))
     return [iterate.curve.vertices.astype(np.float32) for iterate in iterates]
 
 

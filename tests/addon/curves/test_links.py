@@ -30,7 +30,7 @@ from mobius_flow.core.curve import Mesh
 from shapes import hopf_link
 
 TURNED = Matrix.LocRotScale(Vector((3, -1, 2)), Euler((0.3, 0.2, 0.7)), Vector((2, -0.5, 1)))
-SHORT = {"max_iterations": 12, "vertices": 80}
+SHORT = {"max_iterations": 12, "vertices": 80, "radius": "none"}
 
 
 def tangled(n=24):

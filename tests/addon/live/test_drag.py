@@ -179,7 +179,7 @@ def test_ctrl_leaves_a_pin_that_is_kept(operator, size, early):
 def test_a_drag_is_taken_back(operator, pressed, let_go):
     obj = add_curve([torus_trefoil(40).vertices])
     bpy.ops.ed.undo_push(message="Before")
-    begin(operator, timing="ITERATE")
+    begin(operator)
     operator.until(lambda: at_rest(operator))
     before, index = stored(obj.data), operator.run.last.index
     place = on_curve(operator)

@@ -48,12 +48,13 @@ def test_the_same_curves_as_the_headless_job(operator, scene, said):
     for obj in copies:
         obj.data = obj.data.copy()
     avoid = "Avoid" if scene is beside else ""
-    bpy.ops.curve.mobius_flow_relax(vertices=120, timing="DISTANCE", avoid=avoid)
+    film = {"timing": "DISTANCE", "length": 40, "radius": "keep"}
+    bpy.ops.curve.mobius_flow_relax(vertices=120, avoid=avoid, **film)
     for obj in copies:
         obj.select_set(False)
     for obj in live:
         obj.select_set(True)
-    operator.given["avoid"] = list(bpy.data.collections["Avoid"].objects) if avoid else []
+    operator.given |= film | {"avoid": list(bpy.data.collections["Avoid"].objects) if avoid else []}
     assert operator.start() == {"RUNNING_MODAL"}
     assert operator.until(lambda: False) == {"FINISHED"}
     assert operator.run.report.names == tuple(obj.name for obj in live)
@@ -74,7 +75,7 @@ def test_the_worker_proves_what_is_stored(operator, scene, monkeypatch):
     again = []
     monkeypatch.setattr(worker, "is_free", lambda *given: again.append(given[-1]) or True)
     avoid = list(bpy.data.collections["Avoid"].objects) if scene is beside else []
-    operator.given |= {"timing": "ITERATE", "avoid": avoid}  # which leaves no room for keys in between
+    operator.given["avoid"] = avoid
     operator.start()
     assert operator.until(lambda: False) == {"FINISHED"}
     assert operator.run.report.certified
@@ -206,7 +207,7 @@ def test_operators_can_keep_what_they_need_in_a_window():
 
 def test_the_timeline_shows_any_iterate_while_the_run_goes_on(operator, monkeypatch):
     obj, scene = add_trefoil(), bpy.context.scene
-    operator.given |= {"timing": "ITERATE", "vertices": 0}
+    operator.given["vertices"] = 0
     operator.start()
     operator.reach(3)
     start = operator.run.session.motion.start.vertices.astype(np.float32)

@@ -144,10 +144,7 @@ NAN = float("nan")
         ({"vertices": 2}, "vertices is 2"),
         ({"start_frame": 2**24}, "Start Frame is 16777216; it must be from -1048574 to 1048574"),
         ({"start_frame": -(2**24)}, "it must be from -1048574 to 1048574"),
-        (
-            {"start_frame": 1_048_000, "timing": "ITERATE"},
-            "would go on to frame 1050000, but Blender's last is 1048574",
-        ),
+        ({"start_frame": 1_048_000}, "would go on to frame 1050000, but Blender's last is 1048574"),
         ({"frames_per_iterate": 10_000.0}, "The animation would go on to frame 20000001"),
     ],
 )

@@ -131,6 +131,7 @@ def test_every_line_fits_and_no_word_is_lost(room):
     assert all(len(f"{line} {following.split()[0]}") > room for line, following in itertools.pairwise(lines))
 
 
+@pytest.mark.usefixtures("defaults")
 def test_a_timing_that_no_film_can_have_is_said_beside_its_settings(monkeypatch):
     """The film keeps its own until then."""
     said, scene = [], bpy.context.scene.mobius_flow

@@ -1,10 +1,9 @@
-"""The extension is found; knots are added from the menu, in the gallery, by search and from a drawing."""
+"""The extension is found; knots are added from the menu, in the gallery and by search."""
 
 import bpy
-import numpy as np
 from case import Steps, picture, until
 from hands import addon, button, here, key, move, open_sidebar, region, view, window
-from scene import add, clear, is_, look, obj, ready, undone
+from scene import clear, is_, look, obj, ready, undone
 
 SIXTEEN = [f"{crossings}_{k}" for crossings, k in ((3, 1), (4, 1), (5, 1), (5, 2), (6, 1), (6, 2), (6, 3), (7, 4))]
 SIXTEEN += ["7_7", "8_5", "8_18", "8_19", "L2a1", "L4a1", "L5a1", "L6a4"]
@@ -110,34 +109,7 @@ def search() -> Steps:
     yield from picture("knots-6-found")
 
 
-def drawing() -> Steps:
-    """A flat scribble becomes a knot whose crossings can be changed."""
-    clear()
-    t = np.linspace(0, 2 * np.pi, 80, endpoint=False)
-    add("Scribble", np.stack([np.sin(t) + 2 * np.sin(2 * t), np.cos(t) - 2 * np.cos(2 * t), 0.0 * t], axis=1))
-    alone()
-    yield from open_sidebar()
-    with here():
-        view().spaces.active.show_region_hud = True
-        bpy.ops.view3d.view_axis(type="TOP")
-        bpy.ops.ed.undo_push(message="Scribble")
-    yield from look()
-    yield from picture("drawing-1-scribble")
-    yield from button("curve.mobius_flow_draw_knot")
-    yield from until(lambda: obj().name == "Drawn 3_1", "the drawn trefoil")
-    assert bpy.data.objects["Scribble"].hide_get()
-    yield from picture("drawing-2-knot", differs_from="drawing-1-scribble")
-    yield from undone(lambda: len(bpy.data.objects) == 1, "the drawing")
-    assert not bpy.data.objects["Scribble"].hide_get()
-    with here():
-        change = [k == 1 for k in range(32)]
-        bpy.ops.curve.mobius_flow_draw_knot(change=change, number=True)
-    assert obj().name == "Drawn Unknot"
-    yield from picture("drawing-3-changed", differs_from="drawing-2-knot")
-    together()
-
-
-PARTS = (found, side_by_side, gallery, search, drawing)
+PARTS = (found, side_by_side, gallery, search)
 
 
 def alone() -> None:

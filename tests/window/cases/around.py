@@ -1,4 +1,4 @@
-"""Several objects: rings relaxed together, a mesh that is avoided, pinned ends, a container, a goal to morph into."""
+"""Several objects: a mesh that is avoided, pinned ends, a container, a goal to morph into."""
 
 import os
 from contextlib import suppress
@@ -29,44 +29,6 @@ CIRCLE = np.stack([np.cos(t := 2 * np.pi * np.arange(24) / 24), np.sin(t), 0 * t
 FILE = os.path.join(os.environ["ROOM"], "morphed.blend")
 MODULE = "bl_ext.user_default.mobius_flow"
 LENGTH = 40  # of the way of a morph there and back
-
-
-def together() -> Steps:
-    """Two rings have the same keys and stay linked, undone in one step; with one selected the other is avoided."""
-    clear()
-    add("A", CIRCLE)
-    second = add("B", (CIRCLE[:, [0, 2, 1]] * [1, 1, 2.5] + [-3, 1, -2]) * [0.5, 2, 1])
-    second.location, second.scale = (4, -1, 2), (2, 0.5, 1)
-    with here():
-        bpy.ops.ed.undo_push(message="Rings")
-    yield from open_sidebar()
-    yield from look()
-    before, linked = [points("A"), points("B")], linking_number(in_world("A"), in_world("B"))
-    assert abs(linked) == 1
-    yield from picture("links-1-ready")
-    yield from button("curve.mobius_flow_relax")
-    yield from is_("done")
-    assert "free of contact with themselves and each other" in said()
-    assert len(keys("A")) == len(keys("B")) > 2
-    for one, other in zip(keys("A"), keys("B"), strict=True):
-        assert linking_number(in_world("A", one), in_world("B", other)) == linked
-    yield from picture("links-2-done", differs_from="links-1-ready")
-    yield from undone(lambda: not keys("A") and not keys("B"), "both")
-    assert all(np.array_equal(points(name), each) for name, each in zip("AB", before, strict=True))
-    with here():
-        obj("A").select_set(False)
-        bpy.ops.ed.undo_push(message="One selected")
-        named = addon("curves.surroundings").warning(bpy.context, [obj("B")])
-    assert named == "'A' nearby is neither selected nor avoided, and may be crossed", named
-    yield from picture("links-3-one-selected")
-    yield from button("curve.mobius_flow_avoid")
-    yield from until(lambda: window().scene.mobius_flow_surroundings.avoid is not None, "the collection")
-    yield from button("curve.mobius_flow_relax")
-    yield from is_("done")
-    assert said().endswith("free of contact with itself, and with 'A'"), said()
-    assert not keys("A")
-    assert {linking_number(in_world("A"), in_world("B", each)) for each in keys("B")} == {linked}
-    yield from picture("links-4-avoided", differs_from="links-3-one-selected")
 
 
 def around_a_mesh() -> Steps:
@@ -288,4 +250,4 @@ def chosen() -> Steps:
     yield from until(lambda: latest() is not last, "the run")
 
 
-PARTS = (together, around_a_mesh, pinned_ends, packed, morphed)
+PARTS = (around_a_mesh, pinned_ends, packed, morphed)

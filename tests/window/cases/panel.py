@@ -1,4 +1,4 @@
-"""The panels by mouse clicks: presets, the report, Shape, what is refused and mended, and all of it in German."""
+"""The panels by mouse clicks: presets, the report, a tube, what is refused and mended, and all of it in German."""
 
 from pathlib import Path
 
@@ -7,7 +7,7 @@ import numpy as np
 from case import Steps, picture, until
 from hands import addon, button, here, key, move, open_panels, open_sidebar, region, view, window
 from interruption import undo
-from scene import add, clear, in_world, is_, keys, knot, latest, look, obj, points, reaches, ready, run, steps, undone
+from scene import add, clear, is_, keys, knot, latest, look, obj, points, reaches, ready, run, undone
 
 LIGHT = Path(bpy.utils.system_resource("SCRIPTS")) / "presets/interface_theme/Blender_Light.xml"
 
@@ -89,56 +89,6 @@ def trouble() -> Steps:
     yield from picture("panel-8-shown", differs_from="panel-7-refused")
     undo()
     yield from until(lambda: obj().mode == "OBJECT", "Show to be undone")
-
-
-def expert() -> Steps:
-    """What is set in the sub-panel with the other options is what is relaxed with."""
-    open_panels("expert")
-    yield from ready()
-    settings = bpy.context.scene.mobius_flow
-    settings.energy, settings.metric, settings.max_iterations = "edge", "h3-2", 3
-    region("UI").tag_redraw()
-    yield from picture("expert")
-    yield from button("curve.mobius_flow_relax")
-    yield from is_("done")
-    assert run() is None
-    assert len(steps()) == 4
-
-
-def shape() -> Steps:
-    """A relaxed knot is kept in size and laid flat; undo step by step."""
-    open_panels("shape")
-    yield from ready()
-    window().scene.mobius_flow.length = 100
-    yield from button("curve.mobius_flow_relax")
-    yield from is_("done")
-    yield from look()
-    yield from picture("shape-1-relaxed")
-    window().scene.mobius_flow.keep_size = "BOX"
-    before = in_world()
-    yield from button("curve.mobius_flow_keep_size")
-    yield from until(lambda: not near(before), "the knot to be shown in another size")
-    yield from picture("shape-3-kept", differs_from="shape-1-relaxed")
-    yield from button("curve.mobius_flow_lay_flat")
-
-    def flat() -> bool:
-        with here():
-            curve = addon("curves.recorded").BakedKeys([obj()]).curves[-1]
-        *across, up = np.ptp(curve.vertices, axis=0)
-        return bool(up < 0.9 * min(across))
-
-    yield from until(flat, "the knot to lie flat")
-    yield from look()
-    yield from picture("shape-4-flat", differs_from="shape-3-kept")
-    yield from undone(lambda: tuple(obj().rotation_euler) == (0, 0, 0), "Lay Flat")
-    yield from undone(lambda: near(before), "Keep Size")
-    assert addon("curves.bake").is_baked(obj().data)
-    assert not addon("curves.bake").is_edited(obj().data)
-
-
-def near(shape: np.ndarray) -> bool:
-    """Whether the knot is shown as it was; that scales the object, not its points, and is rounded."""
-    return np.allclose(in_world(), shape, rtol=0, atol=1e-5)
 
 
 def tube() -> Steps:
@@ -266,4 +216,4 @@ def translated(text: str) -> str:
     return str(bpy.app.translations.pgettext_iface(text, addon("translations").CONTEXT))
 
 
-PARTS = (report, trouble, expert, shape, tube, mending, german)
+PARTS = (report, trouble, tube, mending, german)
