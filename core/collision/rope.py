@@ -124,7 +124,8 @@ def _near(
         # along the curve between the edges, ahead from i and back
         ways = np.stack([position[j] - position[i] - longest[i], once_round[component[i]] - position[j] - longest[j]])
         ways[1] += position[i]
-        half = np.where(component[i] == component[j], np.pi * radius[component[i]] * (1.0 - _SLACK), 0.0)
+        ways[:, component[i] != component[j]] = np.inf  # all of their points count
+        half = np.pi * radius[component[i]] * (1.0 - _SLACK)
         counts = (ways + longest[i] + longest[j] >= half).all(axis=0)
         i, j, ways, half = i[counts], j[counts], ways[:, counts], half[counts]
         whole = (ways >= half).all(axis=0)

@@ -86,6 +86,20 @@ def test_random_legs_against_an_exact_decision(kind: str) -> None:
         assert checker.stay_apart(moving[:2], moving[2:], 2 * width[k]) == exact[k]
 
 
+@pytest.mark.parametrize("first", range(0, 24, 6))
+@pytest.mark.parametrize("sizes", [(24, 24), (24, 8), (8, 24)])
+def test_closed_components_never_pass_through_each_other(sizes: tuple[int, int], first: int) -> None:
+    """Wherever numbers of vertices begin: rings that are unlinked by a motion, and the way back."""
+    rings = [regular_polygon(n).vertices for n in sizes]
+    start, end = (
+        np.concatenate([np.roll(rings[0], first, axis=0), rings[1][:, [0, 2, 1]] + [shift, 0.01, 0.02]])
+        for shift in (1.05, 2.5)
+    )
+    for ends in ((start, end), (end, start)):
+        assert not is_rope(Mesh(sizes), *ends, np.full(2, 1e-4))
+        assert is_rope(Mesh(sizes), ends[0], ends[0], np.full(2, 0.05))
+
+
 @pytest.mark.parametrize(("name", "share"), [("3_1", 0.999), ("L6a4", 0.999), ("goeritz", 0.9)])
 def test_thickness_is_the_largest_radius_of_smooth_curves(name: str, share: float) -> None:
     """But for sharp corners, where more than half of an edge may be an arc's, and more than half a circle is tested."""
