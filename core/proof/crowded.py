@@ -50,8 +50,9 @@ def crowded(
     low, high = ends.min(axis=0) - r[:, None], ends.max(axis=0) + r[:, None]
     for pairs in overlapping((low, high)):
         i, j = np.sort(pairs, axis=0)
-        half = np.where(c[i] == c[j], np.pi * r[i] * (1.0 - SLACK), 0.0)
+        half = np.pi * r[i] * (1.0 - SLACK)
         ways = np.stack([position[j] - position[i] - longest[i], around[c[i]] - position[j] - longest[j] + position[i]])
+        ways[:, c[i] != c[j]] = np.inf  # all of their points count
         counts = (ways + longest[i] + longest[j] >= half).all(axis=0)
         i, j, half, ways = i[counts], j[counts], half[counts], ways[:, counts]
         whole = (ways >= half).all(axis=0)

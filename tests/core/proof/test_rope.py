@@ -11,6 +11,7 @@ from mobius_flow.core.collision import is_rope
 from mobius_flow.core.knots import knot
 from mobius_flow.core.proof import checker, verify
 from mobius_flow.core.proof.filter import FloatingSieve
+from shapes import regular_polygon
 
 Arrays = dict[str, np.ndarray]
 COUNT = int(os.environ.get("MOBIUS_FLOW_MOTIONS", "30"))
@@ -169,3 +170,14 @@ def test_the_checker_bounds_corners_as_finely_as_runs_do(margin: float) -> None:
     edge, shrinking = ((size, 0, 0),) * 2, ((0, 2 * size, 0), (size // 100, size, 0))
     assert checker.arcs_fit(edge, [shrinking], int(size * (1.0 - margin)))
     assert not checker.arcs_fit(edge, [shrinking], int(size * (1.0 + margin)))
+
+
+@pytest.mark.parametrize("first", [7, 19])
+def test_strands_of_closed_components_count(tmp_path: Path, first: int) -> None:
+    """Wherever the numbers of vertices begin: rings that come nearer than two radii, and those that do not."""
+    ring = regular_polygon(24).vertices
+    rings = [np.roll(ring, first, axis=0), ring[:, [0, 2, 1]] + [1.0, 0.01, 0.02]]
+    near, far = (np.concatenate([rings[0], rings[1] + [shift, 0.0, 0.0]]) for shift in (0.25, 0.1))
+    for ends, accepted in (((near, far), False), ((far, far), True)):
+        arrays = {"stage_000": np.stack(ends), "component_sizes_000": np.array([24, 24]), "radius": np.full(2, 0.4)}
+        assert [each.accepted for each in verdicts(tmp_path, arrays)] == [accepted] * 2
