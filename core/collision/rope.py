@@ -14,7 +14,7 @@ All is decided in floating-point numbers with error bounds: what is proved is so
 
 from collections.abc import Iterator, Sequence
 from functools import partial
-from itertools import chain, product
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -117,10 +117,8 @@ def _near(
         return near
 
     widest = float(radius.max())
-    neighbours = np.stack([np.arange(mesh.edges), mesh.next])[:, mesh.next != np.arange(mesh.edges)]
-    found = ((tree.order[a], tree.order[b]) for a, b in tree.pairs(within(2.0 * widest)))
-    for a, b in chain([(neighbours[0], neighbours[1])], found):
-        i, j = np.minimum(a, b), np.maximum(a, b)
+    for a, b in tree.pairs(within(2.0 * widest)):  # without neighbours, see docs/certificate.md
+        i, j = np.sort(tree.order[np.stack([a, b])], axis=0)
         # along the curve between the edges, ahead from i and back
         ways = np.stack([position[j] - position[i] - longest[i], once_round[component[i]] - position[j] - longest[j]])
         ways[1] += position[i]

@@ -500,8 +500,8 @@ class RopeLeg:
         a, b, half = self.longest[i], self.longest[j], PI[0] * self.radius[c] // PI[1]
         ahead = self.position[j] - self.position[i] - a
         back = self.around[c] - self.position[j] - b + self.position[i] if self.closed[c] else half
-        if min(ahead, back) + a + b < half:
-            return
+        if min(ahead, back) + a + b < half or j in (self.after.get(i), self.before.get(i)):
+            return  # no points count, or those of neighbours, which stay apart where arcs fit
         if min(ahead, back) >= half:
             yield entire, entire
             return

@@ -53,7 +53,9 @@ def crowded(
         half = np.pi * r[i] * (1.0 - SLACK)
         ways = np.stack([position[j] - position[i] - longest[i], around[c[i]] - position[j] - longest[j] + position[i]])
         ways[:, c[i] != c[j]] = np.inf  # all of their points count
-        counts = (ways + longest[i] + longest[j] >= half).all(axis=0)
+        # those of neighbours always stay apart
+        counts = (heads[tails[i]] != tails[j]) & (heads[tails[j]] != tails[i])
+        counts &= (ways + longest[i] + longest[j] >= half).all(axis=0)
         i, j, half, ways = i[counts], j[counts], half[counts], ways[:, counts]
         whole = (ways >= half).all(axis=0)
         a, b = i[whole], j[whole]

@@ -131,6 +131,18 @@ def test_regular_polygons(edges: int) -> None:
         assert found is expected
 
 
+@pytest.mark.parametrize("turn", [120.0, 160.0, 179.0])
+def test_however_sharp_corners_are_those_of_ropes(turn: float) -> None:
+    """Points of both edges that count are apart, though hardly."""
+    theta = np.radians(turn)
+    radius = 0.5 / np.tan(0.5 * theta)
+    corner = np.array([[-1.0, 0.0], [0.0, 0.0], [np.cos(theta), np.sin(theta)]])
+    assert is_rope(Mesh((3,), (False,)), corner, corner, np.array([radius]))
+    a, b = np.meshgrid(*2 * [np.linspace(0.0, 1.0, 301)])
+    apart = np.linalg.norm(a[..., None] * corner[0] - b[..., None] * corner[2], axis=2)
+    assert 1.0 < apart[a + b >= 1.0 + (np.pi - theta) * radius].min() / (2.0 * radius) < 1.3
+
+
 def test_a_motion_stops_where_strands_come_too_near() -> None:
     """Two parallel strands approach from a distance of 1 to none: ropes of .1 until it is .2."""
     t = np.linspace(0.0, 1.0, 11)

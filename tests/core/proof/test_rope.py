@@ -114,6 +114,24 @@ def test_the_plain_checker_agrees_about_forgeries(tmp_path: Path, run: Arrays) -
     assert {one for one, _ in answers} == {True, False} or not any(one for one, _ in answers)
 
 
+@pytest.mark.parametrize(
+    ("shape", "closed", "limit"),
+    [
+        ([[0, 0.1], [0, -0.1], [5, 0]], True, 0.2 * 5.0 / (0.2 + 2.0 * np.hypot(5.0, 0.1))),  # inscribed circle
+        ([[5, 0.05], [0, 0.1], [0, -0.1], [5, -0.05]], False, 0.05),  # half of what is between the ends
+    ],
+)
+def test_strands_next_to_a_corner_are_those_of_the_rope_that_fits(
+    tmp_path: Path, shape: list[list[float]], closed: bool, limit: float
+) -> None:
+    """However sharp it is; those after the next are looked at."""
+    arrays = {"stage_000": np.array([shape], dtype=float), "component_sizes_000": np.array([len(shape)])}
+    arrays["component_closed_000"] = np.array([closed])
+    for share, fits in ((0.99, True), (1.01, False)):
+        found = verdicts(tmp_path, arrays | {"radius": np.array([share * limit])})
+        assert [verdict.accepted for verdict in found] == [fits, fits]
+
+
 def test_obstacles_are_as_far_as_the_radius(tmp_path: Path) -> None:
     wall = Obstacle([[-5.0, -5, 0], [5, -5, 0], [0, 9, 0]], [[0, 1, 2]])
     strand = np.array([[0.0, 0, 1], [1, 0, 1]])
