@@ -72,7 +72,7 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[Path]:
     except (OSError, ValueError) as error:  # a ValueError for a path with a null character
         if isinstance(error, MobiusFlowError):
             raise
-        raise OutputError(path, error) from error
+        raise OutputError(os.fspath(path), error) from error
     finally:
         if temporary is not None:
             temporary.unlink(missing_ok=True)
