@@ -34,23 +34,3 @@ TERMS: Mapping[str, Term] = Table(
     {term.name: term for term in _TERMS},
 )
 """What users can add to an energy, by name; packages join by entry points in ``mobius_flow.terms``."""
-
-__all__ = [
-    "ENERGIES",
-    "TERMS",
-    "Assembled",
-    "Barrier",
-    "Bending",
-    "Density",
-    "Energy",
-    "KPointEnergy",
-    "MoebiusEnergy",
-    "Objective",
-    "Rule",
-    "Stiff",
-    "Term",
-    "TwiceDifferentiable",
-    "Weighted",
-    "is_moebius_invariant",
-    "moebius_kpoint",
-]

@@ -6,15 +6,3 @@ give it a line in the table; reading, error messages and the atomic replacement 
 
 from .codes import knot_list
 from .formats import FORMATS, CurveFile, Format, format_of, load_curve, read_curve, write_curve, written_formats
-
-__all__ = [
-    "FORMATS",
-    "CurveFile",
-    "Format",
-    "format_of",
-    "knot_list",
-    "load_curve",
-    "read_curve",
-    "write_curve",
-    "written_formats",
-]

@@ -9,30 +9,3 @@ from .names import ALIASES, HARD_UNKNOTS, KNOTS, UnknownKnotError, braid_word, k
 from .planar import coded_knot, diagram_knot
 from .scrambles import scramble
 from .shapes import smooth_knot
-
-__all__ = [
-    "ALIASES",
-    "FORMULAS",
-    "HARD_UNKNOTS",
-    "KNOTS",
-    "Drawing",
-    "Effort",
-    "KnotType",
-    "UnknownKnotError",
-    "braid_closure",
-    "braid_word",
-    "cable",
-    "coded_knot",
-    "diagram_knot",
-    "double",
-    "freedman",
-    "knot",
-    "knot_names",
-    "knot_type",
-    "lissajous_knot",
-    "overhand",
-    "rounded",
-    "scramble",
-    "smooth_knot",
-    "torus_knot",
-]

@@ -3,16 +3,3 @@
 from .crossings import AXES
 from .separate import Separated, SeparateOptions, separate, separating
 from .tighten import Strut, Tightened, TightenOptions, tighten, tightening
-
-__all__ = [
-    "AXES",
-    "SeparateOptions",
-    "Separated",
-    "Strut",
-    "TightenOptions",
-    "Tightened",
-    "separate",
-    "separating",
-    "tighten",
-    "tightening",
-]

@@ -2,5 +2,3 @@
 
 from .action import NO_SYMMETRY, Symmetry
 from .group import IS_NAME, TOLERANCE, SymmetryGroup, standing, symmetries
-
-__all__ = ["IS_NAME", "NO_SYMMETRY", "TOLERANCE", "Symmetry", "SymmetryGroup", "standing", "symmetries"]

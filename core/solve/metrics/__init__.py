@@ -17,17 +17,3 @@ METRICS: Mapping[str, Metric] = {
     )
 }
 """Every metric that users can choose, by name."""
-
-__all__ = [
-    "METRICS",
-    "DenseInnerProduct",
-    "FractionalMetric",
-    "H1Metric",
-    "H2Metric",
-    "InnerProduct",
-    "L2Metric",
-    "Metric",
-    "MoebiusMetric",
-    "SparseInnerProduct",
-    "WithoutRule",
-]
