@@ -77,19 +77,15 @@ class Units:
 class Task:
     """A curve among obstacles, some of whose vertices are pinned.
 
-    - ``curve``: an embedded polygon, in any units and place.
-    - ``obstacles``: surfaces and polylines, in the curve's units, that it must never touch.
-    - ``pins``: indices, from 0, of vertices that stay exactly where they are.  Nothing can move on an arc that is
-      straight from one of them to the next.
-    - ``pin_tangents``: whether the neighbours of pins in the refined curve are pinned too, and with them its direction.
-
     Raises OptionError if a pin is not a vertex of the curve or is named twice.
     """
 
-    curve: Curve
-    obstacles: tuple[Obstacle, ...] = ()
+    curve: Curve  #: an embedded polygon, in any units and place
+    obstacles: tuple[Obstacle, ...] = ()  #: surfaces and polylines, in the curve's units, that it must never touch
+    #: Indices, from 0, of vertices that stay exactly where they are.  Nothing can move on an arc that is straight from
+    #: one of them to the next.
     pins: tuple[int, ...] = ()
-    pin_tangents: bool = False
+    pin_tangents: bool = False  #: whether the neighbours of pins in the refined curve, and so its direction, are pinned
 
     def __post_init__(self) -> None:
         walls = {wall.key: wall for wall in self.obstacles}  # one that is given twice would repel twice

@@ -29,24 +29,15 @@ class Status(Enum):
 @checked_fields
 @dataclass(frozen=True)
 class Outcome:
-    """How a relaxation ended.
+    """How a relaxation ended."""
 
-    - ``status``: why it ended.
-    - ``clauses``: the reason in words, and any further remarks.
-    - ``negative_eigenvalues``: number for the Lagrangian's Hessian at a converged curve, if known: 0 at a minimum.
-    - ``symmetric_negative_eigenvalues``: the number among displacements that keep the symmetry, if one is kept.
-    - ``sampled_errors``: errors of the hierarchical solver when last checked: at the end, unless that came suddenly.
-    - ``place``: where on the last curve the reason lies, if it has a place.
-    - ``unbounded``: whether strands pull tight without limit, so that there is no least energy to look for.
-    """
-
-    status: Status
-    clauses: tuple[str, ...]
-    negative_eigenvalues: int | None = None
-    symmetric_negative_eigenvalues: int | None = None
-    sampled_errors: SampledErrors | None = None
-    place: Place | None = None
-    unbounded: bool = False
+    status: Status  #: why it ended
+    clauses: tuple[str, ...]  #: the reason in words, and any further remarks
+    negative_eigenvalues: int | None = None  #: of the Lagrangian's Hessian at a converged curve; 0 at a minimum
+    symmetric_negative_eigenvalues: int | None = None  #: those among displacements that keep a symmetry that is kept
+    sampled_errors: SampledErrors | None = None  #: of the hierarchical solver, at the end unless that came suddenly
+    place: Place | None = None  #: where on the last curve the reason lies, if it has a place
+    unbounded: bool = False  #: whether strands pull tight without limit, so that there is no least energy to look for
 
     def __repr__(self) -> str:
         return f"<Outcome: {self.message:.100}>"
@@ -115,28 +106,17 @@ class Phase:
 @checked_fields
 @dataclass(frozen=True, eq=False)
 class Result:
-    """How a relaxation ended, and where.
+    """How a relaxation ended, and where."""
 
-    - ``outcome``: why it ended.
-    - ``last``: the last iterate.
-    - ``energies``: the objective at every iterate, the start first.
-    - ``fallback_steps``: iterates reached by the fallback method.
-    - ``seconds``: wall-clock time.
-    - ``method``: name of the requested method.
-    - ``task``: the task that was to be relaxed.
-    - ``phases``: the relaxation on each mesh, in order.
-    - ``least_thickness``: of all iterates, if the curve is to be a rope.
-    """
-
-    outcome: Outcome
-    last: Iterate
-    energies: tuple[float, ...]
-    fallback_steps: tuple[int, ...]
-    seconds: float
-    method: str
-    task: Task
-    phases: tuple[Phase, ...] = ()
-    least_thickness: float | None = None
+    outcome: Outcome  #: why it ended
+    last: Iterate  #: the last iterate
+    energies: tuple[float, ...]  #: the objective at every iterate, the start first
+    fallback_steps: tuple[int, ...]  #: iterates reached by the fallback method
+    seconds: float  #: wall-clock time
+    method: str  #: name of the requested method
+    task: Task  #: what was to be relaxed
+    phases: tuple[Phase, ...] = ()  #: the relaxation on each mesh, in order
+    least_thickness: float | None = None  #: of all iterates, if the curve is to be a rope
 
     def __repr__(self) -> str:
         after = counted(self.iterations, "iteration")

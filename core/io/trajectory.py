@@ -35,42 +35,29 @@ class StrandMoves(NamedTuple):
 @checked_fields
 @dataclass(frozen=True, eq=False)
 class Iterate:
-    """One accepted curve of a relaxation, immutable, in the user's units.
+    """One accepted curve of a relaxation, immutable, in the user's units."""
 
-    - ``index``: 0 for the (refined) start, then 1, 2, ...
-    - ``curve``: the polygon; the iterates of a run have the same vertices where the mesh is ``fixed``.
-    - ``energy``: the objective, which is the energy that is minimised, plus the barrier.  All iterates of a strand move
-      have the ``energy``, ``gradient_norm`` and ``edge_length_error`` of its end.
-    - ``gradient_norm``: norm of the projected gradient (dimensionless), in the metric in which the method takes it:
-      that of this curve, or of one up to two steps before.
-    - ``step_size``: the step size τ that led here, 0 for the start, for motions of moves, and where the mesh changes.
-    - ``path``: the motion from the previous iterate: vertices, each (n, m), at the ends of its straight legs, of which
-      the last is this curve.  Empty for the start, and where the mesh changes: there this is the previous curve with
-      other vertices on its edges.
-    - ``certified``: whether every leg from the start of the run to here was proved free of contact.
-    - ``edge_length_error``: max |log ℓ/ℓ⁰| over the edges.
-    - ``method``: name of the method that took the step: the fallback method where the requested one was stuck.
-    - ``grown``: factor by which target lengths have grown since the start.
-    - ``pins``: pinned vertices of this curve, counted from 0, and those between them that cannot move.
-    - ``strand_moves``: the strand moves so far; None before the first one.
-    - ``symmetry``: name of the symmetry group that is kept, if any.
-    - ``radius``: of each component as a rope, in the user's units; None if the curve is none.
-    """
-
-    index: int
-    curve: Curve
+    index: int  #: 0 for the (refined) start, then 1, 2, ...
+    curve: Curve  #: the polygon; the iterates of a run have the same vertices where the mesh is ``fixed``
+    #: The objective, which is the energy that is minimised, plus the barrier.  All iterates of a strand move have the
+    #: ``energy``, ``gradient_norm`` and ``edge_length_error`` of its end.
     energy: float
+    #: Norm of the projected gradient (dimensionless), in the metric in which the method takes it: that of this curve,
+    #: or of one up to two steps before.
     gradient_norm: float
-    step_size: float
+    step_size: float  #: τ that led here, 0 for the start, for motions of moves, and where the mesh changes
+    #: The motion from the previous iterate: vertices, each (n, m), at the ends of its straight legs, of which the last
+    #: is this curve.  Empty for the start, and where the mesh changes: there this is the previous curve with other
+    #: vertices on its edges.
     path: tuple[FloatArray, ...]
-    certified: bool
-    edge_length_error: float
-    method: str
-    grown: float = 1.0
-    pins: tuple[int, ...] = ()
-    strand_moves: StrandMoves | None = None
-    symmetry: str = ""
-    radius: tuple[float, ...] | None = None
+    certified: bool  #: whether every leg from the start of the run to here was proved free of contact
+    edge_length_error: float  #: max |log ℓ/ℓ⁰| over the edges
+    method: str  #: name of the one that took the step: the fallback method where the requested one was stuck
+    grown: float = 1.0  #: factor by which target lengths have grown since the start
+    pins: tuple[int, ...] = ()  #: pinned vertices, counted from 0, and those between them that cannot move
+    strand_moves: StrandMoves | None = None  #: those so far; None before the first one
+    symmetry: str = ""  #: name of the symmetry group that is kept, if any
+    radius: tuple[float, ...] | None = None  #: of each component as a rope, in the user's units; None if it is none
 
     def __repr__(self) -> str:
         proved = "certified" if self.certified else "not certified"
