@@ -4,10 +4,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ..base.errors import CurveError
-from ..base.messages import COMPONENT, EDGE, VERTEX, Message
+from ..base import COMPONENT, EDGE, VERTEX, CurveError, FloatArray, Message
 from ..base.tolerances import MIN_GAP, MIN_SPACING, ON_EDGE_UNITS, PLANE_ROUNDING
-from ..base.types import FloatArray
 from ..curve import Curve, Mesh, Obstacle, at_edges, at_vertices
 from .boxes import BoxTree, corners, nearer_than, still_triangles
 from .exact import EDGES, crossing, first_contact

@@ -7,8 +7,7 @@ import numpy as np
 
 from ..base import CurveError, FloatArray, IntArray, Message, OptionError, Place
 from ..collision import is_free, is_rope, minimal_gap, rope_motion, survives_rounding, thickness, written
-from ..curve import TAUT, Curve, Mesh, Obstacle, arcs, at_edges, check_closed, free_edges, spans
-from ..curve.measures import bending_radii
+from ..curve import TAUT, Curve, Mesh, Obstacle, arcs, at_edges, bending_radii, check_closed, free_edges, spans
 from ..curve.refine import Resolution, graded_spacing, normalised, refined_alike
 from ..curve.symmetry import TOLERANCE, Symmetry, SymmetryGroup, symmetries
 from ..descent import METHODS, Problem, Task

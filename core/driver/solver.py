@@ -8,9 +8,8 @@ from typing import ClassVar
 from ..base import VERTEX_COUNT, CurveError, Message, OptionError
 from ..curve import Curve, Obstacle
 from ..descent import METHODS, Method
-from ..energies import ENERGIES, TERMS, Energy, MoebiusEnergy, Objective, Stiff, Weighted
+from ..energies import ENERGIES, TERMS, Energy, MoebiusEnergy, Objective, Rule, Stiff, Weighted
 from ..energies.hierarchy import HierarchicalMoebiusEnergy
-from ..energies.quadrature import Rule
 from ..solve.hierarchical import MAX_VERTICES, block_count, compressed
 from ..solve.metrics import METRICS, Metric
 from ..solve.saddle.iterative import Tolerances

@@ -10,10 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.arguments import checked, checked_fields
-from ..base.errors import MobiusFlowError, counted
-from ..base.files import atomic_write
-from ..base.types import BoolArray, FloatArray, IntArray
+from ..base import BoolArray, FloatArray, IntArray, MobiusFlowError, atomic_write, checked, checked_fields, counted
 from ..curve import Curve, Mesh, Obstacle
 
 

@@ -9,8 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..base.arguments import checked
-from ..base.types import FloatArray
+from ..base import FloatArray, checked
 from .checker import Archive, Verdict, check
 from .filter import FloatingSieve
 

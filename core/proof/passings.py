@@ -9,9 +9,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
 
-from ..base.errors import CurveError
+from ..base import BoolArray, CurveError, FloatArray, IntArray
 from ..base.tolerances import SIEVE_ROUNDING, SIEVE_UNDERFLOW
-from ..base.types import BoolArray, FloatArray, IntArray
 from .checker import START, Time, between, contacts, whole
 from .planes import doubtful
 

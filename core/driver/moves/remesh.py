@@ -10,8 +10,7 @@ import numpy as np
 
 from ...base import BULK, FloatArray, IntArray, Message, MobiusFlowError, joined
 from ...collision import Contact, survives_rounding
-from ...curve import Curve, arcs
-from ...curve.measures import bending_radii
+from ...curve import Curve, arcs, bending_radii
 from ...curve.refine import (
     SPLIT,
     Resolution,

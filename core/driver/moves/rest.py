@@ -13,9 +13,8 @@ import numpy as np
 from ...base.messages import Message
 from ...curve import Curve, Mesh
 from ...curve.symmetry import NO_SYMMETRY
-from ...descent import METHODS, Method, NoStep, Point, Step
+from ...descent import METHODS, Method, NoStep, Point, Step, on_target
 from ...descent.hessian import SoftModes, smooth_starts, soft_modes
-from ...descent.line_searches import on_target
 from ...descent.second_order import Curvature, Newton, step_off
 from ...energies.barrier import replaced_pairs
 from ...energies.components import energy_scale

@@ -8,17 +8,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from ...base.deadline import TimeIsUp
-from ...base.errors import MobiusFlowError
-from ...base.messages import Message
-from ...base.types import FloatArray, IntArray
-from ...collision import check_gap
-from ...collision.motion import walk
-from ...curve import Curve
-from ...curve.pins import arcs, holds
-from ...descent import Leg, Point, Step
-from ...descent.line_searches import on_target
-from ...descent.step import attempt
+from ...base import FloatArray, IntArray, Message, MobiusFlowError, TimeIsUp
+from ...collision import check_gap, walk
+from ...curve import Curve, arcs, holds
+from ...descent import Leg, Point, Step, attempt, on_target
 from ...io.trajectory import Iterate, StrandMoves
 from ...knots.closures import closed_towards
 from ...knots.diagrams import QuickInvariants, quick_invariants
