@@ -1,31 +1,27 @@
 """Sort out what of a rope is certainly as it must be during a leg, in floating-point numbers with error bounds."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from itertools import repeat
 
 import numpy as np
 
-from ..base.types import BoolArray, FloatArray, IntArray
+from ..base.types import FloatArray, IntArray
+from .checker import Polygons
 from .planes import doubtful, overlapping
 
 SLACK = 1e-12  # relative to the size of coordinates and lengths, far above their rounding
 
 
 def crowded(
-    start: FloatArray,
-    end: FloatArray,
-    heads: IntArray,
-    part: IntArray,
-    closed: BoolArray,
-    radius: FloatArray,
-    triangles: FloatArray,
+    start: FloatArray, end: FloatArray, polygons: Polygons, radius: Sequence[float], triangles: FloatArray
 ) -> Iterator[tuple[int, int, int | None]]:
     """Yield what of a rope is not proved: tails of edges, twice for their corners, or ends of one and a triangle.
 
-    Vertices, shape (n, m), as for `doubtful_pairs`; the component of each vertex, and whether it is closed and its
-    radius, shape (components,).  See `checker.RopeLeg` for what is to be proved.
+    Vertices, shape (n, m), as for `doubtful_pairs`.  See `checker.RopeLeg` for what is to be proved.
     """
+    heads, closed = np.array(polygons.heads), np.array(polygons.closed)
+    part = np.repeat(np.arange(len(radius)), [len(each) for each in polygons.parts])  # the component of each vertex
     n = len(start)
     exponent = -int(np.frexp(max(np.abs(start).max(), np.abs(end).max(), np.abs(triangles).max(initial=0.0)))[1])
     start, end, still = (np.ldexp(x, exponent) for x in (start, end, triangles.reshape(-1, 3)))
@@ -35,7 +31,7 @@ def crowded(
     number = np.full(n, -1)
     number[tails] = np.arange(len(tails))
     c = part[tails]
-    r = np.ldexp(radius, exponent)[c] * (1.0 + SLACK) + SLACK
+    r = np.ldexp(np.array(radius), exponent)[c] * (1.0 + SLACK) + SLACK
     spans = np.stack([p[heads[tails]] - p[tails] for p in (start, end)])
     own = np.einsum("tem,tem->te", spans, spans)
     longest = np.sqrt(own.max(axis=0)) * (1.0 + SLACK) + SLACK

@@ -29,10 +29,8 @@ class FloatingSieve:
         self, start: Points, end: Points, polygons: Polygons, radius: Sequence[float]
     ) -> Iterator[tuple[int, int, int | None]]:
         """Yield what of a rope must be decided; see `checker.Nearby`."""
-        part = np.repeat(np.arange(len(radius)), [len(each) for each in polygons.parts])
-        heads, closed = np.array(polygons.heads), np.array(polygons.closed)
         before, after = map(self._rows, (start, end))
-        yield from crowded(before, after, heads, part, closed, np.array(radius), self.triangles)
+        yield from crowded(before, after, polygons, radius, self.triangles)
 
     def _rows(self, points: Points) -> FloatArray:
         if self._last[0] is not points:
