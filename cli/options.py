@@ -12,7 +12,7 @@ from .. import __version__
 from ..addon.pictures.looks import DEFAULT as DEFAULT
 from ..addon.pictures.looks import LOOKS
 from ..core import RelaxOptions, Task, read_obstacle
-from ..core.base import THREADS, Option, OptionError, choice, declared
+from ..core.base import BLAS, Option, OptionError, choice, declared
 from ..core.io import CurveFile
 from .parser import further
 
@@ -140,7 +140,7 @@ def environment() -> dict[str, object]:
     """The version, the BLAS threads and the libraries, as plain values."""
     return {
         "version": __version__,
-        "blas_threads": THREADS,
+        "blas_threads": BLAS.threads,
         "python": platform.python_version(),
         "numpy": numpy.__version__,
         "scipy": scipy.__version__,

@@ -20,6 +20,6 @@ from .errors import (
 from .files import atomic_write, check_place, status_of, write_file
 from .messages import COMPONENT, EDGE, OBSTACLE, OF_GOAL, VERTEX, VERTEX_COUNT, Message, Sentence, joined
 from .plugins import Table
-from .threads import BLAS, THREADS
+from .threads import BLAS
 from .tolerances import BULK, ENERGY_ROUNDING, MIN_GAP, PLANE_ROUNDING, PLANE_UNDERFLOW
 from .types import BoolArray, ComplexArray, FloatArray, IntArray, frozen, real

@@ -8,13 +8,11 @@ import threading
 from collections.abc import Generator, Iterator
 from contextlib import closing, contextmanager
 from functools import cached_property
-from typing import Any, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 import numpy.linalg  # noqa: F401 (loads NumPy's BLAS)
 import scipy.linalg  # noqa: F401 (loads SciPy's)
 from threadpoolctl import ThreadpoolController
-
-THREADS = 1  # of each pool while the library works
 
 _Yielded = TypeVar("_Yielded")
 _Returned = TypeVar("_Returned")
@@ -27,6 +25,8 @@ class BlasPools:
     Blocks may nest, and those of several threads overlap; the last to end gives the pool its number back.  OpenMP's
     pools belong to the thread that calls, and so do their blocks.  Accelerate, on macOS, cannot be bounded.
     """
+
+    threads: ClassVar[int] = 1  # of each pool while the library works
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -46,7 +46,7 @@ class BlasPools:
                 blocks, threads = self._held.get(pool) or (0, library.num_threads)
                 self._held[pool] = blocks + 1, threads
                 if not blocks:
-                    library.set_num_threads(THREADS)
+                    library.set_num_threads(self.threads)
         try:
             yield
         finally:

@@ -7,13 +7,13 @@ search of a few milliseconds would spend a good part of them on finding out whic
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import ClassVar
 
 import numpy as np
 
 from ..base import PLANE_UNDERFLOW, BoolArray, FloatArray, IntArray
 from ..curve import Mesh, Obstacle, component_order, near_to_near
 
-CHUNK = 1 << 14  # pairs of boxes handled at once: bounds the memory whatever the curve
 _HALVES = {  # numbers of the halves of the first and of the second box, if they are halved
     (halved, also): np.array([(k, j) for k in range(1 + halved) for j in range(1 + also)]).T[:, :, None]
     for halved in (False, True)
@@ -53,6 +53,7 @@ class BoxTree:
     order: IntArray  # edge, or triangle, at each position of the finest level; shape (k,)
     corners: IntArray  # vertices of the simplex at each position; shape (2, k) for edges, (3, k) for triangles
     levels: tuple[Level, ...]  # from the coarsest to single simplices
+    chunk: ClassVar[int] = 1 << 14  # pairs of boxes handled at once: bounds the memory whatever the curve
 
     @classmethod
     def build(cls, mesh: Mesh, start: FloatArray, end: FloatArray) -> "BoxTree":
@@ -85,7 +86,7 @@ class BoxTree:
         """Yield all pairs of simplices of two trees whose boxes, and all boxes above them, pass the test ``near``.
 
         ``near`` gets two levels, each with an array of boxes, and returns which pairs to keep. Simplices are yielded as
-        two arrays of positions in either ``order``, about ``CHUNK`` pairs at a time.
+        two arrays of positions in either ``order``, about a ``chunk`` of pairs at a time.
         """
         a, b = np.indices((self.levels[0].upper.shape[2], other.levels[0].upper.shape[2])).reshape(2, -1)
         stack = [(0, 0, a, b)]
@@ -107,7 +108,8 @@ class BoxTree:
             a, b = ((1 + first) * a + left).ravel(), ((1 + second) * b + right).ravel()
             p, q = p + first, q + second
             # The last part is taken up first, so the stack stays short: depth first in chunks.
-            stack += [(p, q, a[k : k + CHUNK], b[k : k + CHUNK]) for k in range(0, len(a), CHUNK)]
+            chunks = ((a[k : k + self.chunk], b[k : k + self.chunk]) for k in range(0, len(a), self.chunk))
+            stack += [(p, q, *each) for each in chunks]
 
 
 def corners(mesh: Mesh, i: IntArray | int, j: IntArray | int) -> IntArray:

@@ -14,7 +14,7 @@ inserted, a marker of that edge becomes it, and only if none is left do all earl
 import heapq
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -26,10 +26,7 @@ from .distances import strand_gaps
 from .mesh import Mesh
 from .pins import NOWHERE, arcs, holds
 
-DEFAULT_VERTICES = 200  # per component: enough for energies to a tenth of a per cent
-COMPONENTS = 10  # that get so many each; more of them share what ten would have
 SPLIT = 1.5  # edges longer than this many times the spacing wanted are split
-MIN_VERTICES = 16  # edges that a component, or an arc between pins, keeps if it had as many
 SAMPLES = 8  # points of a spline, for each vertex of its polygon, at which its arc length is measured
 
 
@@ -37,9 +34,11 @@ SAMPLES = 8  # points of a spline, for each vertex of its polygon, at which its 
 class Resolution:
     """The edge lengths allowed."""
 
-    vertices: int | None = None  # the number if no strands were near; None for 200 per component
+    vertices: int | None = None  # the number if no strands were near; None for the usual one
     edges_per_gap: float = 1.0  # number of edges that fit in between near strands
     clearance: Callable[[Curve], FloatArray | float] = lambda _: np.inf  # of obstacles from each edge, (edges,) or inf
+    usual: ClassVar[int] = 200  # vertices of a component: enough for energies to a tenth of a per cent
+    sharers: ClassVar[int] = 10  # components that get so many each; more of them share what ten would have
 
 
 @checked
@@ -58,7 +57,7 @@ def refine(curve: Curve, vertices: int | None = None) -> Curve:
     # 1,000 for each of ten components, unless the curve has half as many, and 5,000 altogether, unless it has more:
     # where gaps ask for more, the barrier's exact energies do to begin with, and hard unknots become circles in a sixth
     # of the time; strands that are as near in the end get more then
-    most = min(max(2 * len(curve), 1000 * min(COMPONENTS, len(curve.mesh.component_sizes))), 5000)
+    most = min(max(2 * len(curve), 1000 * min(Resolution.sharers, len(curve.mesh.component_sizes))), 5000)
     return subdivide(curve, affordable_pieces(curve, spacing, most))
 
 
@@ -80,8 +79,8 @@ def target_spacing(curve: Curve, resolution: Resolution) -> FloatArray:
 
     Gaps that allow edges longer than that, or than the longest there is, do not matter and are not searched for.
     """
-    sharers = min(COMPONENTS, len(curve.mesh.component_sizes))
-    base = curve.length / (resolution.vertices or DEFAULT_VERTICES * sharers)
+    sharers = min(resolution.sharers, len(curve.mesh.component_sizes))
+    base = curve.length / (resolution.vertices or resolution.usual * sharers)
     pieces = np.ceil(4.0 * curve.edge_lengths / base).astype(np.intp)  # four samples on each edge as long as that
     samples = subdivide(curve, pieces)
     spacing = np.full(curve.mesh.edges, base)
@@ -169,10 +168,11 @@ def graded_spacing(curve: Curve, resolution: Resolution) -> FloatArray:
     return spacing
 
 
-def superfluous(curve: Curve, spacing: FloatArray, kept: IntArray = NOWHERE) -> IntArray:
+def superfluous(curve: Curve, spacing: FloatArray, kept: IntArray = NOWHERE, least: int = 16) -> IntArray:
     """Vertices that may be removed: both edges there are shorter than half the spacing wanted.
 
-    No two of them are neighbours or next but one, and none is an end or a vertex to be kept.
+    No two of them are neighbours or next but one, and none is an end or a vertex to be kept.  Components, and arcs
+    between those, keep the ``least`` number of edges if they had as many.
     """
     mesh, before, after = curve.mesh, curve.mesh.incoming, curve.mesh.outgoing
     joined = curve.edge_lengths < 0.5 * spacing
@@ -180,7 +180,7 @@ def superfluous(curve: Curve, spacing: FloatArray, kept: IntArray = NOWHERE) -> 
     arc_of, room = np.empty(mesh.edges, dtype=np.intp), []
     for number, arc in enumerate(arcs(mesh, kept)):
         arc_of[arc] = number
-        room.append(len(arc) - min(len(arc), MIN_VERTICES))
+        room.append(len(arc) - min(len(arc), least))
     chosen: list[int] = []
     for part in mesh.slices:
         size, last, first = part.stop - part.start, -3, None

@@ -10,7 +10,7 @@ from ..curve import Curve, Obstacle
 from ..descent import METHODS, Method
 from ..energies import ENERGIES, TERMS, Energy, MoebiusEnergy, Objective, Rule, Stiff, Weighted
 from ..energies.hierarchy import HierarchicalMoebiusEnergy
-from ..solve.hierarchical import MAX_VERTICES, block_count, compressed
+from ..solve.hierarchical import CompressedMetric, block_count, compressed
 from ..solve.metrics import METRICS, Metric
 from ..solve.saddle.iterative import Tolerances
 from .options import RelaxOptions
@@ -76,7 +76,8 @@ class Solver:
         largest = max(len(curve), wanted or 0)
         if self._may_be_hierarchical and (solver == "hierarchical" or largest > self.hierarchical_from):
             given = isinstance(self.options.metric, Metric)
-            most = min(MAX_VERTICES, compressed(metric, Tolerances()).most_vertices if given else MAX_VERTICES)
+            most = CompressedMetric.most_vertices
+            most = min(most, compressed(metric, Tolerances()).most_vertices) if given else most
         else:
             most = min(each.most_vertices for each in (metric, *self._method.rule.other_metrics))
         if wanted is not None and wanted > most:

@@ -8,13 +8,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, ClassVar
 
 from ..base.errors import CurveError, CurveFileError, reason_of, shown
 from ..curve.curve import Curve
 
-MAX_BYTES = 16 << 20  # two hundred thousand vertices with all their digits
-MAX_LINES = 500_000
 _INTEGER = re.compile(r"[+-]?[0-9]{1,18}")  # with more digits it is no count or index of anything in memory
 _log = logging.getLogger(__name__)
 
@@ -26,9 +24,11 @@ class Source:
     path: Path
     text: str = field(repr=False)
     sha256: str
+    max_bytes: ClassVar[int] = 16 << 20  # two hundred thousand vertices with all their digits
+    max_lines: ClassVar[int] = 500_000
 
     @classmethod
-    def load(cls, path: Path, most: int = MAX_BYTES) -> "Source":
+    def load(cls, path: Path, most: int = max_bytes) -> "Source":
         """Read a text file; raises CurveFileError if it is missing, empty, too long or not UTF-8 text."""
         try:
             stream = path.open("rb")
@@ -38,7 +38,7 @@ class Source:
             return cls.read(path, stream, most)
 
     @classmethod
-    def read(cls, path: Path, stream: BinaryIO, most: int = MAX_BYTES) -> "Source":
+    def read(cls, path: Path, stream: BinaryIO, most: int = max_bytes) -> "Source":
         """Read a stream, which need not end; otherwise as `load`."""
         try:
             data = stream.read(most + 1)
@@ -57,8 +57,8 @@ class Source:
             reason = f"not a text file in UTF-8 (byte 0x{data[nul]:02x} at position {nul})"
             raise CurveFileError(path, reason, data.count(b"\n", 0, nul) + 1)
         text = text.replace("\r\n", "\n").replace("\r", "\n")
-        if text.count("\n") > MAX_LINES:
-            raise CurveFileError(path, f"more than {MAX_LINES} lines, more than this program reads")
+        if text.count("\n") > cls.max_lines:
+            raise CurveFileError(path, f"more than {cls.max_lines} lines, more than this program reads")
         if not text.strip():
             raise CurveFileError(path, "the file is empty")
         return cls(path, text, hashlib.sha256(data).hexdigest())

@@ -143,7 +143,6 @@ class RunningSum:
 
 
 FarForm = tuple[RunningSum, sp.csr_array]
-MAX_VERTICES = 200_000  # some 3 GB, and half a minute a step
 
 
 @dataclass(frozen=True, eq=False)
@@ -245,7 +244,7 @@ class CompressedMetric:
     tolerances: Tolerances = field(default_factory=Tolerances)  # for what is solved with it
     theta: float = 0.5  # separation parameter of blocks
     leaf: int = 4  # edges up to which clusters are not halved
-    most_vertices = MAX_VERTICES
+    most_vertices = 200_000  # some 3 GB, and half a minute a step
 
     @property
     def name(self) -> str:

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from ... import __version__
 from ...core import MobiusFlowError, RelaxOptions
 from ...core.io import FORMATS
-from ...core.io.source import MAX_BYTES
+from ...core.io.source import Source
 from ...core.knots import knot
 from ...core.knots.diagrams.codes import is_code
 from ...core.knots.names import table_range
@@ -183,7 +183,7 @@ def jobs(
 def _hash(path: Path) -> str | None:
     """The hash of a file's bytes; None for files that no run can read: the run reports why."""
     try:
-        return sha256_of(path) if path.stat().st_size <= MAX_BYTES else None
+        return sha256_of(path) if path.stat().st_size <= Source.max_bytes else None
     except OSError:
         return None
 

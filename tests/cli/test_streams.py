@@ -14,7 +14,7 @@ from commands import PROGRAM, SHORT
 from curve_formats import OF_VERTICES
 from families import crossed, family
 from mobius_flow.core import read_curve, write_curve
-from mobius_flow.core.io.source import MAX_BYTES
+from mobius_flow.core.io.source import Source
 from mobius_flow.core.proof import verify
 from shapes import regular_polygon, torus_trefoil
 
@@ -204,4 +204,4 @@ def test_written_curves_can_be_read():
     curve = regular_polygon(2000)
     write_curve("o.json", curve.with_vertices(np.pi * 1e-100 * curve.vertices))
     assert len(read_curve("o.json")) == 2000
-    assert os.stat("o.json").st_size * 200_000 / 2000 < MAX_BYTES
+    assert os.stat("o.json").st_size * 200_000 / 2000 < Source.max_bytes

@@ -9,7 +9,7 @@ from mobius_flow.core import Curve, Iterate, MobiusFlowError, RelaxOptions, Stat
 from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.curve import Mesh, refine
 from mobius_flow.core.curve.pins import Pins, arcs, ends_of, spans
-from mobius_flow.core.curve.refine import MIN_VERTICES, smoothed, subdivide, superfluous
+from mobius_flow.core.curve.refine import smoothed, subdivide, superfluous
 from mobius_flow.core.descent.hessian import lagrangian_hessian, lagrangian_matrix
 from mobius_flow.core.descent.methods import Constrained
 from mobius_flow.core.driver.moves.rest import stability
@@ -43,7 +43,7 @@ def test_collapses_take_no_pin_and_leave_each_arc_enough_edges_to_bend(pins: lis
     assert not np.isin(chosen, kept).any()
     for arc in arcs(curve.mesh, kept):
         inside = np.isin(chosen, np.setdiff1d(ends_of(curve.mesh, arc), kept)).sum()
-        assert len(arc) - inside >= min(len(arc), MIN_VERTICES)
+        assert len(arc) - inside >= min(len(arc), 16)
 
 
 @pytest.mark.parametrize(("pins", "places"), [([4], [11]), ([2, 9, 30], [0, 40, 99]), ([0, 39], [0, 99])])

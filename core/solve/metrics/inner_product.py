@@ -4,7 +4,7 @@ On R^m-valued functions they act coordinate by coordinate, J = A ⊗ Id_m.
 """
 
 from functools import cached_property
-from typing import Protocol, runtime_checkable
+from typing import ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 import scipy.sparse as sp
@@ -17,9 +17,6 @@ from ...energies.quadrature import Rule
 from ..constraints import ConstraintDerivative
 from ..saddle import TangentSpace
 from ..saddle.tangent_space import DenseTangentSpace, SparseTangentSpace, cholesky, factorised
-
-MAX_DENSE_ROWS = 12_000  # some six matrices of so many rows make 7 GB
-MAX_SPARSE_ROWS = 50_000  # energies, sums over all pairs of edges, take half a minute there
 
 
 @runtime_checkable
@@ -44,6 +41,8 @@ class InnerProduct(Protocol):
 
 class DenseInnerProduct:
     """A as an array (n, n), of which only the lower triangle counts; functions solved for vanish at the pins."""
+
+    most_rows: ClassVar[int] = 12_000  # some six such matrices make 7 GB
 
     @checked
     def __init__(self, matrix: FloatArray, pins: IntArray = NOWHERE) -> None:
@@ -91,6 +90,8 @@ class DenseInnerProduct:
 
 class SparseInnerProduct:
     """A as a sparse matrix of few entries a row; ``matrix`` has it in compressed rows."""
+
+    most_rows: ClassVar[int] = 50_000  # energies, sums over all pairs of edges, take half a minute there
 
     @checked
     def __init__(self, matrix: sp.sparray) -> None:

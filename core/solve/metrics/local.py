@@ -13,7 +13,7 @@ import scipy.sparse as sp
 from ...base.types import FloatArray, IntArray
 from ...curve import Curve
 from ...energies.quadrature import Rule
-from .inner_product import MAX_SPARSE_ROWS, InnerProduct, SparseInnerProduct
+from .inner_product import InnerProduct, SparseInnerProduct
 
 
 def mass(curve: Curve, order: float = 0.0) -> sp.csr_array:
@@ -40,7 +40,7 @@ class WithoutRule:
     """A metric whose integrals are exact or by one fixed rule."""
 
     rule = None
-    most_vertices = MAX_SPARSE_ROWS
+    most_vertices = SparseInnerProduct.most_rows
 
     def with_rule(self, _rule: Rule) -> Self:
         return self

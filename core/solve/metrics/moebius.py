@@ -25,10 +25,8 @@ from ...base import FloatArray, IntArray, checked_fields, number
 from ...curve import Curve, Mesh, arc_distance_of_pairs, arc_distances, points_at
 from ...energies.edge_pairs import ROWS_TIMES_COLUMNS
 from ...energies.quadrature import MIDPOINT, Rule
-from .inner_product import MAX_DENSE_ROWS, DenseInnerProduct, InnerProduct
+from .inner_product import DenseInnerProduct, InnerProduct
 from .local import WithoutRule, lumped_mass, mass, stiffness
-
-MIN_DISTANCE = 0.25  # of ℓ_I + ℓ_J
 
 
 class Stencil(NamedTuple):
@@ -130,11 +128,11 @@ class MoebiusMetric:
     rule: Rule = MIDPOINT  # on every edge
     # In both kernels r and ϱ are at least this many times ℓ_I + ℓ_J: the 1/r⁴ of nearer pairs would leave no digits to
     # others, and forbid the very motion that brings strands apart.  On curves that their mesh resolves nothing changes.
-    least_distance: float = number(MIN_DISTANCE)
+    least_distance: float = number(0.25)
     name = "moebius"
     description = "J_C of Theorem 4.1, extrinsic W^{3/2,2}"
     extends_penalty = True
-    most_vertices = MAX_DENSE_ROWS
+    most_vertices = DenseInnerProduct.most_rows
 
     def with_rule(self, rule: Rule) -> "MoebiusMetric":
         return replace(self, rule=rule)
@@ -175,7 +173,7 @@ class PairKernels(NamedTuple):
 
 def pair_kernels(curve: Curve, i: IntArray, j: IntArray) -> PairKernels:
     """The kernels of edges ``i`` and ``j``, elementwise."""
-    nearest = (MIN_DISTANCE * (curve.edge_lengths[i] + curve.edge_lengths[j])) ** 2
+    nearest = (MoebiusMetric.least_distance * (curve.edge_lengths[i] + curve.edge_lengths[j])) ** 2
     chord = curve.midpoints[i] - curve.midpoints[j]
     inverse = 1.0 / np.maximum(np.einsum("km,km->k", chord, chord), nearest)
     rho = arc_distance_of_pairs(curve, i, j, 0.5)
@@ -189,7 +187,7 @@ class FractionalMetric(WithoutRule):
     name = "h3-2"
     description = "W^{3/2,2}, intrinsic"
     extends_penalty = True
-    most_vertices = MAX_DENSE_ROWS
+    most_vertices = DenseInnerProduct.most_rows
 
     def at(self, curve: Curve) -> InnerProduct:
         ell, slope = curve.mesh.at_tails(curve.edge_lengths), Stencil.slope(curve)

@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, ClassVar, Protocol
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
@@ -21,8 +21,6 @@ from .tangent_space import TangentSpace
 
 if TYPE_CHECKING:
     from ..hierarchical import CompressedInnerProduct
-
-ROUNDING = 1e-12  # relative to all of a covector, below which its tangential part is rounding
 
 LinearMap = Callable[[FloatArray], FloatArray]
 # From a residual r, and what iterations so far took off the squared norm of the error, to z near the operator's inverse
@@ -146,7 +144,7 @@ class ConstraintPreconditioner:
         total = float(np.sum(r * free))
 
         def enough(rho: float, normal: float) -> bool:
-            return rho <= max(tolerance**2 * (total - normal), ROUNDING**2 * total)
+            return rho <= max(tolerance**2 * (total - normal), Tolerances.rounding**2 * total)
 
         multipliers = self._solve_schur(self.constraints.apply(free), stopping(self._near_inverse, enough))
         return self._model.solve(r - self.constraints.apply_transpose(multipliers)), multipliers
@@ -179,6 +177,7 @@ class Tolerances:
     preconditioner: float = 1e-2  # part of a preconditioned residual that is not tangential
     feasibility: float = 1e-10  # of C u = ξ
     max_iterations: int = 500  # of one system
+    rounding: ClassVar[float] = 1e-12  # relative to all of a covector, below which its tangential part is that
 
     @classmethod
     def of_norms(cls, accuracy: float = 1e-4) -> "Tolerances":
@@ -250,7 +249,7 @@ class IterativeTangentSpace(TangentSpace):
         """
         c, preconditioner = self.constraints, self._preconditioner
         multipliers = np.zeros(c.count)
-        negligible = ROUNDING**2 * preconditioner.square(r)
+        negligible = Tolerances.rounding**2 * preconditioner.square(r)
 
         def precondition(r: FloatArray, decreases: list[float]) -> tuple[FloatArray, FloatArray] | None:
             nonlocal multipliers

@@ -31,7 +31,7 @@ def strangers(mesh: Mesh) -> set[tuple[int, int]]:
 @pytest.mark.parametrize("chunk", [5, 1 << 14])
 @pytest.mark.parametrize("mesh", MESHES, ids=str)
 def test_every_pair_exactly_once(mesh: Mesh, chunk: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(boxes, "CHUNK", chunk)
+    monkeypatch.setattr(BoxTree, "chunk", chunk)
     tree = BoxTree.build(mesh, *random_leg(mesh, 3))
     pairs = found(tree, lambda level, a, other, b: np.ones(len(a), dtype=bool))
     assert len(pairs) == len(set(pairs))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, Mesh, OptionError
 from mobius_flow.core.collision import check_embedded
-from mobius_flow.core.curve.refine import DEFAULT_VERTICES, closed_far_away, refine, subdivide
+from mobius_flow.core.curve.refine import Resolution, closed_far_away, refine, subdivide
 from mobius_flow.core.knots import knot, knot_type
 from shapes import hopf_link, lattice_knot, regular_polygon
 
@@ -37,7 +37,7 @@ def test_count_asked_for(count):
 def test_default_count_and_evenness():
     rectangle = Curve([[0, 0, 0], [3, 0, 0], [3, 1, 0], [0, 1, 0]])
     refined = refine(rectangle)
-    assert DEFAULT_VERTICES <= len(refined) <= 1.1 * DEFAULT_VERTICES
+    assert Resolution.usual <= len(refined) <= 1.1 * Resolution.usual
     assert refined.edge_lengths.max() < 1.1 * refined.edge_lengths.min()
     assert contains(rectangle, refined)
     fine = regular_polygon(600)
@@ -67,13 +67,13 @@ def kite(degrees: float, cuts: int) -> Curve:
 def test_a_sharp_corner_is_no_near_strand(degrees, cuts):
     """Its sides are as near to each other at every scale; only the tail's angle adds up with the number of pieces."""
     curve = kite(degrees, cuts)
-    assert DEFAULT_VERTICES <= len(refine(curve)) <= DEFAULT_VERTICES + len(curve)
+    assert Resolution.usual <= len(refine(curve)) <= Resolution.usual + len(curve)
 
 
 def test_triangles_get_no_more_vertices_than_squares():
-    assert len(refine(regular_polygon(3))) <= DEFAULT_VERTICES + 3
+    assert len(refine(regular_polygon(3))) <= Resolution.usual + 3
     five = Curve.from_components([regular_polygon(3).vertices + 10 * k for k in range(5)])
-    assert len(refine(five)) <= 5 * (DEFAULT_VERTICES + 3)
+    assert len(refine(five)) <= 5 * (Resolution.usual + 3)
 
 
 @pytest.mark.parametrize("gap", [0.02, 0.005])
@@ -83,7 +83,7 @@ def test_strands_side_by_side_are_near_though_a_bend_joins_them(gap, round_the_e
     t = np.linspace(-np.pi / 2, np.pi / 2, 16) if round_the_end else np.array([-np.pi / 2, np.pi / 2])
     end = np.stack([1 + 0.5 * gap * np.cos(t), 0.5 * gap * np.sin(t)], axis=1)
     hairpin = Curve(np.concatenate([[[0.0, -0.5 * gap]], end, [[0.0, 0.5 * gap], [-1.0, 1.0], [-1.0, -1.0]]]))
-    assert hairpin.length / DEFAULT_VERTICES > gap
+    assert hairpin.length / Resolution.usual > gap
     refined = refine(hairpin)
     middle = (refined.vertices[:, 0] > 0.01) & (refined.vertices[:, 0] < 0.99)
     assert refined.edge_lengths[middle].max() <= 1.2 * gap

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, RelaxOptions, Status, Trajectory, minimize, relax
 from mobius_flow.core.curve.refine import (
-    MIN_VERTICES,
     SPLIT,
     Resolution,
     collapsed,
@@ -74,7 +73,7 @@ def test_collapse_keeps_far_vertices_and_few_per_component():
     chord = curve.vertices[(chosen + 1) % 900] - curve.vertices[chosen - 1]
     offset = moved[chosen] - curve.vertices[chosen - 1]
     np.testing.assert_allclose(np.linalg.norm(np.cross(chord, offset), axis=1), 0, atol=1e-15)
-    assert len(superfluous(regular_polygon(MIN_VERTICES), np.full(MIN_VERTICES, 100.0))) == 0
+    assert len(superfluous(regular_polygon(16), np.full(16, 100.0))) == 0
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from mobius_flow.core.base.errors import CurveError, CurveFileError, Place
 from mobius_flow.core.io import FORMATS, load_curve, read_curve
-from mobius_flow.core.io.source import MAX_BYTES, MAX_LINES
+from mobius_flow.core.io.source import Source
 
 V = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
 
@@ -166,8 +166,8 @@ def test_unknown_suffixes_list_the_known(tmp_path: Path, name: str, found: str) 
 def test_files_longer_than_any_curve(tmp_path: Path, suffix: str, end: str) -> None:
     path = tmp_path / f"long{suffix}"
     for data, said in (
-        (b"0 0 0\n" * (MAX_BYTES // 6 + 1), "longer than 16 MB"),
-        (f"0 0 0{end}".encode() * (MAX_LINES + 1), "more than 500000 lines"),
+        (b"0 0 0\n" * (Source.max_bytes // 6 + 1), "longer than 16 MB"),
+        (f"0 0 0{end}".encode() * (Source.max_lines + 1), "more than 500000 lines"),
     ):
         path.write_bytes(data)
         with pytest.raises(CurveFileError, match=said):

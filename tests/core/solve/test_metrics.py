@@ -7,7 +7,7 @@ from mobius_flow.core.curve import Mesh
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.energies.quadrature import ENDS, TAIL, Rule
 from mobius_flow.core.solve.metrics import METRICS, DenseInnerProduct, MoebiusMetric, SparseInnerProduct, WithoutRule
-from mobius_flow.core.solve.metrics.moebius import MIN_DISTANCE, DifferenceForm, Stencil, stripes
+from mobius_flow.core.solve.metrics.moebius import DifferenceForm, Stencil, stripes
 from scipy.integrate import quad
 from scipy.special import sici
 from shapes import hopf_link, opened, regular_polygon, straight_arc, torus_trefoil
@@ -102,7 +102,7 @@ def _by_definition(curve, u, rule):
                     y = (1 - t[b]) * curve.vertices[mesh.tails[j]] + t[b] * curve.vertices[mesh.heads[j]]
                     ui = (1 - t[a]) * u[mesh.tails[i]] + t[a] * u[mesh.heads[i]]
                     uj = (1 - t[b]) * u[mesh.tails[j]] + t[b] * u[mesh.heads[j]]
-                    nearest = MIN_DISTANCE * (ell[i] + ell[j])
+                    nearest = MoebiusMetric.least_distance * (ell[i] + ell[j])
                     s = 1 / max(np.sum((x - y) ** 2), nearest**2)
                     density = s
                     if (own := mesh.edge_component[i]) == mesh.edge_component[j]:
