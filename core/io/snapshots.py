@@ -191,6 +191,14 @@ def _read_dcd(path: Path) -> Iterator[Snapshot]:
             sides = frame.triclinic_dimensions
             cell = np.zeros((3, 3)) if sides is None else np.array(sides, dtype=np.float64)
             yield Snapshot(frame.positions.astype(np.float64), cell)
+    with path.open("rb") as stream:  # the reader leaves out a frame that is cut off
+        begin, size, at, records = stream.read(8), path.stat().st_size, 0, -3  # but for those of the header
+        while begin[4:] == b"CORD" and at < size:  # else its marks of records' sizes have more than four bytes
+            stream.seek(at)
+            at += 8 + int.from_bytes(stream.read(4), "little" if begin[0] else "big")
+            records += 1
+        if at > size or records % (3 if sides is None else 4):
+            raise CurveFileError(path, "the file is cut off within its last frame")
 
 
 READERS: Mapping[str, Callable[[Path], Iterator[Snapshot]]] = {

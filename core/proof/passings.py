@@ -1,9 +1,11 @@
 """Find where edges of chains pass through each other between two frames that others recorded, in boxes or without."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import chain, product
+from operator import add
+from random import Random
 
 import numpy as np
 import numpy.typing as npt
@@ -19,7 +21,8 @@ PASSING = np.dtype(
 )
 """Two edges, by their numbers, and whole boxes by which the second is moved; when, which way and where they meet.
 
-The sign is that of `checker.contacts`, 0 if they only touch: linking numbers change by it.
+The sign is that of `checker.contacts`, 0 if they only touch: linking numbers change by it.  What passes through a bead,
+or at the time of a frame, is decided as if each bead were displaced by less than 1e-60 of its own.
 """
 Passings = npt.NDArray[np.void]
 
@@ -84,9 +87,10 @@ def passings(before: Placed, after: Placed, beads: IntArray, tails: IntArray, fr
             moved = home[b] + shift - home[a]
             if a > b:  # volumes keep their signs
                 a, b, moved, boxes, places = b, a, -moved, boxes[:, ::-1], places[:, ::-1]
+            four = [*bead[:, a].tolist(), *bead[:, b].tolist()]
             boxes = boxes - boxes[0, 0, 0]  # the first end is where it was recorded
             seen = places + np.einsum("tkca,tam->tkcm", boxes, cells)
-            for time, sign in _contacts(places, boxes, cells, from_start):
+            for time, sign in _contacts(places, boxes, cells, four, from_start):
                 where = _where(*((1.0 - time) * seen[0] + time * seen[1]))
                 found.append((0, (a, b), tuple(moved), time, sign, tuple(where)))
     result = np.array(found, dtype=PASSING)
@@ -156,7 +160,9 @@ def _apart(ends: FloatArray, i: IntArray, j: IntArray, clearance: float) -> Bool
     return np.asarray((room > margin).all(axis=0))
 
 
-def _contacts(points: FloatArray, boxes: IntArray, cells: FloatArray, from_start: bool) -> list[tuple[float, int]]:
+def _contacts(
+    points: FloatArray, boxes: IntArray, cells: FloatArray, beads: Sequence[int], from_start: bool
+) -> list[tuple[float, int]]:
     """When two edges meet and which way they pass through each other, decided exactly; of mere touches the first.
 
     Ends are ``points`` moved by whole boxes, both of shape (2, 2, 2, 3): times, edges, ends and axes.
@@ -170,12 +176,17 @@ def _contacts(points: FloatArray, boxes: IntArray, cells: FloatArray, from_start
         for point, box in zip(chain(*each), chain(*moved), strict=True)
     ]
     ends = whole(exact)
-    met = [
-        (_moment(time), way)
-        for time, way in contacts(*zip(ends[:4], ends[4:], strict=True))
-        if from_start or time != START
-    ]
-    return [each for each in met if each[1]] or sorted(met)[:1]
+    met = list(contacts(*zip(ends[:4], ends[4:], strict=True)))
+    found = [(_moment(time), way) for time, way in met if way]
+    if len(found) < len(met):
+        # one edge of all that meet in a bead has what passes through it once beads are anywhere else, at all times
+        rngs = [Random(bead) for bead in beads]
+        off = [[Fraction(rng.getrandbits(64), 1 << 264) for _ in range(3)] for rng in rngs]
+        ends = whole([tuple(map(add, point, by)) for point, by in zip(exact, [*off, *off], strict=True)])
+        through = sum(way for _, way in contacts(*zip(ends[:4], ends[4:], strict=True))) - sum(way for _, way in found)
+        touches = sorted(_moment(time) for time, way in met if not way and (from_start or through or time != START))
+        found += [(time, through) for time in touches[:1] if through or not found]
+    return found
 
 
 def _moment(time: Time) -> float:

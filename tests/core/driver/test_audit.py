@@ -5,7 +5,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from melts import Found, melt, passings_by_eigenvalues, planted
-from mobius_flow.core import Audit, MobiusFlowError, audit
+from mobius_flow.core import Audit, Curve, MobiusFlowError, audit
+from mobius_flow.core.knots.diagrams.invariants import linking_numbers
 from motions import Array
 from shapes import regular_polygon, torus_trefoil
 
@@ -53,25 +54,38 @@ def test_it_does_not_matter_how_chains_are_wrapped_or_who_works() -> None:
     assert [each[0:2] for each in told(audit(frames, 40))] == sorted(map(tuple, own["edges"].tolist()))
 
 
+def linking(points: Array) -> int:
+    """The linking number of two rings of half the beads each."""
+    (found,) = linking_numbers(Curve.from_components(np.split(points, 2)))
+    return found
+
+
 def test_linking_numbers_and_types_change_as_told() -> None:
     report = audit([HOPF, APART, APART], 12)
     (pair,) = report.meetings()
     assert (pair.chains, pair.passings, abs(pair.linking)) == ((0, 1), 1, 1)
     assert (str(pair.before), str(pair.after)) == ("L2a1", "unknot ⊔ unknot")
-    assert pair.before is not None
-    assert pair.before.diagram is not None
-    assert pair.linking == -pair.before.diagram.linking_numbers[0]
+    assert pair.linking == -linking(HOPF)
     assert [each.before for each in report.meetings(0)] == [None]
     assert list(audit([HOPF, HOPF], 12).meetings()) == []
     assert [each.linking for each in audit([HOPF, APART], 12, closed=False).meetings()] == [0]
 
 
-def test_types_are_told_where_strands_only_touch() -> None:
-    """One circle leaves the other through corners of both, which is told as a touch."""
-    exact = np.concatenate([CIRCLE, CIRCLE[:, [0, 2, 1]] + [1.0, 0, 0]])
+def test_what_goes_through_beads_or_happens_at_frames_is_counted() -> None:
+    """Rings on a small lattice, whose beads and strands often meet, at frames too, on the way between two that do not."""
+    exact = np.concatenate([CIRCLE, CIRCLE[:, [0, 2, 1]] + [1.0, 0, 0]])  # one leaves the other through corners of both
     (pair,) = audit([exact, exact + np.repeat([[0.0, 0, 0], [5, 0, 0]], 12, axis=0)], 12).meetings()
-    assert (pair.passings, pair.linking, str(pair.before), str(pair.after)) == (0, 0, "L2a1", "unknot ⊔ unknot")
-    assert pair.touches
+    assert (pair.passings, pair.linking) == (1, -linking(exact))
+    rng, changed, touched = np.random.default_rng(6), 0, 0
+    for _ in range(2):
+        off = rng.normal(size=(2, 10, 3))  # at first and at last, beads are anywhere
+        frames = [2.0 * off[0], *rng.integers(0, 3, size=(3, 10, 3)).astype(float), 2.0 * off[1]]
+        found = audit(frames, 5)
+        change = sum(pair.linking for pair in found.meetings(0) if pair.chains == (0, 1))
+        assert change == linking(frames[-1]) - linking(frames[0])
+        changed += change != 0
+        touched += any((found.passings["time"] % 1.0 == 0.0) & (found.passings["sign"] != 0))
+    assert (changed, touched) == (2, 2)
 
 
 def test_a_knot_that_is_undone_is_told() -> None:

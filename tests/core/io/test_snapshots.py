@@ -141,6 +141,10 @@ def test_binary_trajectories(
         path.write_bytes(part)
         with pytest.raises(MobiusFlowError, match=name):
             audit(path, [3])
+    for cut in (1, 24):  # within the last record, and before it
+        path.write_bytes(data[:-cut])
+        with pytest.raises(MobiusFlowError, match="cut off within its last frame" if name == "a.dcd" else name):
+            list(snapshots(path))
 
 
 def test_bonds_make_chains_and_rings(tmp_path: Path) -> None:
