@@ -29,6 +29,7 @@ class Arc(NamedTuple):
 def seen(curves: Sequence[Curve], trials: int = 200, seed: int = 20231) -> list[Drawing]:
     """Curves as seen from where the fewest strands cross in all of them, and of these where they are best apart.
 
+    Where strands of some would have less than 30 % of the pen's width, these have views of their own, near the others'.
     Corners are rounded first, by motions proved free of contact.  Raises CurveError for curves that are not in space or
     the plane, have more than 20,000 vertices, or touch themselves.
     """
@@ -43,45 +44,64 @@ def seen(curves: Sequence[Curve], trials: int = 200, seed: int = 20231) -> list[
         points = np.ldexp(curve.vertices, -power)  # where products of coordinates neither overflow nor vanish
         smooth.append(rounded(Curve(np.pad(points, ((0, 0), (0, 3 - curve.dimension))), curve.mesh)))
     middles = [each.vertices - each.vertices.mean(axis=0) for each in smooth]
-    rng, found = np.random.default_rng(seed), list[list[Drawing]]()
+    rng = np.random.default_rng(seed)
     # turned by about 0.02 radians, so that nothing special is seen
     flattest = np.linalg.svd(np.concatenate(middles), full_matrices=False)[2] + 0.02 * rng.normal(size=(3, 3))
     fewer = max(5, min(trials, 100_000 // sum(map(len, smooth))))
+    found: list[tuple[FloatArray, list[Drawing | None]]] = []
     for frame in (flattest, *rng.normal(size=(fewer, 3, 3))):
-        drawings = []
+        found.append((rotation(frame)[:, :2], []))
         for curve, middle in zip(smooth, middles, strict=True):
             points, mesh = middle @ rotation(frame), curve.mesh
             view = project(mesh, points, plane_crossings(mesh, points, 1e-9), mesh.ends.ravel(), 1e-9)
             if view is None:
-                break
+                found[-1][1].append(None)
+                continue
             passes = (mesh.tails[view.crossings.edges] + view.crossings.at).T
             order = np.argsort(passes[:, 0])
             over = (view.heights[0] > view.heights[1])[order]
-            drawings.append(Drawing(Curve(points[:, :2], mesh), passes[order], over))
-        else:
-            found.append(drawings)
-    if not found:
+            found[-1][1].append(Drawing(Curve(points[:, :2], mesh), passes[order], over))
+
+    def turned(drawing: Drawing | None, turn: FloatArray) -> tuple[Drawing | None, float, float]:
+        """A drawing and the widths, as shares of its size, that it leaves to the pen and to a broad one.
+
+        Thinner strands than 2.1 %, the pen's own, are worse than more crossings; broad ones may have room where strands
+        cross at angles that leave none to thin ones. Shares are of fixed steps, which rounding must not tell apart.
+        """
+        if drawing is None:
+            return None, 0.0, 0.0
+        drawing = replace(drawing, curve=drawing.curve.with_vertices(drawing.curve.vertices @ turn))
+        size = float(np.ptp(drawing.curve.vertices, axis=0).max())
+        least, room = (round(widest(drawing, share * size, 1.5)[0] / size, 9) for share in (0.021, 1 / 12))
+        return drawing, least, room
+
+    def crossings(drawings: Sequence[Drawing | None]) -> int:
+        return sum(10_000 if each is None else len(each.passes) for each in drawings)
+
+    fewest, legible = [], 0.3 * 0.021
+    for axes, drawings in sorted(found, key=lambda each: crossings(each[1]))[:20]:
+        outline = [each.curve.vertices for each in drawings if each is not None]
+        turn = upright(np.concatenate(outline or [axes]))
+        every, least, room = zip(*(turned(each, turn) for each in drawings), strict=True)
+        good = np.array(least) > (legible if len(curves) > 1 else 0.0)
+        merit = good.sum(), np.min(least, where=good, initial=1.0), -crossings(drawings), min(room)
+        fewest.append((merit, list(every), good, axes @ turn))
+    _, views, good, axes = max(fewest, key=lambda each: each[0])
+    sights, done = [axes] * len(curves), np.flatnonzero(good).tolist()
+    for k in sorted(np.flatnonzero(~good).tolist(), key=lambda k: min((abs(k - j) for j in done), default=k)):
+        next_one = sights[min(done, key=lambda j: abs(j - k), default=k)]
+        own = []
+        for axes, drawings in sorted(found, key=lambda each: crossings(each[1][k : k + 1]))[:20]:
+            (a, b), (c, d) = axes.T @ next_one
+            near = float(np.hypot(a + d, b - c))  # 2 if the plane is the same
+            turn = np.array([[a + d, b - c], [c - b, a + d]]) / max(near, 1e-9)
+            own.append((near, axes @ turn, *turned(drawings[k], turn)[:2]))
+        enough = min(legible, 0.7 * max(each[3] for each in own))
+        _, sights[k], views[k], _ = max((each for each in own if each[3] >= enough), key=lambda each: each[0])
+        done.append(k)
+    if None in views:
         raise CurveError("strands touch, or nearly do: no view of the curve shows which one is in front")
-
-    def crossings(drawings: list[Drawing]) -> int:
-        return sum(len(each.passes) for each in drawings)
-
-    def merit(drawings: list[Drawing]) -> tuple[float, int, float]:
-        sizes = [float(np.ptp(each.curve.vertices, axis=0).max()) for each in drawings]
-        # thinner strands than 2.1 %, the pen's own, are worse than more crossings; wide ones may have room where thin
-        # ones have none at their angles; shares are of fixed steps, which rounding must not tell apart
-        least, room = (
-            min(round(widest(each, share * size, 1.5)[0] / size, 9) for each, size in zip(drawings, sizes, strict=True))
-            for share in (0.021, 1 / 12)
-        )
-        return least, -crossings(drawings), room
-
-    fewest = []
-    for drawings in sorted(found, key=crossings)[:20]:
-        turn = upright(np.concatenate([each.curve.vertices for each in drawings]))
-        turned = (each.curve.with_vertices(each.curve.vertices @ turn) for each in drawings)
-        fewest.append([replace(each, curve=curve) for each, curve in zip(drawings, turned, strict=True)])
-    return max(fewest, key=merit)
+    return [each for each in views if each is not None]
 
 
 def widest(drawing: Drawing, width: float, gap: float) -> tuple[float, list[Arc]]:
