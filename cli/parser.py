@@ -48,7 +48,7 @@ class Parser(argparse.ArgumentParser):
     """A parser whose errors are one line, and which takes no abbreviations: they break when options are added."""
 
     def __init__(self, command: str = "", **arguments: Any) -> None:
-        self.command = command  # whose description is loaded before its arguments are parsed
+        self.command: str | None = command  # whose description is loaded before its arguments are parsed
         self.left_out: list[Group] = []
         super().__init__(allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter, **arguments)
         self.register("type", int, _read(int, "a whole number"))
@@ -60,9 +60,14 @@ class Parser(argparse.ArgumentParser):
     def parse_known_args(  # type: ignore[override]
         self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
     ) -> tuple[argparse.Namespace, list[str]]:
-        if self.command:
-            add_to(self, self.command)
-        found, unknown = super().parse_known_args(args, namespace)
+        command, self.command = self.command, None
+        if not command:
+            found, unknown = super().parse_known_args(args, namespace)
+            if command is None:  # called by the line below: options may stand between inputs and outputs
+                return found, unknown
+        else:
+            add_to(self, command)
+            found, unknown = self.parse_known_intermixed_args(args, namespace)
         word = unknown[0].partition("=")[0] if unknown else ""
         if word.startswith("-"):
             from ..core.base.errors import likeliest

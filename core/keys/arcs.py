@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import pairwise
+from itertools import pairwise, product
 from typing import NamedTuple
 
 import numpy as np
@@ -119,7 +119,7 @@ def widest(drawing: Drawing, width: float, gap: float) -> tuple[float, list[Arc]
 
 def gaps_cut(drawing: Drawing, width: float, gap: float) -> list[Arc] | None:
     """The arcs of a drawing, from gap to gap; None if any two would be less than 0.8 gaps apart."""
-    mesh, need, reach = drawing.curve.mesh, width * (1.0 + gap), np.linspace(0.0, 1.0, 161) * 8.0 * width * (1.0 + gap)
+    mesh, need, reach = drawing.curve.mesh, width * (1.0 + gap), np.linspace(0.0, 1.0, 161) * 3.0 * width * (1.0 + gap)
     lines = [
         np.concatenate([part, part[:1]]) if closed else part
         for part, closed in zip(drawing.curve.components, mesh.closed, strict=True)
@@ -135,8 +135,10 @@ def gaps_cut(drawing: Drawing, width: float, gap: float) -> list[Arc] | None:
         return k, float(np.interp(at - mesh.offsets[k], np.arange(len(distances[k])), distances[k]))
 
     cuts: list[list[tuple[float, float]]] = [[] for _ in lines]
+    uppers: list[list[float]] = [[] for _ in lines]
     for (first, second), first_over in zip(drawing.passes.tolist(), drawing.first_over.tolist(), strict=True):
         (k, below), (upper, above) = map(located, (second, first) if first_over else (first, second))
+        uppers[upper].append(above)
         tree = cKDTree(points(upper, above + np.concatenate([-reach[:0:-1], reach])))
         clear = [tree.query(points(k, below + way * reach))[0] >= need for way in (-1.0, 1.0)]
         if not (clear[0].any() and clear[1].any()):
@@ -152,6 +154,9 @@ def gaps_cut(drawing: Drawing, width: float, gap: float) -> list[Arc] | None:
         else:
             marks = [0.0, *(end for cut in own for end in cut), distance[-1]]
             spans = list(zip(marks[::2], marks[1::2], strict=True))
+        for (a, b), at in product(own, uppers[k]):  # an upper strand must not be cut away
+            if a < at < b or (mesh.closed[k] and (at - a) % distance[-1] < b - a):
+                return None
         near = 0.3 * distance[-1] / len(distance)  # vertices nearer than this to an end are left out
         for a, b in spans:
             if b - a < 1.5 * width:  # a dot, rather than a strand

@@ -115,8 +115,8 @@ def figure(drawings: Sequence[Drawing], captions: Sequence[str] = (), pen: Pen =
         placed = replace(drawing, curve=drawing.curve.with_vertices(points))
         width, arcs = widest(placed, pen.width, pen.gap)
         if not arcs:
-            told = f" of {captions[index]}" if any(captions) else ""
-            raise CurveError(f"strands{told} are too near to each other to be drawn; for curves, try --layout")
+            told = f" of drawing {index + 1}" if len(drawings) > 1 else ""
+            raise CurveError(f"strands{told} are too near to each other to be drawn; try smaller gaps, or a layout")
         for arc in arcs:
             sheet.strokes.extend(_strokes(placed, arc, width, pen))
         if pen.arrows:

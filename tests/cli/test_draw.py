@@ -13,7 +13,7 @@ TEXTS = re.compile(r"<tspan dy=\"0\"[^>]*>([^<]*)<")
 @pytest.fixture
 def drawn(room, run):
     def draw(*inputs, options=()):
-        status, _, said = run("draw", *inputs, "out.svg", *options)
+        status, _, said = run("draw", *inputs, *options, "out.svg")  # options may stand anywhere
         assert status == 0, said
         return (room / "out.svg").read_text(encoding="utf-8")
 

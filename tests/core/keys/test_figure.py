@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError, OptionError
-from mobius_flow.core.keys.arcs import seen
+from mobius_flow.core.keys.arcs import seen, widest
 from mobius_flow.core.keys.figure import INKS, Pen, figure
 from mobius_flow.core.keys.paper import PAPERS
 from mobius_flow.core.knots import HARD_UNKNOTS, KNOTS, knot, smooth_knot
@@ -72,6 +72,27 @@ def test_one_view_serves_a_motion():
     for unit in (1e-250, 1e200):
         (other,) = seen([first.with_vertices(unit * first.vertices)])
         assert len(other.passes) == 3
+
+
+def test_frames_that_one_view_does_not_serve_have_their_own():
+    t = 2.0 * np.pi * np.arange(24) / 24
+    lying = np.column_stack([np.cos(t), np.sin(t), 0.0 * t])
+    rings = Curve.from_components([lying, 0.965 * lying])  # which have room between them as seen from above alone
+    stood = rings.with_vertices(rings.vertices[:, [0, 2, 1]])
+    for drawing in seen([rings, stood], trials=12):
+        size = float(np.ptp(drawing.curve.vertices, axis=0).max())
+        assert widest(drawing, 0.021 * size, 1.5)[0] > 0.3 * 0.021 * size
+
+
+def test_upper_strands_are_never_cut_away():
+    """Two strands that twist by half a turn, so slim that gaps of wide ones would reach over both crossings."""
+    t = 2.0 * np.pi * np.arange(240) / 240
+    x, y = np.cos(t), np.sin(t)
+    drawing = Drawing.seen(Curve(np.column_stack([x, y * (x * x - 0.1), x * y])))
+    arcs = widest(drawing, 0.2, 1.5)[1]
+    upper = np.rint(np.where(drawing.first_over, *drawing.passes.T)).astype(int)
+    assert (len(upper), len(arcs)) == (2, 2)
+    assert cKDTree(np.concatenate([arc.points for arc in arcs])).query(drawing.curve.vertices[upper])[0].max() < 1e-9
 
 
 def test_colours_arrows_and_numbers():
