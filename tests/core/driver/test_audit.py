@@ -72,7 +72,7 @@ def test_linking_numbers_and_types_change_as_told() -> None:
 
 
 def test_what_goes_through_beads_or_happens_at_frames_is_counted() -> None:
-    """Rings on a small lattice, whose beads and strands often meet, at frames too, on the way between two that do not."""
+    """Rings on a small lattice, whose beads and strands often meet, at frames too, between two that do not."""
     exact = np.concatenate([CIRCLE, CIRCLE[:, [0, 2, 1]] + [1.0, 0, 0]])  # one leaves the other through corners of both
     (pair,) = audit([exact, exact + np.repeat([[0.0, 0, 0], [5, 0, 0]], 12, axis=0)], 12).meetings()
     assert (pair.passings, pair.linking) == (1, -linking(exact))
