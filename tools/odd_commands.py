@@ -47,6 +47,7 @@ COMMANDS = {  # what each takes at least; IN is a good curve
     "info": "IN",
     "draw": "IN out.svg --layout",
     "knot": "3_1 k.txt",
+    "audit": "melt.xyz --chains 24",
     "compare": f"IN -o c.csv --methods lbfgs {SHORT}",
     "verify": "IN",
     "methods": "",
@@ -105,6 +106,20 @@ def curve_file(room: Path, suffix: str = ".txt", points: list[list[float]] | Non
     return str(path)
 
 
+def melt(room: Path, suffix: str) -> Path:
+    """Write a trajectory of two frames, as other programs do, of a knot that passes through itself."""
+    path, (n, text) = room / f"melt{suffix}", (24, "")
+    for sign in (1, -1):
+        rows = [f"{k} 1 {x} {y} {sign * z}" for k, (x, y, z) in enumerate(trefoil(n), 1)]
+        if suffix == ".xyz":
+            text += f"{n}\n\n" + "".join(row.replace(" 1 ", " ", 1) + "\n" for row in rows)
+        else:
+            box = "ITEM: BOX BOUNDS pp pp pp\n" + "-9 9\n" * 3 + "ITEM: ATOMS id mol x y z\n"
+            text += f"ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n{n}\n{box}" + "".join(row + "\n" for row in rows)
+    path.write_text(text)
+    return path
+
+
 def mutated(rng: random.Random, data: bytes) -> bytes:
     """Bytes with pieces inserted, repeated, replaced and cut out."""
     for _ in range(rng.randint(1, 4)):
@@ -138,7 +153,11 @@ def geometry(rng: random.Random, room: Path) -> Case:
 
 
 def trajectories(rng: random.Random, room: Path) -> Case:
-    """Damaged archives."""
+    """Damaged archives, and trajectories of other programs."""
+    if rng.random() < 0.3:
+        path = melt(room, rng.choice([".xyz", ".lammpstrj"]))
+        path.write_bytes(mutated(rng, path.read_bytes()))
+        return Case(["audit", path.name, *rng.choice([["--chains", "24"], ["--json", "--box", "9,9,9"]])])
     stream, start = io.BytesIO(), np.array(trefoil())
     if rng.random() < 0.2:
         with zipfile.ZipFile(stream, "w", rng.choice([zipfile.ZIP_LZMA, zipfile.ZIP_BZIP2])) as archive:
@@ -163,6 +182,7 @@ def options(rng: random.Random, room: Path) -> Case:
     option = rng.choice(re.findall(r"^  (?:-\w, )?(--[\w-]+)", parser.format_help(), re.MULTILINE))
     option = rng.choice([option, option, option, option[:-1], option + "s", option.upper()])
     value = [f"{option}={rng.choice(VALUES)}"] if rng.random() < 0.5 else [option, rng.choice(VALUES)]
+    melt(room, ".xyz")
     return Case([command, *split(COMMANDS[command], curve_file(room)), *value])
 
 

@@ -73,7 +73,7 @@ def seen(curves: Sequence[Curve], trials: int = 200, seed: int = 20231) -> list[
         drawing = replace(drawing, curve=drawing.curve.with_vertices(drawing.curve.vertices @ turn))
         size = float(np.ptp(drawing.curve.vertices, axis=0).max())
         least, room = (round(widest(drawing, share * size, 1.5)[0] / size, 9) for share in (0.021, 1 / 12))
-        return drawing, least, room
+        return drawing, min(least, room), room  # what two rows of widths agree on has room for those in between
 
     def crossings(drawings: Sequence[Drawing | None]) -> int:
         return sum(10_000 if each is None else len(each.passes) for each in drawings)
@@ -119,7 +119,7 @@ def widest(drawing: Drawing, width: float, gap: float) -> tuple[float, list[Arc]
 
 def gaps_cut(drawing: Drawing, width: float, gap: float) -> list[Arc] | None:
     """The arcs of a drawing, from gap to gap; None if any two would be less than 0.8 gaps apart."""
-    mesh, need, reach = drawing.curve.mesh, width * (1.0 + gap), np.linspace(0.0, 1.0, 161) * 3.0 * width * (1.0 + gap)
+    mesh, need, reach = drawing.curve.mesh, width * (1.0 + gap), np.linspace(0.0, 1.0, 161) * 8.0 * width * (1.0 + gap)
     lines = [
         np.concatenate([part, part[:1]]) if closed else part
         for part, closed in zip(drawing.curve.components, mesh.closed, strict=True)
