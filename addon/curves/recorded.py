@@ -1,6 +1,6 @@
 """Curve objects over time: their shapes at their keys, or their only shape, and where these are in the world."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -227,7 +227,7 @@ def _turn(objects: Sequence[bpy.types.Object], wanted: FloatArray) -> int:
     for obj in objects:
         if mover := what_moves(obj):
             why = why or Message("'{name}' is moved by {mover}", name=obj.name, mover=mover)
-        elif obj.parent and not any(each in objects for each in _ancestors(obj)):
+        elif obj.parent and not any(obj in each.children_recursive for each in objects):
             # whether a location, rotation and scale under the parent give the turned object; angles of matrices that
             # Blender has rounded count as right to 1e-5
             matrix, own = (np.array(each, dtype=np.float64)[:3, :3] for each in (obj.matrix_world, obj.matrix_basis))
@@ -256,7 +256,7 @@ def _turn(objects: Sequence[bpy.types.Object], wanted: FloatArray) -> int:
     for obj in objects:
         suspend(obj)
     there = {obj: Matrix(turn.matrix.tolist()) @ obj.matrix_world for obj in objects}
-    for obj in sorted(objects, key=lambda each: sum(1 for _ in _ancestors(each))):  # parents carry their children along
+    for obj in sorted(objects, key=lambda each: -len(each.children_recursive)):  # parents carry their children along
         obj.matrix_world = there[obj]
         bpy.context.view_layer.update()
     for obj in objects:
@@ -272,8 +272,3 @@ def _shape(objects: Sequence[bpy.types.Object]) -> Curve:
     if all(bake.is_baked(obj.data) for obj in objects):
         return BakedKeys(objects).curves[-1]
     return read_link(objects)[0]
-
-
-def _ancestors(obj: bpy.types.Object) -> Iterator[bpy.types.Object]:
-    while obj.parent is not None:
-        yield (obj := obj.parent)

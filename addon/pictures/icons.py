@@ -33,6 +33,7 @@ GROUPS: Mapping[str, tuple[str, str]] = {
 """Titles and descriptions of the groups."""
 
 _TITLES = {"solomon": "Solomon's Link", "hopf": "Hopf Link", "whitehead": "Whitehead Link", "perko": "Perko Pair"}
+_TITLES |= {"borromean": "Borromean Rings", "figure eight": "Figure-Eight", "circle": ""}
 
 
 def icon(name: str) -> int:
@@ -83,9 +84,6 @@ def _sheet() -> tuple[npt.NDArray[np.uint8], FloatArray]:
     rows = np.frombuffer(zlib.decompress(chunks[b"IDAT"]), dtype=np.uint8).reshape(-1, COLUMNS * SIDE + 1)
     colours = np.frombuffer(chunks[b"PLTE"], dtype=np.uint8).reshape(-1, 3) / 255.0
     return rows[:, 1:], np.column_stack([colours, np.arange(len(colours)) > 0])
-
-
-_TITLES |= {"borromean": "Borromean Rings", "figure eight": "Figure-Eight", "circle": ""}
 
 
 def group(name: str) -> str:
