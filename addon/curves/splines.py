@@ -151,21 +151,16 @@ def smooth_splines(data: bpy.types.Curve) -> list[bpy.types.Spline]:
 
 def questions(objects: Sequence[bpy.types.Object]) -> list[str]:
     """Ask whether the smooth splines of objects may become polygons, a line each; raises as `sampled` does."""
-    smooth, lines = [obj for obj in objects if smooth_splines(obj.data)], list[str]()
-    for obj in smooth[:5]:
-        splines = smooth_splines(obj.data)
-        kinds = sorted({kind(spline) for spline in splines})
+    smooth, lines, most = [obj for obj in objects if smooth_splines(obj.data)], list[str](), 5
+    for obj in smooth[:most]:
         drawn = zip(sampled(obj), obj.data.splines, strict=True)
-        points = sum(len(points) for points, spline in drawn if spline in splines)
-        if len(splines) == 1:
-            one = "'{name}' has a {kind} spline; it becomes a polygon of {points} points"
-            lines.append(Message(one, name=obj.name, kind=kinds[0], points=points))
-            continue
-        several = "'{name}' has {count} {kinds} splines; they become polygons of {points} points in all"
-        both = Message("{names} and {last}", names=kinds[0], last=kinds[-1]) if kinds[1:] else kinds[0]
-        lines.append(Message(several, name=obj.name, count=len(splines), kinds=both, points=points))
-    more = len(smooth) - len(lines)
-    return [*lines, Message("{count} more objects have smooth splines too", count=more)] if more else lines
+        points = sum(len(points) for points, spline in drawn if spline.type != "POLY")
+        kinds = "/".join(sorted({kind(spline) for spline in smooth_splines(obj.data)}))
+        sentence = "{kinds} splines of '{name}' become polygons, of {points} points in all"
+        lines.append(Message(sentence, kinds=kinds, name=obj.name, points=points))
+    if len(smooth) > most:
+        lines.append(Message("{count} more objects have smooth splines too", count=len(smooth) - most))
+    return lines
 
 
 def sampled(obj: bpy.types.Object) -> list[Frame]:

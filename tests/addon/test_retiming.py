@@ -197,7 +197,7 @@ def test_smooth_splines_are_offered_as_polygons_by_the_button_that_was_pressed(m
     )
     asked("pack", monkeypatch)[0](SimpleNamespace(layout=layout), bpy.context)
     assert offered == ["curve.mobius_flow_pack"]
-    assert "it becomes a polygon of 48 points" in told[0]
+    assert "become polygons, of 48 points in all" in told[0]
     assert (layout.sample_splines, layout.again) == (True, True)
     assert not asked("pack", monkeypatch, sample_splines=True)
 

@@ -119,7 +119,7 @@ def test_a_segment_is_no_polygon():
 
 
 def test_the_questions_count_points_and_of_many_objects_some_are_asked_about():
-    question = "'Knot' has 2 Bézier splines; they become polygons of 60 points in all"
+    question = "Bézier splines of 'Knot' become polygons, of 60 points in all"
     assert splines.questions([smooth_link("BEZIER", 5)]) == [question]
     objects = [smooth_link("NURBS", 3) for _ in range(8)] + [add_curve([hopf_link(6).vertices[:6]])]
     assert len(splines.questions(objects[5:])) == 3
