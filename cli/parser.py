@@ -22,8 +22,8 @@ COMMANDS = {  # the module of each, which has add_COMMAND(parser), and what it d
     "info": ("info", "identify the knot type of curves, and measure them"),
     "verify": ("verify", "check a trajectory for contact"),
     "audit": ("audit", "tell which chains of another program's trajectory passed through each other"),
-    "view": ("view", "show a curve or a motion in a browser, or make a solid of it"),
-    "draw": ("draw", "draw diagrams of curves, codes and named knots"),
+    "view": ("pictures", "show a curve or a motion in a browser, or make a solid of it"),
+    "draw": ("pictures", "draw diagrams of curves, codes and named knots"),
     "knot": ("knot", "write a named knot"),
 }
 SHELLS = ("bash", "zsh", "fish")

@@ -1,11 +1,16 @@
-"""Operators for how curves look: their size while they move, how they lie, and the tubes around them."""
+"""Operators for how curves look: their size while they move, how they lie, the tubes around them, and on paper."""
+
+from pathlib import Path
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty
+from bpy.props import BoolProperty, EnumProperty, StringProperty
 
 from ...core import MobiusFlowError
-from ...core.base.messages import Message
+from ...core.base import Message, write_file
 from ...core.driver.words import named
+from ...core.keys.arcs import seen
+from ...core.keys.figure import Pen, figure
+from ...core.keys.paper import PAPERS
 from ...core.keys.placement import Measure
 from ..curves import bake, pins, recorded, surroundings
 from ..curves.bevel import fit_tubes
@@ -14,6 +19,7 @@ from ..live.requirements import (
     FITTABLE,
     PAINTABLE,
     PINNABLE,
+    READABLE,
     RELAXABLE,
     UNEDITED,
     Condition,
@@ -97,6 +103,36 @@ touch. Relaxing keeps them so until you change their bevel"""
 
     def act(self, context: bpy.types.Context) -> None:
         fit_tubes(selected_curves(context), self.constant)
+
+
+class CURVE_OT_mobius_flow_draw_diagram(Button, bpy.types.Operator):
+    """Draw the selected curves as knots are drawn on paper, from where the fewest strands cross, \
+as they are at the end of their animation"""
+
+    bl_label = "Draw Diagram"
+    bl_options = {"REGISTER"}
+    needs = (READABLE,)
+
+    filepath: StringProperty(name="File", description="Where the drawing goes: SVG, PDF or, with .tex, TikZ")
+    arrows: BoolProperty(name="Arrows", description="Show the directions of the curves")
+    numbers: BoolProperty(name="Numbers", description="Number the crossings")
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        self.filepath = self.filepath or f"{context.object.name}.svg"
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def act(self, context: bpy.types.Context) -> None:
+        path = Path(bpy.path.abspath(self.filepath))
+        if (paper := PAPERS.get(path.suffix.lower())) is None:
+            raise MobiusFlowError(
+                Message("Drawings are .svg, .pdf or .tex; give '{name}' one of these", name=path.name)
+            )
+        objects = selected_curves(context)
+        shapes = [recorded.Recorded.of(obj) for obj in objects]
+        link = recorded.in_world(objects, shapes, [each.points[-1] for each in shapes])
+        write_file(path, paper(figure(seen([link]), pen=Pen(arrows=self.arrows, numbers=self.numbers))))
+        self.report({"INFO"}, rpt_("Drawn: {path}", path=path))
 
 
 @button("Color Components", PAINTABLE)

@@ -1,11 +1,11 @@
-"""``mobius-flow draw``: diagrams of curves, trajectories, codes and named knots as SVG, PDF or TikZ."""
+"""``mobius-flow view`` and ``draw``: curves and their motions to look at, solids to print, and diagrams for papers."""
 
 import argparse
 import os
 from dataclasses import replace
 from pathlib import Path
 
-from ..core import CurveError, OptionError
+from ..core import CurveError, MobiusFlowError, OptionError
 from ..core.base import declared, write_file
 from ..core.io import FORMATS
 from ..core.io.codes import code_diagram
@@ -13,18 +13,19 @@ from ..core.io.source import Source
 from ..core.keys.arcs import seen
 from ..core.keys.figure import Pen, figure
 from ..core.keys.paper import PAPERS
-from ..core.keys.view import motion
+from ..core.keys.solids import animation, solid
+from ..core.keys.view import FRAMES, motion, page, still
 from ..core.knots import knot, knot_type
 from ..core.knots.drawings import Drawing
 from ..core.knots.layout import laid_out
 from ..core.knots.names import named_diagram, table_range
 from . import curves
 from .options import add_option
-from .places import check_places, suffix_of
+from .places import VIEWED, check_places, suffix_of
 from .terminal import say_written
 
 _CODES = {".pd": "pd", ".dt": "dt", ".gauss": "gauss"}
-_EPILOG = """\
+_EPILOG_OF_DRAW = """\
 examples:
   mobius-flow draw 8_18 knot.svg
   mobius-flow draw knot.txt knot.pdf --arrows --numbers
@@ -38,10 +39,58 @@ thinner where they would come too near to each other. Figures in TikZ are for \\
 
 exit status: 0, or 2 on bad input or bad options, or where OUT cannot be written
 """
+_EPILOG_OF_VIEW = """\
+examples:
+  mobius-flow view knot.txt knot.html
+  mobius-flow view path.npz motion.html
+  mobius-flow view relaxed.obj print.3mf --width 3
+  mobius-flow view path.npz motion.glb
+
+An .html page holds all that it needs and works offline; trajectories have a slider and their energy beside it. Solids
+(.stl, .3mf) are refused where a wire of that width would run into itself; of a trajectory they show the last frame. In
+.glb files (glTF) the frames are morph targets, with an animation that plays them.
+
+exit status: 0, or 2 on bad input or bad options, or where OUT cannot be written
+"""
+
+
+def add_view(parser: argparse.ArgumentParser) -> None:
+    parser.description, parser.epilog = "Show a curve or a trajectory, or make a solid of it.", _EPILOG_OF_VIEW
+    curves.add_input(parser, "curve, or trajectory (.npz)")
+    parser.add_argument("output", metavar="OUT", help=f"what to write, by suffix: {', '.join(VIEWED)}")
+    text = "width of the tubes, in the curve's units (default: what is well seen; for solids nine tenths of the widest)"
+    parser.add_argument("--width", type=float, metavar="W", help=text)
+    text = f"frames of a trajectory that are shown, about as far apart, 2 to 1000 (default: {FRAMES})"
+    parser.add_argument("--frames", type=int, default=FRAMES, metavar="N", help=text)
+    parser.set_defaults(run=_view)
+
+
+def _view(options: argparse.Namespace) -> int:
+    suffix = suffix_of(options.output, VIEWED, "pictures")
+    if not 2 <= options.frames <= 1000:
+        raise MobiusFlowError(f"frames is {options.frames}; give 2 to 1000")
+    if options.width is not None and not 0.0 < options.width < float("inf"):
+        raise MobiusFlowError(f"width is {options.width:g}; give a positive number")
+    check_places({"IN": options.input}, {"OUT": options.output})
+    if Path(options.input).suffix.lower() == ".npz":
+        shown = motion(options.input, options.frames)
+    else:
+        with curves.measured(options.input, options.format) as curve:
+            shown = still(curve)
+    radius = options.width and 0.5 * options.width
+    if suffix == ".html":
+        made = page(shown, radius, Path(options.input).stem).encode()
+    elif suffix == ".glb":
+        made = animation(shown, radius)
+    else:
+        made = solid(shown.curves[-1], suffix[1:], options.width)
+    write_file(options.output, made)
+    say_written(options.output)
+    return 0
 
 
 def add_draw(parser: argparse.ArgumentParser) -> None:
-    parser.description, parser.epilog = "Draw diagrams of curves, trajectories, codes and named knots.", _EPILOG
+    parser.description, parser.epilog = "Draw diagrams of curves, trajectories, codes and named knots.", _EPILOG_OF_DRAW
     text = (
         f"curve ({', '.join(FORMATS)}, or - for standard input), trajectory (.npz), code, name, or range of the table"
     )
@@ -56,10 +105,10 @@ def add_draw(parser: argparse.ArgumentParser) -> None:
         add_option(parser, each)
     text = "captions, between commas, or none (default: names, or numbers of frames, if there are several)"
     parser.add_argument("--labels", metavar="A,B,…", help=text)
-    parser.set_defaults(run=_run)
+    parser.set_defaults(run=_draw)
 
 
-def _run(options: argparse.Namespace) -> int:
+def _draw(options: argparse.Namespace) -> int:
     suffix = suffix_of(options.output, PAPERS, "drawings")
     pen = Pen(**{name: getattr(options, name) for name in Pen.__dataclass_fields__})
     check_places({path: path for path in options.inputs if os.path.exists(path)}, {"OUT": options.output})
