@@ -67,8 +67,6 @@ def add_view(parser: argparse.ArgumentParser) -> None:
 
 def _view(options: argparse.Namespace) -> int:
     suffix = suffix_of(options.output, VIEWED, "pictures")
-    if not 2 <= options.frames <= 1000:
-        raise MobiusFlowError(f"frames is {options.frames}; give 2 to 1000")
     if options.width is not None and not 0.0 < options.width < float("inf"):
         raise MobiusFlowError(f"width is {options.width:g}; give a positive number")
     check_places({"IN": options.input}, {"OUT": options.output})
@@ -137,8 +135,6 @@ def _drawn(word: str, options: argparse.Namespace) -> tuple[list[Drawing], list[
     suffix, stem = Path(word).suffix.lower(), Path(word).stem
     is_file = word == curves.STREAM or suffix in FORMATS or os.path.isfile(word)
     if suffix == ".npz":
-        if not 2 <= options.frames <= 1000:
-            raise OptionError(f"frames is {options.frames}; give 2 to 1000")
         found = seen(motion(word, options.frames).curves)
         return found, [str(number) for number in range(1, len(found) + 1)]
     if suffix in _CODES and not options.format:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..base.arguments import checked
-from ..base.errors import CurveError, MobiusFlowError
+from ..base.errors import CurveError, MobiusFlowError, OptionError
 from ..collision import check_embedded
 from ..curve import Curve, Mesh
 from ..curve.refine import evenly
@@ -48,6 +48,8 @@ def motion(path: str | os.PathLike[str], frames: int = FRAMES) -> Motion:
     it is for `verify` to say that the motion is free of contact.
     """
     path = os.fspath(path)
+    if not 2 <= frames <= 1000:
+        raise OptionError(f"frames is {frames}; give 2 to 1000")
     try:
         # frames between which vertices move about equally far
         moved, last = [0.0], None
