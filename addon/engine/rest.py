@@ -64,9 +64,3 @@ def plot(
     x = width * chosen / max(count - 1, 1)
     level = None if target is None else float(heights(np.array([target.energy]))[0])
     return np.column_stack([x, heights(values)]), level
-
-
-def dashes(length: float, period: float) -> FloatArray:
-    """Ends of dashes along a line, as pairs; shape (2 k, )."""
-    starts = np.arange(0.0, length, period)
-    return np.column_stack([starts, np.minimum(starts + 0.5 * period, length)]).ravel()

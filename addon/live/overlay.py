@@ -15,7 +15,7 @@ from gpu_extras.batch import batch_for_shader
 from ...core.base.types import FloatArray
 from ...core.keys.colours import Colour, legible
 from ..curves import pins
-from ..engine.rest import dashes, plot
+from ..engine.rest import plot
 from ..translations import iface_
 from . import registry
 from .requirements import curves_at_hand
@@ -106,7 +106,8 @@ def _plot(context: bpy.types.Context, run: LiveRun) -> None:
     origin, (way, level) = low + padding, plot(run.energies, run.target, *size)
     if run.target is not None and level is not None:
         # draw a dashed line with its label above it, at the left, where the energy is still high
-        start, across = origin + np.array([0.0, level]), dashes(size[0], style.scale * 8.0)
+        start, ends = origin + np.array([0.0, level]), np.arange(0.0, size[0], style.scale * 4.0)
+        across = ends[: len(ends) // 2 * 2]
         pale = [0.5 * (a + b) for a, b in zip(style.ground[:3], style.words[:3], strict=True)]
         line(start + np.column_stack([across, np.zeros(len(across))]), pale, style.scale, kind="LINES")
         text(iface_(run.target.label), (start[0], start[1] + 4 * style.scale), style.words, style.font)
