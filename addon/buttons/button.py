@@ -99,11 +99,11 @@ def offer(
     return True
 
 
-def button(label: str, *needs: Requirement, base: type[Button] = Button, **more: Any) -> Callable[[_Act], type]:
+def button(label: str, *needs: Requirement, **more: Any) -> Callable[[_Act], type]:
     """Turn a function into an operator without settings: its name is the identifier, its docstring the tooltip."""
 
     def operator(act: _Act) -> type:
         body = {"__doc__": act.__doc__, "__module__": act.__module__, "bl_label": label, "needs": needs, "act": act}
-        return type(f"{_PREFIX}mobius_flow_{act.__name__}", (base, bpy.types.Operator), body | more)
+        return type(f"{_PREFIX}mobius_flow_{act.__name__}", (Button, bpy.types.Operator), body | more)
 
     return operator
