@@ -118,7 +118,6 @@ class Session:
         self.surroundings, self._key_options, self._continues = surroundings, key_options, continues
         self.outcome: Outcome | None = None
         self._too_thick = False  # whether a bevel of the artist's meets itself at the start
-        self._last: Iterate | None = None
         self._repinned = False  # whether a hand has left pins
         try:
             self._begin(objects)
@@ -263,7 +262,7 @@ class Session:
 
     def take(self, iterate: Iterate) -> None:
         """Record an iterate."""
-        before, self._last = self._last, iterate
+        before = self.motion.last
         if before is not None and before.curve.mesh == iterate.curve.mesh:
             self._repinned |= before.pins != iterate.pins
         self.motion.add(iterate)

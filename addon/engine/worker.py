@@ -19,7 +19,7 @@ from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from types import MappingProxyType
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 import scipy
@@ -174,44 +174,36 @@ class Worker:
             self._thread.join(timeout=0.2)  # its streams belong to the thread, which may be waiting for room
 
     def _feed(self) -> None:
-        """Pass messages on until there are no more or nobody wants them."""
+        """Pass messages on until there are no more or nobody wants them, and None at last."""
+        pipe = None if self.process is None else self.process.stdout
+        replies = messages(self._inbox) if pipe is None else iter(partial(pickle.load, pipe), None)
         try:
-            from_worker = None if self.process is None else partial(pickle.load, _pipes(self.process)[1])
-            for message in messages(self._inbox) if from_worker is None else iter(from_worker, None):
-                if not self._put(message):
-                    return
-            self._put(None)
-        except (EOFError, OSError, ValueError, pickle.UnpicklingError):
-            self._put(None)
+            with contextlib.suppress(EOFError, OSError, ValueError, pickle.UnpicklingError):  # the process is gone
+                for message in replies:
+                    self._put(message)
+                    if self._closed.is_set():
+                        break
         finally:
-            if self.process is not None:
-                _pipes(self.process)[1].close()
+            self._put(None)
+            if pipe is not None:
+                pipe.close()
 
-    def _put(self, message: Any) -> bool:
+    def _put(self, message: Any) -> None:
         while not self._closed.is_set():
-            try:
+            with contextlib.suppress(queue.Full):
                 self._queue.put(message, timeout=0.1)  # seconds, and then see whether anybody still wants it
-            except queue.Full:
-                continue
-            return True
-        return False
+                break
 
 
 def _send(process: "subprocess.Popen[bytes]", inbox: Inbox) -> None:
     """Pass on what is put into the inbox, in a thread of its own: a pipe may be full."""
     if hasattr(signal, "pthread_sigmask"):  # or else a worker that is gone ends a Blender that does not ignore SIGPIPE
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGPIPE})
-    to_worker = _pipes(process)[0]
-    with contextlib.suppress(OSError), to_worker:  # to a worker that is gone
+    assert process.stdin is not None, "it was started with a pipe"
+    with contextlib.suppress(OSError), process.stdin as pipe:  # to a worker that is gone
         for packet in iter(inbox.get, None):
-            pickle.dump(packet, to_worker)
-            to_worker.flush()
-
-
-def _pipes(process: "subprocess.Popen[bytes]") -> tuple[IO[bytes], IO[bytes]]:
-    assert process.stdin is not None
-    assert process.stdout is not None
-    return process.stdin, process.stdout
+            pickle.dump(packet, pipe)
+            pipe.flush()
 
 
 def _start() -> "subprocess.Popen[bytes] | None":
