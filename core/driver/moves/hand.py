@@ -15,7 +15,6 @@ from ...io.trajectory import Iterate
 from ...solve.constraints import Barycenters
 from ..move import Change, Event, Move
 from ..outcome import Outcome
-from ..run import Run
 
 
 class Hand:
@@ -93,8 +92,23 @@ class Hand:
 
 
 @dataclass(eq=False)
-class Hold(Move):
-    """Carries out the instructions of a hand, if there is one."""
+class AwaitHand(Move):
+    """Let the run rest once where it would end, if a hand holds the curve or stays, and wait for what it does next."""
+
+    def __call__(self, event: Event) -> Event | Change:
+        run, hand, held = self.run, self.run.hand, self.run.problem.objective.pull is not None
+        if hand is None or not (isinstance(event, NoStep | Outcome) and (held or hand.stays)):
+            return event
+        if hand.rests:
+            return event.adding("a hand holds it") if held and isinstance(event, Outcome) else event
+        hand.rests = True
+        run.charged -= 1
+        return Change((Step((leg(run.point, run.point),), 0.0, None),))
+
+
+@dataclass(eq=False)
+class Hold(AwaitHand):
+    """Carry out the instructions of a hand, if there is one."""
 
     lasts = True  # what was grabbed before can still be undone
     _before: list[tuple[Point, Iterate]] = field(default_factory=list, init=False)  # each grab that may be undone
@@ -113,7 +127,7 @@ class Hold(Move):
         if isinstance(event, NoStep | Outcome):
             if said:
                 return Change()  # the event came before the instructions
-            return awaiting(self.run, event) if self._pull is not None else event
+            return super().__call__(event) if self._pull is not None else event
         return event
 
     def grab(self, component: int, share: float) -> None:
@@ -175,23 +189,3 @@ class Hold(Move):
     def _recount(self) -> None:
         """Count iterations from here on."""
         self.run.charged = -self.run.iterate.index
-
-
-@dataclass(eq=False)
-class AwaitHand(Move):
-    """Wait where the run would end for what the hand does next."""
-
-    def __call__(self, event: Event) -> Event | Change:
-        return awaiting(self.run, event)
-
-
-def awaiting(run: Run, event: Event) -> Event | Change:
-    """Let the run rest once where it would end, if a hand holds the curve or stays."""
-    hand, held = run.hand, run.problem.objective.pull is not None
-    if hand is None or not (isinstance(event, NoStep | Outcome) and (held or hand.stays)):
-        return event
-    if hand.rests:
-        return event.adding("a hand holds it") if held and isinstance(event, Outcome) else event
-    hand.rests = True
-    run.charged -= 1
-    return Change((Step((leg(run.point, run.point),), 0.0, None),))
