@@ -39,17 +39,17 @@ class Iterate:
     #: The objective, which is the energy that is minimised, plus the barrier.  All iterates of a strand move have the
     #: ``energy``, ``gradient_norm`` and ``edge_length_error`` of its end.
     energy: float
-    #: Norm of the projected gradient (dimensionless), in the metric in which the method takes it: that of this curve,
-    #: or of one up to two steps before.
+    #: Norm of the projected gradient (dimensionless), in the metric in which the method takes it, which is that of this
+    #: curve, or of one up to two steps before.
     gradient_norm: float
     step_size: float  #: τ that led here, 0 for the start, for motions of moves, and where the mesh changes
-    #: The motion from the previous iterate: vertices, each (n, m), at the ends of its straight legs, of which the last
-    #: is this curve.  Empty for the start, and where the mesh changes: there this is the previous curve with other
-    #: vertices on its edges.
+    #: The motion from the previous iterate, as vertices, each (n, m), at the ends of its straight legs, the last of
+    #: which is this curve.  Empty for the start, and where the mesh changes: there this is the previous curve with
+    #: other vertices on its edges.
     path: tuple[FloatArray, ...]
     certified: bool  #: whether every leg from the start of the run to here was proved free of contact
     edge_length_error: float  #: max |log ℓ/ℓ⁰| over the edges
-    method: str  #: name of the one that took the step: the fallback method where the requested one was stuck
+    method: str  #: name of the one that took the step, which is another where the requested one was stuck
     grown: float = 1.0  #: factor by which target lengths have grown since the start
     pins: tuple[int, ...] = ()  #: pinned vertices, counted from 0, and those between them that cannot move
     strand_moves: StrandMoves | None = None  #: those so far; None before the first one
