@@ -35,7 +35,11 @@ class WithOutcome:
 
 
 def within(limit: TimeLimit, relaxation: Relaxation) -> Relaxation:
-    """The same until the time is up, even in the middle of a step; time between iterates does not count."""
+    """The same until the time is up, even in the middle of a step; time between iterates does not count.
+
+    Raises OptionError if it is up before there is a start.
+    """
+    begun = False
     while True:
         try:
             with limit:
@@ -46,8 +50,11 @@ def within(limit: TimeLimit, relaxation: Relaxation) -> Relaxation:
         except TimeIsUp as up:
             if up.limit is not limit:
                 raise
+            if not begun:
+                raise OptionError(f"the time limit of {limit.seconds:g} s was up before the start; give more") from None
             reached = Message("stopped at the time limit ({seconds:g} s)", seconds=limit.seconds)
             return Outcome(Status.TIME_LIMIT, (reached,)).noting(up)
+        begun = True
         yield iterate
 
 

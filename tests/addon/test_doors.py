@@ -134,7 +134,7 @@ def tighten(source):
         data.attributes.new("cyclic", "BOOLEAN", "CURVE").data.foreach_set("value", [True])
     else:
         data.layers.remove(data.layers[1])
-    return bpy.ops.curve.mobius_flow_tighten(vertices=100, time_limit=0.2)
+    return bpy.ops.curve.mobius_flow_tighten(vertices=100)
 
 
 VERBS = {

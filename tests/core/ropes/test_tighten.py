@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError, Mesh, OptionError, Status, Task, tighten
 from mobius_flow.core.collision import thickness
-from mobius_flow.core.driver import WithOutcome
 from mobius_flow.core.energies.edge_pairs import EdgePairs
 from mobius_flow.core.knots import knot, overhand
 from mobius_flow.core.ropes import TightenOptions, tightening
@@ -242,10 +241,9 @@ def test_numbers_out_of_range_are_refused(settings):
         tighten(knot("3_1"), **settings)
 
 
-def test_a_time_limit_keeps_what_was_reached():
-    way = WithOutcome(tightening(Task(curve=knot("3_1")), TightenOptions(time_limit=1e-9)))
-    assert len(list(way)) <= 1
-    assert way.outcome.status is Status.TIME_LIMIT
+def test_a_time_limit_that_is_up_before_the_start_is_refused():
+    with pytest.raises(OptionError, match="was up before the start"):
+        list(tightening(Task(curve=knot("3_1")), TightenOptions(time_limit=1e-9)))
 
 
 def test_open_ropes_that_are_not_knotted_become_straight():
