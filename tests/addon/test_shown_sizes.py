@@ -273,11 +273,3 @@ def test_a_film_of_an_earlier_version_goes_on_in_the_size_that_it_has(lattice):
     assert bpy.ops.curve.mobius_flow_continue(max_iterations=9, keep_size="RADIUS", timing="EVEN") == {"FINISHED"}
     curves = BakedKeys([lattice]).curves
     np.testing.assert_allclose([Measure.RADIUS.of(each) for each in curves[-5:]], Measure.RADIUS.of(last), rtol=1e-4)
-
-
-@pytest.mark.parametrize("keyframes", ["SHAPE_KEYS", "FCURVES"])
-def test_a_film_goes_on_in_its_size_whatever_is_keyed(lattice, keyframes):
-    relax(**FILM | {"keep_size": "RADIUS", "keyframes": keyframes})
-    assert bpy.ops.curve.mobius_flow_continue(max_iterations=9, keep_size="RADIUS") == {"FINISHED"}
-    sizes = [Measure.RADIUS.of(each) for each in BakedKeys([lattice]).curves]
-    np.testing.assert_allclose(sizes, sizes[0], rtol=1e-3)

@@ -18,10 +18,10 @@ def trefoil(tmp_path):
 
 def test_a_trefoil_is_written_with_report_and_proof(trefoil, tmp_path, run):
     outputs = tmp_path / "out.obj", tmp_path / "r.json", tmp_path / "t.npz", tmp_path / "map.svg"
-    words = ("--vertices", "200", "--report", outputs[1], "--trajectory", outputs[2], "--contacts", outputs[3])
+    words = ("--vertices", "100", "--report", outputs[1], "--trajectory", outputs[2], "--contacts", outputs[3])
     status, _, said = run("tighten", trefoil, outputs[0], *words)
     assert status == 0
-    assert "ropelength 32.7" in said
+    assert "ropelength 32.8" in said
     assert "a rope of radius" in said
     verdict = verify(outputs[2])
     assert verdict.accepted
@@ -30,8 +30,8 @@ def test_a_trefoil_is_written_with_report_and_proof(trefoil, tmp_path, run):
     assert report["radius"] == pytest.approx(verdict.radius)
     assert report["energy"][0] > report["energy"][-1] == pytest.approx(report["ropelength"], rel=1e-5)
     assert report["gap"] <= 1e-6
-    assert report["options"]["vertices"] == report["vertices"] == 200
-    assert all(0 <= a < b < 200 for a, b, _ in report["struts"])
+    assert report["options"]["vertices"] == report["vertices"] == 100
+    assert all(0 <= a < b < 100 for a, b, _ in report["struts"])
     dots = outputs[3].read_text(encoding="utf-8").count("<path")
     assert dots == 2 * len(report["struts"]) + 4  # both ways, in a frame
 

@@ -4,7 +4,6 @@ import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_trefoil, evaluated, in_world, relax
-from scipy.spatial import cKDTree
 
 pytestmark = pytest.mark.filterwarnings("ignore:Setting the shape:DeprecationWarning")  # Blender's own FBX
 
@@ -99,45 +98,3 @@ def colours(mesh):
 def test_fbx_as_it_is_set_by_default_has_no_motion(moving, tmp_path):
     (tube,) = through("fbx", tmp_path, dict.fromkeys(MOTION_SETTINGS, True))
     np.testing.assert_allclose(evaluated(tube, 1), evaluated(tube, 20), atol=1e-6)
-
-
-@pytest.fixture(params=["BEZIER", "NURBS"])
-def smooth(request):
-    """A smooth curve."""
-    add_trefoil(60)
-    bpy.ops.curve.mobius_flow_smooth_curve(kind=request.param)
-    return bpy.context.object
-
-
-def control_points(obj):
-    (spline,) = obj.data.splines
-    return np.array([point.co[:3] for point in (spline.bezier_points or spline.points)])
-
-
-@pytest.mark.parametrize("suffix", ["usdc", "abc"])
-@pytest.mark.parametrize("depth", [0.0, 0.1])
-def test_control_points_of_smooth_curves_are_kept(suffix, depth, smooth, tmp_path):
-    smooth.data.bevel_depth = depth
-    expected = control_points(smooth)
-    for obj in through(suffix, tmp_path):
-        if obj.type == "CURVE":
-            points = control_points(obj)
-        else:
-            points = np.array([point.position[:] for point in obj.data.points])
-        np.testing.assert_allclose(in_world(obj, points), expected, atol=1e-6)
-
-
-@pytest.mark.parametrize("suffix", ["glb", "fbx"])
-def test_of_smooth_curves_what_is_drawn_is_kept(suffix, smooth, tmp_path):
-    """And of glTF nothing without a bevel."""
-    smooth.data.bevel_depth = 0.1
-    expected = evaluated(smooth)
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "a.blend"))
-    (mesh,) = through(suffix, tmp_path)
-    found = in_world(mesh, evaluated(mesh))
-    for some, others in ((found, expected), (expected, found)):
-        assert cKDTree(some).query(others)[0].max() < 1e-5
-    if suffix == "glb":
-        bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "a.blend"))
-        bpy.context.object.data.bevel_depth = 0.0
-        assert through("glb", tmp_path) == []

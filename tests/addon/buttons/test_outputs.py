@@ -154,16 +154,6 @@ def test_it_is_where_the_curve_is_which_stays_as_it_is(make, place):
     assert [each.name for each in made.users_collection] == ["Knots"]
 
 
-def test_undo_takes_it_away():
-    add_trefoil()
-    bpy.ops.ed.undo_push(message="Trefoil")
-    bpy.ops.curve.mobius_flow_tube_mesh("EXEC_DEFAULT", True, color="component")
-    assert "Knot Tube" in bpy.data.objects
-    bpy.ops.ed.undo()
-    assert "Knot Tube" not in bpy.data.objects
-    assert not bpy.data.objects["Knot"].hide_get()
-
-
 def test_other_profiles_are_said_to_be_left_out(capfd):
     add_trefoil().data.bevel_mode = "PROFILE"
     tube()
@@ -186,20 +176,6 @@ def test_smooth_splines_are_where_it_is_said(kind, place, capfd):
     polygon = in_world(curve, keyed_points(curve.data)[-1])
     distance = np.linalg.norm(drawn[:, None] - polygon, axis=-1).min(axis=1).max()
     assert distance < 0.12 * curve.scale.x
-
-
-def test_both_kinds_are_the_same_curve():
-    curve = add_trefoil(120)
-    drawn = []
-    for kind in ("BEZIER", "NURBS"):
-        made = smooth(kind=kind, hide_curve=False)
-        (points,) = splines.sampled(made)
-        drawn.append(points)
-        made.select_set(False)
-        curve.select_set(True)
-    a, b = drawn
-    distance = np.linalg.norm(a[:, None] - b, axis=-1).min(axis=1)
-    np.testing.assert_allclose(distance, 0, atol=1e-5)
 
 
 def test_too_few_points_are_not_proved(capfd):

@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_curve, add_hopf_link, add_trefoil, contents, linked, relax, sentence, show
+from blender_scenes import add_curve, add_hopf_link, add_trefoil, contents, relax, sentence, show
 from shapes import torus_trefoil
 
 
@@ -106,15 +106,6 @@ def test_refused_in_one_sentence(prepare, said):
     prepare()
     bpy.context.view_layer.update()
     assert said in refused()
-
-
-@pytest.mark.parametrize("own", [False, True], ids=["its object too", "its data"])
-def test_linked_from_a_library(tmp_path, own):
-    add_trefoil()
-    kind = "curves" if own else "objects"
-    block = linked(tmp_path / "library.blend", kind, "Knot")  # first: it opens another file, with other `bpy.data`
-    show(bpy.data.objects.new("Mine", block) if own else block)
-    assert "linked from another file" in refused()
 
 
 @pytest.mark.parametrize("kind", ["BEZIER", "NURBS"])

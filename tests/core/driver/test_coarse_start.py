@@ -35,7 +35,7 @@ def relaxed(curve: Curve, **options: object) -> list[Iterate]:
 @pytest.mark.usefixtures("everywhere")
 @pytest.mark.parametrize(
     "curve",
-    [bent(torus_trefoil(240)), pytest.param(hard_unknot(20, seed=3), marks=pytest.mark.slow), bent(knot("L2a1", 400))],
+    [bent(torus_trefoil(200)), pytest.param(hard_unknot(20, seed=3), marks=pytest.mark.slow), bent(knot("L2a1", 400))],
     ids=["trefoil", "hard unknot", "Hopf link"],
 )
 def test_fewer_vertices_at_first_and_all_in_the_end(curve: Curve) -> None:
@@ -51,11 +51,11 @@ def test_fewer_vertices_at_first_and_all_in_the_end(curve: Curve) -> None:
 
 @pytest.mark.usefixtures("everywhere")
 def test_the_same_minimum_in_fewer_steps_on_the_fine_mesh() -> None:
-    curve = bent(torus_trefoil(600))
+    curve = bent(torus_trefoil(300))
     fixed = relaxed(curve, mesh="fixed", method="cg")  # which second derivatives do not end
     iterates = relaxed(curve, method="cg")
     assert iterates[-1].energy == pytest.approx(fixed[-1].energy, rel=1e-6)
-    assert sum(bool(iterate.path) for iterate in iterates if len(iterate.curve) == 600) < len(fixed)
+    assert sum(bool(iterate.path) for iterate in iterates if len(iterate.curve) == 300) < len(fixed)
 
 
 @pytest.mark.usefixtures("everywhere")
@@ -66,9 +66,9 @@ def test_the_same_minimum_in_fewer_steps_on_the_fine_mesh() -> None:
 def test_a_run_that_is_cut_short_has_all_vertices(least: int, limit: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """The way back is within the limit, and ends on the smooth curve: no corners of the coarse one are left."""
     change(monkeypatch, CoarseStart, min_iterations=least)
-    options = RelaxOptions(vertices=600, max_iterations=limit, tolerance=1e-9, method="flow-h1")
-    result = minimize(torus_trefoil(600), options)
-    assert (result.status, len(result.energies), len(result.curve)) == (Status.ITERATION_LIMIT, limit + 1, 600)
+    options = RelaxOptions(vertices=300, max_iterations=limit, tolerance=1e-9, method="flow-h1")
+    result = minimize(torus_trefoil(300), options)
+    assert (result.status, len(result.energies), len(result.curve)) == (Status.ITERATION_LIMIT, limit + 1, 300)
     assert result.certified
     assert result.last.energy < 1.0005 * result.energies[0]
 
@@ -119,8 +119,8 @@ def test_no_component_has_more_vertices_at_first_than_in_the_end(corners: int) -
 )
 @pytest.mark.usefixtures("everywhere")
 def test_where_vertices_are_to_stay_they_do(options: dict[str, object]) -> None:
-    iterates = relaxed(bent(torus_trefoil(600)), **{"max_iterations": 3} | options)
-    assert {len(iterate.curve) for iterate in iterates} == {600}
+    iterates = relaxed(bent(torus_trefoil(300)), **{"max_iterations": 3} | options)
+    assert {len(iterate.curve) for iterate in iterates} == {300}
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

@@ -336,7 +336,7 @@ def test_violent_drags_go_through_nothing(name: str, drags: int) -> None:
         assert knot_type(iterates[-1].curve).names == knot_type(task.curve).names
 
 
-@pytest.mark.parametrize("method", family(METHODS, every=6))
+@pytest.mark.parametrize("method", family(METHODS, every=8))
 def test_every_method_follows(method: str) -> None:
     iterates = violent(TASKS["trefoil"][0], RelaxOptions(vertices=60, mesh="fixed", method=method), 4, 3)
     assert all(iterate.certified for iterate in iterates)
