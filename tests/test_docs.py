@@ -149,7 +149,7 @@ def test_the_example_for_scripts_in_blender_runs(tmp_path):
         "scene.render.resolution_x, scene.render.resolution_y, scene.frame_end = 64, 36, 2\n"
         "bpy.ops.mesh.primitive_cube_add(location=(0, 0, -9))\n"
         "bpy.context.object.name = 'Table'\n"
-        "bpy.ops.curve.mobius_flow_add_knot()\n"
+        "bpy.ops.curve.mobius_flow_add_knot(knot='3_1')\n"
         "bpy.context.object.name = 'Knot'\n"
     )
     done = finished([sys.executable, "-P", "-c", before + code])
