@@ -20,22 +20,22 @@ from ..io.trajectory import Iterate
 from ..solve.symmetric import factorised
 from .clearances import Clearances, clearances
 
-ANCHOR, TENSION, BENDING = 1e-3, 0.02, 0.3  # a, T and b: bends are some four radii long
-BEGINS = 1.2  # where the barrier begins, over what is needed,
-FOLLOWS = 8.0  # and over what is kept, while that is little: what is nearest moves first
 INEXTENSIBLE = 1000.0  # stiffness of kept lengths
 
 
-def stiffness(curve: Curve, radius: FloatArray) -> sp.csr_array:
-    """K with ½ uᵀKu the quadratic form, for each coordinate of a displacement; shape (n, n)."""
+def stiffness(curve: Curve, radius: FloatArray, a: float = 1e-3, T: float = 0.02, b: float = 0.3) -> sp.csr_array:
+    """K with ½ uᵀKu the quadratic form, for each coordinate of a displacement; shape (n, n).
+
+    Bends are some four radii long.
+    """
     mesh, ell = curve.mesh, curve.edge_lengths
     R, own = radius[mesh.edge_component], radius[mesh.component]
     slope = (sp.diags_array(1.0 / ell) @ mesh.difference).tocsr()
     before, after = mesh.incoming[mesh.inner], mesh.outgoing[mesh.inner]
     turn = slope[after] - slope[before]
-    anchor = sp.diags_array(ANCHOR * mesh.scatter(0.5 * ell, 0.5 * ell) / own**3)
-    tension = slope.T @ sp.diags_array(TENSION * ell / R) @ slope
-    bending = turn.T @ sp.diags_array(2.0 * BENDING * own[mesh.inner] / (ell[before] + ell[after])) @ turn
+    anchor = sp.diags_array(a * mesh.scatter(0.5 * ell, 0.5 * ell) / own**3)
+    tension = slope.T @ sp.diags_array(T * ell / R) @ slope
+    bending = turn.T @ sp.diags_array(2.0 * b * own[mesh.inner] / (ell[before] + ell[after])) @ turn
     return (anchor + tension + bending).tocsr()
 
 
@@ -102,7 +102,8 @@ class Ropes:
         """
         if not len(self.free):
             return None, 0.0, 0.0
-        n, mesh, share, begins = len(curve), curve.mesh, self.share, min(BEGINS * self.most, FOLLOWS * self.share)
+        # the barrier begins at 1.2 of what is needed, at first at 8 of what is kept: what is nearest moves first
+        n, mesh, share, begins = len(curve), curve.mesh, self.share, min(1.2 * self.most, 8.0 * self.share)
         near, _ = self.near(curve, begins)
         _, slope, curvature = near.barrier(share, begins)
         g = self.stiffness @ (curve.vertices - self.given.vertices) + self.weight * near.sum_first(slope, n)

@@ -30,10 +30,7 @@ from ..energies.edge_pairs import EdgePairs
 from ..solve.symmetric import factorised
 from .contacts import Contacts
 
-CENTRED = 0.001  # decrease that Newton's step promises, in μ for each constraint, below which μ falls
-PATIENCE = 15  # steps that bring as little: then it falls, too
 FALL = 0.2  # of μ
-LEAST_MARGIN = 0.005
 
 
 def outward(curve: Curve) -> FloatArray:
@@ -56,6 +53,9 @@ class InteriorPoint:
     proved: Callable[[FloatArray], bool]
     margin: float = 0.3  # of distances beyond 2, at which the barrier begins
     longest: float = 0.5  # that a vertex moves at once
+    least_margin: float = 0.005
+    centred: float = 0.001  # decrease that Newton's step promises, in μ for each constraint, below which μ falls
+    patience: int = 15  # steps that bring as little: then it falls, too
     proportions: FloatArray | None = None  # of edges; None for equally long ones
     drawn: float = 0.0  # out of the knot, by ends that were led on
     gap: float = field(default=np.inf, init=False)
@@ -78,9 +78,9 @@ class InteriorPoint:
         for _ in range(most):
             check_time()
             share, decrement = self.step()
-            little = CENTRED * self.mu * len(self.forces)
+            little = self.centred * self.mu * len(self.forces)
             merits.append(self.merit)
-            still = len(merits) > PATIENCE and merits[-1] > merits[-1 - PATIENCE] - little
+            still = len(merits) > self.patience and merits[-1] > merits[-1 - self.patience] - little
             least = self.mu if gap is None else 0.5 * gap * self.curve.length / len(self.forces)
             centred = decrement < little or still
             if gap is None and centred:
@@ -92,7 +92,7 @@ class InteriorPoint:
                 self.mu = min(self.mu, weight * float(np.mean(self.curve.edge_lengths)) ** 2)
             elif self.mu > least and centred:
                 fall = max(FALL, least / self.mu)
-                self.mu, self.margin = fall * self.mu, max(LEAST_MARGIN, fall**0.5 * self.margin)
+                self.mu, self.margin = fall * self.mu, max(self.least_margin, fall**0.5 * self.margin)
                 self._list()
                 merits.clear()
 

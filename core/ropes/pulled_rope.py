@@ -25,16 +25,14 @@ from .contacts import Contacts
 from .interior_point import FALL, InteriorPoint, outward
 
 GAP = 1e-6  # of forces times clearances, relative to the length, at rest
-ROOM = 1e-6  # of the radius, which motions are proved with: between their ends strands come a little nearer
-WEIGHT = 0.03  # of the barrier, in squares of edges
-SHRINK = 0.95  # of the size at least is left at once, where nothing touches
 
 
 class PulledRope:
     """The rope on its way: the last iterate, and the interior point on its mesh, in radii around a centre."""
 
     def __init__(self, last: Iterate, unit: float) -> None:
-        radius = (unit * (1.0 - ROOM),) * len(last.curve.mesh.component_sizes)
+        # 1e-6 of the radius less, which motions are proved with: between their ends strands come a little nearer
+        radius = (unit * (1.0 - 1e-6),) * len(last.curve.mesh.component_sizes)
         self.last = replace(last, pins=(), radius=radius, energy=last.curve.length / unit)
         self.unit, self.center, self.lengths = unit, last.curve.vertices.mean(axis=0), last.curve.component_lengths
         self.point: InteriorPoint | None = None
@@ -124,7 +122,8 @@ class PulledRope:
         if not self.curve.mesh.all_closed:
             return
         start, wanted = self.curve.vertices, 1.001 * self.unit / thickness(self.curve)
-        steps = max(1, math.ceil(math.log(wanted) / math.log(SHRINK)))
+        # 0.95 of the size at least is left at once, where nothing touches
+        steps = max(1, math.ceil(math.log(wanted) / math.log(0.95)))
         for k in range(1, steps + 1):
             yield from self.follow([self.center + wanted ** (k / steps) * (start - self.center)])
 
@@ -161,7 +160,7 @@ class PulledRope:
             yield from self.shrunk()
         curve, last = self.curve.with_vertices((self.curve.vertices - self.center) / self.unit), self.point
         # as the square of edges, so that the barrier is about the same on all meshes, and then less
-        mu, margin = WEIGHT * (curve.length / len(curve)) ** 2, 0.3
+        mu, margin = 0.03 * (curve.length / len(curve)) ** 2, 0.3
         if last is not None:
             mu, margin = 0.25 * FALL * last.mu, FALL**0.5 * last.margin
 

@@ -22,8 +22,6 @@ from ..io.trajectory import Iterate
 from .crossings import AXES, Crossing, lead_apart
 from .displacement import Ropes
 
-COARSE = 4.0  # radii that edges may be long: ropes bend within some four
-MOST = 4000  # edges into which a curve is cut for that
 KEPT = 1e-3  # part by which kept lengths may differ at the end; ten times as much while ropes grow
 
 
@@ -114,8 +112,8 @@ def _iterates(task: Task, options: SeparateOptions) -> Relaxation:
         check_embedded(curve)  # which says where it doubles back
     check_clear(curve, task.obstacles)
     radius = np.broadcast_to(radius, parts).copy()
-    # edges can bend around what is in their way; those of very thin ropes are longer, or there would be too many
-    longest = np.maximum(COARSE * radius[curve.mesh.edge_component], curve.length / MOST)
+    # three radii: edges bend around what is in their way; of very thin ropes 4,000, or there would be too many
+    longest = np.maximum(3.0 * radius[curve.mesh.edge_component], curve.length / 4000)
     pieces = np.ceil(curve.edge_lengths / longest).astype(np.intp)
     given, curve = curve.mesh, subdivide(curve, pieces)
     mesh, now = curve.mesh, np.empty(given.size, dtype=np.intp)  # the numbers of the given vertices

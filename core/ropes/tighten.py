@@ -27,8 +27,6 @@ from ..io.trajectory import Iterate
 from .pulled_rope import GAP, PulledRope
 
 COARSE = 100  # vertices that find the shape, up to twice as many
-MOST = 20_000  # of vertices, starts and seeds
-FINAL = 3  # starts that are compared on twice as many vertices
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,7 +40,7 @@ class TightenOptions:
 
     def __post_init__(self) -> None:
         for name, low in (("vertices", COARSE), ("starts", 1), ("seed", 0)):
-            check_number(name, getattr(self, name), low - 1, MOST)
+            check_number(name, getattr(self, name), low - 1, 20_000)
         if self.time_limit is not None:
             check_number("time_limit", self.time_limit, 0.0, math.inf)
 
@@ -158,7 +156,7 @@ def _tightened(starts: Sequence[tuple[Task, float]], coarse: int, wanted: Tighte
         return round(len(trial[0].curve) / coarse), trial[0].promise
 
     if trials:
-        trials = sorted(trials, key=rank)[:FINAL]
+        trials = sorted(trials, key=rank)[:3]  # which on few vertices are not told apart
         for rope, way in trials if coarse < wanted.vertices else ():
             way += [*rope.doubled(), *rope.pulled(wanted.vertices)]
         rope, way = min(trials, key=rank)

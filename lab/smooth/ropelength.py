@@ -1,6 +1,7 @@
 """Proved upper bounds on the ropelengths of knot types: of polygons with arcs in their corners (docs/bounds.md)."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -14,27 +15,32 @@ from ...core.knots.inscribed import equal_steps, is_isotopic
 
 
 @checked
-def ropelength_bound(curve: Curve, per_edge: int = 16) -> float:
+def ropelength_bound(curve: Curve, per_edge: int = 16, smoothed: Sequence[float] = (0.0, 0.03, 0.06)) -> float:
     """A proved upper bound on the ropelength of a polygon's knot type: that of a curve C¹·¹ near it, rounded up.
 
     Arcs are inscribed in a polygon with ``per_edge`` times as many vertices on the cubic B-spline that is controlled by
-    the given one: it bends about as much as that does, and is shorter.  Raises CurveError where the spline is not
-    proved to be of the polygon's type, or is too coarse, for arcs, and for curves that are not in space.
+    the given one, whose vertices are smoothed by such parts of their second differences first: the least bound counts.
+    Raises CurveError where no spline is proved to be of the polygon's type, or they are too coarse, for arcs, and for
+    curves that are not in space.
     """
     check_closed(curve, "ropelengths")
     if curve.dimension != 3:
         raise CurveError(f"the curve has dimension {curve.dimension}; ropelengths are of curves in space")
     t = np.arange(per_edge)[:, None, None] / per_edge
     weights = ((1.0 - t) ** 3, (3.0 * t - 6.0) * t**2 + 4.0, ((3.0 - 3.0 * t) * t + 3.0) * t + 1.0, t**3)
-    parts = [
-        np.sum([w * np.roll(p, 1 - k, axis=0) for k, w in enumerate(weights)], axis=0).swapaxes(0, 1).reshape(-1, 3)
-        / 6.0
-        for p in curve.components
-    ]
-    fine = Curve.from_components(parts)
-    if not is_isotopic(curve, equal_steps(curve), fine, equal_steps(fine)):
+    bounds = list[float]()
+    for part in smoothed:
+        splines = []
+        for p in curve.components:
+            controls = p + part * (np.roll(p, 1, axis=0) - 2.0 * p + np.roll(p, -1, axis=0))
+            points = np.sum([w * np.roll(controls, 1 - k, axis=0) for k, w in enumerate(weights)], axis=0) / 6.0
+            splines.append(points.swapaxes(0, 1).reshape(-1, 3))
+        fine = Curve.from_components(splines)
+        if is_isotopic(curve, equal_steps(curve), fine, equal_steps(fine)):
+            bounds.append(bound_by_arcs(fine))
+    if not bounds:
         raise CurveError("a spline near the curve may be another knot, which bounds no ropelength; give more vertices")
-    return bound_by_arcs(fine)
+    return min(bounds)
 
 
 @checked

@@ -108,6 +108,12 @@ def test_a_random_bundle():
     assert result.curve.length < 1.01 * curve.length
 
 
+def test_few_vertices_are_enough_for_three_lines_through_a_point():
+    ways = ((1.0, 0.0), (0.5, 0.75**0.5), (-0.5, 0.75**0.5))
+    lines = arcs(*(line((-20 * x, -20 * y, 0), (20 * x, 20 * y, 0), 3) for x, y in ways))
+    assert separate(lines, 1.0).status is Status.CONVERGED
+
+
 def test_long_edges_are_cut_and_the_given_vertices_kept():
     task = Task(curve=arcs([[-12.0, 0, 0], [2, 0, 0], [12, 0, 0]], [[0.0, -12, 0], [0, 12, 0]]), pins=(1,))
     iterates = []
