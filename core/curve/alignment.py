@@ -50,21 +50,16 @@ def _about(axis: FloatArray, angles: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class Alignment:
-    """The similarity x ↦ target + scale · R (x − source) that takes a curve approximately to another one.
-
-    ``order`` has, for each of its components, the matching one of the other, ``backwards`` whether that is traversed
-    in its opposite direction, ``begins`` the share of its length, so traversed, at which the curve's first vertex lies;
-    ``distance`` is the remaining distance, root mean square, in radii of gyration.
-    """
+    """The similarity x ↦ target + scale · R (x − source) that takes a curve approximately to another one."""
 
     rotation: FloatArray  # R, shape (3, 3)
     scale: float
     source: FloatArray
     target: FloatArray
-    order: tuple[int, ...]
-    backwards: tuple[bool, ...]
-    begins: tuple[float, ...]
-    distance: float
+    order: tuple[int, ...]  # for each of its components the matching one of the other
+    backwards: tuple[bool, ...]  # whether that is traversed in its opposite direction
+    begins: tuple[float, ...]  # the share of its length, so traversed, at which the curve's first vertex lies
+    distance: float  # that remains, root mean square, in radii of gyration
 
     @property
     def as_given(self) -> bool:
