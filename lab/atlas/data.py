@@ -19,7 +19,7 @@ from .folder import Folder
 TITLE = "Curves at rest under the Möbius energy"
 CURVES = (".json", ".vect")
 ARCHIVE = "data/moebius-energy-atlas.zip"
-_OUTWARDS = {"upper_bound": ROUND_CEILING, "lower_bound": ROUND_FLOOR}
+_OUTWARDS = {"upper_bound": ROUND_CEILING, "lower_bound": ROUND_FLOOR, "ropelength_bound": ROUND_CEILING}
 _MILLIONTH = Decimal("1e-6")
 _FROM = ("number", "modes", "kinds", "version", "command", "folder")  # columns that atlas.csv leaves out
 _ABSTRACT = """\
@@ -110,7 +110,7 @@ def _without_curve(minimum: Values) -> Values:
 
 
 def bounds(row: Values) -> dict[str, str]:
-    """The proved bounds of a type's least energy, to six decimals, rounded outwards; empty where there is none."""
+    """The proved bounds of a type, to six decimals, rounded outwards; empty where there is none."""
     values = {name: row[name] for name in _OUTWARDS}
     return {k: "" if x is None else str(Decimal(x).quantize(_MILLIONTH, _OUTWARDS[k])) for k, x in values.items()}
 

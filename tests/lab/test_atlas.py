@@ -341,9 +341,10 @@ def test_balanced_curves_may_miss_their_symmetries_by_little(trefoil, monkeypatc
 
 
 def test_bounds_are_rounded_outwards():
-    known = {"upper_bound": 74.4120430000001, "lower_bound": 22.849556}
-    assert data.bounds(known) == {"upper_bound": "74.412044", "lower_bound": "22.849555"}  # of doubles, not of decimals
-    assert data.bounds({"upper_bound": None, "lower_bound": 4.0}) == {"upper_bound": "", "lower_bound": "4.000000"}
+    known = {"upper_bound": 74.4120430000001, "lower_bound": 22.849556, "ropelength_bound": 32.745892000001}
+    found = {"upper_bound": "74.412044", "lower_bound": "22.849555", "ropelength_bound": "32.745893"}
+    assert data.bounds(known) == found  # of doubles, not of decimals
+    assert set(data.bounds(dict.fromkeys(known)).values()) == {""}
 
 
 def test_commands_of_files_have_their_hash():
