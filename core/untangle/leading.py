@@ -12,8 +12,6 @@ from .drawing import PlaneDrawing
 from .rope import ElasticRope, Springs
 from .ways import Way
 
-HOLD = 30.0  # stiffness of springs
-
 
 class Lead:
     """A strand that is led: its vertices, where they lie, the way to which they are led, and what that costs."""
@@ -74,9 +72,7 @@ class Lead:
         t = np.gradient(places, axis=0)
         t /= np.linalg.norm(t, axis=1)[:, None] + 1e-300
         # weaker along the strand, and at its ends
-        stiffness = (hold * HOLD * (0.1 + 0.9 * self.bump))[:, None, None] * (
-            np.eye(3) - 0.9 * t[:, :, None] * t[:, None]
-        )
+        stiffness = (hold * (0.1 + 0.9 * self.bump))[:, None, None] * (np.eye(3) - 0.9 * t[:, :, None] * t[:, None])
         if landed:
             stiffness[:, 2] = stiffness[:, :, 2] = 0.0
         return Springs(self._wrapped(self.first + np.arange(self.count)), places, stiffness, landed)
@@ -104,7 +100,7 @@ def lead(rope: ElasticRope, leads: Sequence[Lead]) -> bool:
         """How far strands are behind their springs, but for their ends, in faces."""
         d = rope.seen[now.vertices] - now.places
         inner = np.concatenate([each.bump for each in leads]) > 0.5
-        return float(np.sqrt(np.einsum("ki,kij,kj->k", d, now.stiffness, d) / HOLD)[inner].max(initial=0.0) / rope.face)
+        return float(np.sqrt(np.einsum("ki,kij,kj->k", d, now.stiffness, d))[inner].max(initial=0.0) / rope.face)
 
     pace = 0.9 * rope.face
     ups = max(2, math.ceil(max(np.abs(each.top - each.old[:, 2]).max() for each in leads) / pace))

@@ -8,24 +8,21 @@ forces by the largest tension.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
-import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
 from ..base.deadline import check_time
 from ..base.types import BoolArray, FloatArray, IntArray
-from ..collision import is_free, is_rope
+from ..collision import is_rope, minimal_gap
 from ..curve import Curve
 from ..curve.distances import arc_distance_of_pairs, arc_distance_of_vertices
 from ..curve.obstacle import Obstacle
 from ..energies.edge_pairs import EdgePairs
 from ..energies.rope import closest, phi
 from ..knots.diagrams.projection import plane_crossings
-from ..solve.symmetric import factorised
-
-SHARP = 0.3  # cosine of the sharpest turn at a vertex, if there are no sharper ones
+from .model import QuadraticModel, add_at
 
 
 class ViewCount(NamedTuple):
@@ -36,8 +33,8 @@ class ViewCount(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Stage:
-    """Motions on one mesh; they start where the previous stage ends, except for vertices on straight edges."""
+class Legs:
+    """Motions on one mesh; they start where the previous ones end, except for vertices on straight edges."""
 
     start: Curve  # where they begin, in the user's units
     path: tuple[FloatArray, ...] = ()  # the vertices at the end of each leg, (n, 3); empty where only the mesh changes
@@ -59,35 +56,6 @@ class Springs:
     landed: bool  # whether these vertices lie on the table, like all others
 
 
-class _Model:
-    """Forces on n vertices, less their springs, drags and stiffnesses: a quadratic function of displacements."""
-
-    def __init__(self, n: int) -> None:
-        self.force: FloatArray = np.zeros((n, 3))  # the derivative
-        self.form: FloatArray = np.zeros((n, 3, 3))  # the second one, or what is as good: blocks on the diagonal
-        self._blocks: list[tuple[IntArray, IntArray, FloatArray]] = []  # and elsewhere
-
-    def couple(self, corners: Sequence[tuple[IntArray, FloatArray]], first: FloatArray, second: FloatArray) -> None:
-        """Add a function of Σ c x over some vertices x, each a pair of indices and factors c, by its derivatives."""
-        for a, by_a in corners:
-            _add(self.force, a, by_a[:, None] * first)
-            self._blocks += [(a, b, (by_a * by_b)[:, None, None] * second) for b, by_b in corners]
-
-    def minimum(self) -> FloatArray:
-        """The displacements of least energy, shape (n, 3)."""
-        n, own = len(self.form), np.arange(len(self.form))
-        a, b, blocks = map(np.concatenate, zip(*self._blocks, (own, own, self.form), strict=True))
-        order = np.argsort(key := a * n + b, kind="stable")
-        first = np.flatnonzero(np.diff(key[order], prepend=-1))
-        rows, columns = np.divmod(key[order[first]], n)
-        total = sp.csr_array((np.ones(len(order)), order, np.append(first, len(order))))  # of those with one place
-        blocks = (total @ blocks.reshape(-1, 9)).reshape(-1, 3, 3)
-        form = sp.bsr_array((blocks, columns, np.searchsorted(rows, np.arange(n + 1))), shape=(3 * n, 3 * n)).tocsr()
-        # as it is symmetric, its rows are its columns
-        form = sp.csc_array((form.data, form.indices, form.indptr), shape=form.shape)
-        return -np.asarray(factorised(form).solve(self.force.ravel())).reshape(-1, 3)
-
-
 class ElasticRope:
     """A curve's vertices in the user's doubles, bit for bit those that are proved, and as seen in a frame.
 
@@ -95,12 +63,18 @@ class ElasticRope:
     as thick as there is room for.  Vertices ``held`` stay where they are.
     """
 
+    stride: ClassVar[float] = 0.35  # the most that a vertex moves in a step, or in a leg of several, in faces
+    fat: ClassVar[float] = 0.08  # the largest ``thick``, in faces
+    hold: ClassVar[float] = 30.0  # stiffness of springs, in that of its weight
+    sharp: ClassVar[float] = 0.3  # cosine of the sharpest turn at a vertex, if there are no sharper ones
+
     def __init__(
         self, curve: Curve, frame: FloatArray, held: BoolArray, obstacles: Sequence[Obstacle], radius: FloatArray | None
     ) -> None:
         self.mesh, self.frame, self.held, self.obstacles, self.radius = curve.mesh, frame, held, obstacles, radius
         self.vertices, self._start = curve.vertices, curve
-        self.path: list[FloatArray] = []  # the vertices after each step so far
+        self.path: list[FloatArray] = []  # the vertices at the end of each leg so far
+        self._key: FloatArray | None = None  # those where the last leg begins, if it may go on
         self._length = curve.length if not held.any() and not obstacles else None  # that it keeps
         self._origin = (curve.vertices[held] if held.any() else curve.vertices).mean(axis=0)
         self.seen = (self.vertices - self._origin) @ frame
@@ -111,26 +85,29 @@ class ElasticRope:
         """The curve as it is."""
         return Curve(self.vertices, self.mesh)
 
-    def take(self, crossings: int, moves: int) -> Stage:
+    def take(self, crossings: int, moves: int) -> Legs:
         """The motions that have not been taken yet; what is seen at their end comes with them."""
-        stage = Stage(self._start, tuple(self.path), ViewCount(crossings, moves))
-        self.path, self._start = [], self.curve
-        return stage
+        legs = Legs(self._start, tuple(self.path), ViewCount(crossings, moves))
+        self.path, self._start, self._key = [], self.curve, None
+        return legs
 
     def mark(self) -> tuple[FloatArray, FloatArray, float, int]:
         """What `rewind` needs."""
+        self._key = None
         return self.vertices, self.seen, self.thick, len(self.path)
 
     def rewind(self, mark: tuple[FloatArray, FloatArray, float, int]) -> None:
         """Forget all motions since a mark."""
         self.vertices, self.seen, self.thick, count = mark
+        self._key = None
         del self.path[count:]
 
-    def step(self, springs: Springs | None = None, cap: float = 0.35) -> bool:
-        """Go one step, in which no vertex moves by more than a part ``cap`` of a face; return whether it is free."""
+    def step(self, springs: Springs | None = None) -> bool:
+        """Go one step, in which no vertex moves by more than a stride; return whether it is free."""
         check_time()
         here, mesh, face, r = Curve(self.seen, self.mesh), self.mesh, self.face, self.thick
-        mean, model, x = float(here.edge_lengths.mean()), _Model(mesh.size), here.vertices
+        most = self.stride * face
+        mean, model, x = float(here.edge_lengths.mean()), QuadraticModel(mesh.size), here.vertices
         cosine, inner = self._cosines(here), mesh.inner
         # bending, for which corners of more than 60 degrees are stiffer
         stiffness = (0.35 * face) ** 2 / mean**3 * (1.0 + 30.0 * np.maximum(0.5 - cosine, 0.0))
@@ -139,14 +116,14 @@ class ElasticRope:
         model.couple(((before, one), (inner, -2.0 * one), (after, one)), bend, stiffness[:, None, None] * np.eye(3))
         lying = np.ones(mesh.size, dtype=bool)
         if springs is not None:
-            k, scale = springs.vertices, mean / face**2
+            k, scale = springs.vertices, self.hold * mean / face**2
             lying[k] = springs.landed
             model.force[k] += scale * np.einsum("kij,kj->ki", springs.stiffness, x[k] - springs.places)
             model.form[k] += scale * springs.stiffness
         crossings = plane_crossings(mesh, x).edges
         self._add_tension(model, here, crossings.shape[1], lying, springs)
         self._add_repulsion(model, here, crossings, lying)
-        e, f = self._strands(here, max(4.0 * r, 2.05 * r + 2.0 * cap * face), r)
+        e, f = self._strands(here, max(4.0 * r, 2.05 * r + 2.0 * most), r)
         apart = self._add_barrier(model, here, e, f)
         model.force[self.held] = 0.0
         model.form[self.held] += 1e9 * mean / face**2 * np.eye(3)
@@ -155,9 +132,9 @@ class ElasticRope:
         self.speed = float(np.linalg.norm(move, axis=1).max())
         if self.speed == 0.0:
             return False
-        move *= min(1.0, cap * face / self.speed)
-        floor, sharp = min(2.05 * r, 0.97 * apart.min(initial=np.inf)), min(SHARP, cosine.min(initial=1.0))
-        near = apart < floor + 2.0 * min(self.speed, cap * face)
+        move *= min(1.0, most / self.speed)
+        floor, sharp = min(2.05 * r, 0.97 * apart.min(initial=np.inf)), min(self.sharp, cosine.min(initial=1.0))
+        near = apart < floor + 2.0 * min(self.speed, most)
         for _ in range(10):
             seen = x + move
             if (
@@ -178,21 +155,47 @@ class ElasticRope:
             if not self._go(self.seen * [1.0, 1.0, now / before]):
                 break
 
-    def thicken(self, most: float) -> None:
-        """Make the rope by itself as thick as there is room for, but not much at once."""
+    def lie_down(self, crossings: int, wide: float = 1.2) -> None:
+        """Lie down flat, and become as thick as is good for leading strands.
+
+        A face becomes so wide, times the root of the area for each crossing, if there is rope enough: else it shrinks.
+        """
+        thick = 0.0 if self.radius is None else 1.05 * float(self.radius.max())
+        size = float(np.ptp(self.seen, axis=0).max())
+        area = 10.0 * np.sqrt(np.linalg.det(np.cov(self.seen[:, :2].T)).clip(0.0))  # that of an ellipse, or nearly so
+        enough = float(np.linalg.norm(self.mesh.changes(self.seen), axis=1).sum()) / _needed(crossings)
+        self.face = max(min(wide * np.sqrt(area / max(crossings, 3)), enough), thick / self.fat, 0.02 * size)
+        self.thick = max(0.45 * minimal_gap(self.curve)[0], thick)
+        for k in range(40):
+            if not self.step():
+                break
+            self._thicken()
+            if k > 10 and self.speed < 0.1 * self.face and self.thick > 0.99 * self.fat * self.face:
+                break
+
+    def settle(self) -> None:
+        """Come to rest, or nearly so."""
+        for k in range(20):
+            if not self.step() or (k >= 3 and self.speed < 0.08 * self.face):
+                break
+            self._thicken()
+
+    def _thicken(self) -> None:
+        """Become by itself as thick as there is room for, but not much at once."""
+        most = self.fat * self.face
         room = 0.45 * self._gap(self.seen, *self._strands(Curve(self.seen, self.mesh), 3.0 * most, most))
         self.thick = max(self.thick, min(most, room, 1.15 * self.thick))
 
     def _add_tension(
-        self, model: _Model, here: Curve, crossings: int, lying: BoolArray, springs: Springs | None
+        self, model: QuadraticModel, here: Curve, crossings: int, lying: BoolArray, springs: Springs | None
     ) -> None:
         """Tension towards the length that so many crossings need and edges of equal lengths, weight, and drag."""
         mesh, ell, face = self.mesh, here.edge_lengths, self.face
         means = (np.add.reduceat(ell, mesh.edge_offsets[:-1]) / mesh.edge_counts)[mesh.edge_component]
         unit, along, eye = float(ell.mean()) / face**2, here.edge_vectors / ell[:, None], np.eye(3)
         if springs is None:  # what is not led is to stay where ways have been planned
-            need = face * max(8.0, 1.8 * crossings)
-            self._pull = 0.06 * float(np.clip((ell.sum() / need - 1.0) / 0.15, -0.2, 1.0))
+            slack = ell.sum() / (face * _needed(crossings)) - 1.0
+            self._pull = 0.06 * float(np.clip(slack / 0.15, -0.2, 1.0))
         goal = (1.0 - self._pull) * means
         both = along[:, :, None] * along[:, None, :]
         stiffness = both + np.maximum(0.0, 1.0 - goal / ell)[:, None, None] * (eye - both)
@@ -206,7 +209,7 @@ class ElasticRope:
         across = unit * np.where(lying, drag, 1.0)
         model.form += across[:, None, None] * (eye - tangent) + 0.1 * unit * tangent
 
-    def _add_repulsion(self, model: _Model, here: Curve, crossings: IntArray, lying: BoolArray) -> None:
+    def _add_repulsion(self, model: QuadraticModel, here: Curve, crossings: IntArray, lying: BoolArray) -> None:
         """Repulsion in the plane between vertices within a face that are not near one crossing, nor along the curve."""
         mesh, x, face, n = self.mesh, here.vertices, self.face, self.mesh.size
         mean = float(here.edge_lengths.mean())
@@ -229,10 +232,10 @@ class ElasticRope:
             (2.0 * weight / face * second)[:, None, None] * q[:, :, None] * q[:, None],
         )
         for vertices, sign in ((i, 1.0), (j, -1.0)):
-            _add(model.force, vertices, sign * force)
-            _add(model.form, vertices, form)
+            add_at(model.force, vertices, sign * force)
+            add_at(model.form, vertices, form)
 
-    def _add_barrier(self, model: _Model, here: Curve, e: IntArray, f: IntArray) -> FloatArray:
+    def _add_barrier(self, model: QuadraticModel, here: Curve, e: IntArray, f: IntArray) -> FloatArray:
         """The barrier at the rope's diameter, between edges that are near each other; return how far apart they are."""
         r, ell = max(self.thick, 1e-12 * self.face), here.edge_lengths
         chord, s, t = closest(EdgePairs.of(self.mesh, here.vertices, e, f))
@@ -264,25 +267,33 @@ class ElasticRope:
         return float(np.linalg.norm(chord, axis=1).min(initial=np.inf))
 
     def _go(self, seen: FloatArray) -> bool:
-        """Go straight to places in the frame, shape (n, 3), scaled to keep the length, if that is proved."""
-        seen = np.where(self.held[:, None], self.seen, seen)
+        """Go straight to places in the frame, shape (n, 3), scaled to keep the length, if that is proved.
+
+        A straight way from where the last leg begins replaces it, unless that is far: then there are fewer legs.
+        """
+        seen, scale = np.where(self.held[:, None], self.seen, seen), 1.0
         end = seen
         if self._length is not None:
-            length = np.linalg.norm(self.mesh.changes(seen), axis=1).sum()
-            end = self._length / length * (seen - seen.mean(axis=0) * [1.0, 1.0, 0.0])
+            scale = self._length / float(np.linalg.norm(self.mesh.changes(seen), axis=1).sum())
+            end = scale * (seen - seen.mean(axis=0) * [1.0, 1.0, 0.0])
         end = end @ self.frame.T + self._origin
         end[self.held] = self.vertices[self.held]
-        legs = self.mesh, self.vertices, end
-        kept = self.radius is None or is_rope(*legs, self.radius, self.obstacles)
-        if not kept or (self.radius is None and not is_free(*legs, self.obstacles)):
+
+        def proved(start: FloatArray) -> bool:
+            return is_rope(self.mesh, start, end, self.radius, self.obstacles)
+
+        key, most = self._key, self.stride * self.face * scale
+        if key is not None and np.linalg.norm(end - key, axis=1).max() <= most and proved(key):
+            self.path[-1] = end
+        elif proved(self.vertices):
+            self._key = self.vertices
+            self.path.append(end)
+        else:
             return False
         self.vertices, self.seen = end, seen
-        self.path.append(end)
         return True
 
 
-def _add(total: FloatArray, index: IntArray, values: FloatArray) -> None:
-    """Add values, shape (k, …), to the entries at an index, which may be there several times."""
-    width = total[0].size
-    places = (index[:, None] * width + np.arange(width)).ravel()
-    total += np.bincount(places, values.ravel(), total.size).reshape(total.shape)
+def _needed(crossings: int) -> float:
+    """The length of a rope with so many crossings, in faces."""
+    return max(8.0, 1.8 * crossings)

@@ -6,6 +6,7 @@ to save nothing are taken back.  A knot that is stuck in one view comes apart in
 
 import math
 from collections.abc import Generator, Iterable, Iterator, Sequence
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +14,7 @@ import numpy as np
 from ..base.deadline import check_time
 from ..base.messages import Message
 from ..base.types import BoolArray, FloatArray, IntArray
-from ..collision import is_rope, minimal_gap, survives_rounding
+from ..collision import is_rope, survives_rounding
 from ..curve import Curve, Mesh, refine
 from ..curve.obstacle import Obstacle
 from ..curve.pins import NOWHERE, Pins, holds
@@ -32,17 +33,11 @@ from ..knots.diagrams.rerouting import (
 )
 from .drawing import PlaneDrawing, UnclearError
 from .leading import Lead, lead
-from .rope import ElasticRope, Stage
+from .rope import ElasticRope, Legs
 from .ways import Plane
 
 MOST_VERTICES = 20_000
-VIEWS = 24
-FEW = 4  # of them are looked at before it is known whether any move is worthwhile
 WORK = 60_000  # crossings that may be visited to find out how few moves lead to
-WIDE, FAT = 1.2, 0.08  # a face's width, times the root of area per crossing, and a rope's radius, in faces
-AT_ONCE = 4  # so many strands move, where they are far from each other
-PATIENCE = 12  # moves in vain, after which a view is given up
-TABU = 8  # moves for which a strand that moved in vain is left alone
 
 
 class Untangled(NamedTuple):
@@ -61,8 +56,8 @@ def untangled(
     radius: FloatArray | None = None,
     seed: int = 20231,
     share: float = 0.0,
-) -> Generator[Stage, None, Untangled]:
-    """Yield stages of motions, all of them proved, to a curve with fewer crossings; return how it ended.
+) -> Generator[Legs, None, Untangled]:
+    """Yield motions, all of them proved, to a curve with fewer crossings; return how it ended.
 
     Parameters
     ----------
@@ -98,11 +93,14 @@ def untangled(
             crossings = drawing.diagram.crossings
             if reached is None:
                 few = math.floor(share * (crossings - outlook(drawing.diagram, rng)))
-                fine = _refined(curve, 6 * crossings + 60, radius)
-                held = holds(fine.mesh, Pins(np.flatnonzero(held), curve.vertices[held]).on(fine).vertices)
-                curve = fine
+                fine = refine(curve, max(len(curve), 6 * crossings + 60))
+                still, room = (fine.mesh, fine.vertices, fine.vertices), None if radius is None else 1.2 * radius
+                # corners of a rope may be too sharp for more vertices
+                if survives_rounding(fine) if room is None else is_rope(*still, room):
+                    held = holds(fine.mesh, Pins(np.flatnonzero(held), curve.vertices[held]).on(fine).vertices)
+                    curve = fine
             rope = ElasticRope(curve, frame, held, obstacles, radius)
-            _lay_down(rope, crossings)
+            rope.lie_down(crossings)
             drawing = draw(rope, rng)
             yield rope.take(drawing.diagram.crossings, moves)
             drawing, moves, shut = yield from _make_moves(rope, drawing, moves, rng, few)
@@ -125,24 +123,31 @@ def untangled(
 
 
 def _make_moves(
-    rope: ElasticRope, drawing: PlaneDrawing, moves: int, rng: np.random.Generator, few: int
-) -> Generator[Stage, None, tuple[PlaneDrawing, int, bool]]:
+    rope: ElasticRope,
+    drawing: PlaneDrawing,
+    moves: int,
+    rng: np.random.Generator,
+    few: int,
+    patience: int = 12,
+    tabu_for: int = 8,
+) -> Generator[Legs, None, tuple[PlaneDrawing, int, bool]]:
     """Make moves in one view until few crossings can still go; return the drawing, and whether no way has been free.
 
-    A move that adds crossings may be what leads on; what does not is taken back.
+    A move that adds crossings may be what leads on; what does not is taken back. The view is given up after so many
+    moves in vain as there is patience for, and a strand that has moved in vain is left alone for some moves.
     """
     lowest, best, vain, tried, made, blocked = drawing, outlook(drawing.diagram, rng), 0, 0, 0, False
     tabu: list[tuple[int, set[int]]] = []  # strands that have moved in vain, each with the number of moves by then
     mark = rope.mark()
-    while drawing.diagram.crossings > best + few and vain < PATIENCE:
-        left_alone = [strand for when, strand in tabu if tried - when < TABU]
-        leads = _choose(rope, drawing, left_alone, best, rng, AT_ONCE if vain < 2 else 1)
+    while drawing.diagram.crossings > best + few and vain < patience:
+        left_alone = [strand for when, strand in tabu if tried - when < tabu_for]
+        leads = _choose(rope, drawing, left_alone, best, rng, 4 if vain < 2 else 1)
         if not leads:
             break
         before, count, tried = rope.mark(), drawing.diagram.crossings, tried + 1
         led = [(tried, set(each.vertices.tolist())) for each in leads]
         free = lead(rope, leads)
-        _settle(rope)
+        rope.settle()
         after = draw(rope, rng)
         seen, low = after.diagram.crossings, lowest.diagram.crossings
         if seen >= count and (seen > low + max(4, low // 8) or outlook(after.diagram, rng) > best):
@@ -172,7 +177,14 @@ def _choose(
     """The strands that are nearest to where moves lead on, as many as are far from each other."""
     plane, diagram = Plane(drawing, rope.face), drawing.diagram
     found: list[Lead] = []
-    for strand in _pieces(diagram):
+    whole = list(strands(diagram))
+    short = (  # pieces of each
+        Strand(piece := each.inner[k : k + n], diagram.previous[piece[0]], each.over)
+        for each in whole
+        for n in range(1, min(6, len(each.inner)))
+        for k in range(len(each.inner) - n + 1)
+    )
+    for strand in chain(whole, short):
         if shortest_route(diagram, strand, len(strand.inner)) is None:
             continue
         way = plane.way(strand)
@@ -196,50 +208,6 @@ def _choose(
     return chosen or ([second[1]] if second else [])
 
 
-def _pieces(diagram: Diagram) -> Iterator[Strand]:
-    """All strands, and the short pieces of each."""
-    for strand in strands(diagram):
-        yield strand
-        for length in range(1, min(6, len(strand.inner))):
-            for begin in range(len(strand.inner) - length + 1):
-                inner = strand.inner[begin : begin + length]
-                yield Strand(inner, diagram.previous[inner[0]], strand.over)
-
-
-def _lay_down(rope: ElasticRope, crossings: int) -> None:
-    """Let a rope lie down flat, and become as thick as is good for leading strands."""
-    thick = 0.0 if rope.radius is None else 1.05 * float(rope.radius.max())
-    size = float(np.ptp(rope.seen, axis=0).max())
-    area = 10.0 * math.sqrt(np.linalg.det(np.cov(rope.seen[:, :2].T)).clip(0.0))  # that of an ellipse, or nearly so
-    rope.face = max(WIDE * math.sqrt(area / max(crossings, 3)), thick / FAT, 0.02 * size)
-    rope.thick = max(0.45 * minimal_gap(rope.curve)[0], thick)
-    for k in range(40):
-        if not rope.step():
-            break
-        rope.thicken(FAT * rope.face)
-        if k > 10 and rope.speed < 0.1 * rope.face and rope.thick > 0.99 * FAT * rope.face:
-            break
-
-
-def _settle(rope: ElasticRope) -> None:
-    """Let the rope come to rest, or nearly so."""
-    for k in range(20):
-        if not rope.step() or (k >= 3 and rope.speed < 0.08 * rope.face):
-            break
-        rope.thicken(FAT * rope.face)
-
-
-def _refined(curve: Curve, vertices: int, radius: FloatArray | None) -> Curve:
-    """The curve with so many vertices at least, unless it is a rope with too sharp corners for more."""
-    if len(curve) >= vertices:
-        return curve
-    fine = refine(curve, vertices)
-    sound = (
-        survives_rounding(fine) if radius is None else is_rope(fine.mesh, fine.vertices, fine.vertices, 1.2 * radius)
-    )
-    return fine if sound else curve
-
-
 def outlook(diagram: Diagram, rng: np.random.Generator) -> int:
     """How few crossings moves are known to lead to: the longest strands first, or in random orders."""
     best = simplified(diagram, WORK)
@@ -257,15 +225,15 @@ def shows_least(diagram: Diagram) -> bool:
     return all(is_least(factor) for piece in diagram.without_pins.pieces() for factor in factors(piece))
 
 
-def worth(curve: Curve, least: int = 0, seed: int = 20231) -> tuple[int, int]:
-    """How many of the crossings seen go by moves of diagrams, and how many of them stay.
+def worth(curve: Curve, least: int = 0, seed: int = 20231, count: int = 4) -> tuple[int, int]:
+    """How many of the crossings seen in some views go by moves of diagrams, and how many of them stay.
 
     With fewer than ``least`` crossings to begin with, none counts as going.
     """
     if curve.dimension != 3 or len(curve) > MOST_VERTICES:
         return 0, 0
     held = holds(curve.mesh, curve.mesh.ends.ravel())
-    frames = _frames(curve, np.random.default_rng(seed), FEW)
+    frames = _frames(curve, np.random.default_rng(seed), count)
     try:
         seen = [drawing.diagram for _, drawing in _draw_clear(curve.mesh, curve.vertices, frames, held)]
     except UnclearError:
@@ -283,11 +251,11 @@ def draw(rope: ElasticRope, rng: np.random.Generator) -> PlaneDrawing:
 
 
 def _best_view(
-    curve: Curve, held: BoolArray, rng: np.random.Generator, reached: int | None
+    curve: Curve, held: BoolArray, rng: np.random.Generator, reached: int | None, count: int = 24
 ) -> tuple[FloatArray, PlaneDrawing] | None:
     """The frame from which moves lead to the fewest crossings, and what is seen; None if not to fewer than now."""
     frames = (
-        _frames(curve, rng, VIEWS) if reached is None else [rotation(each) for each in rng.normal(size=(VIEWS, 3, 3))]
+        _frames(curve, rng, count) if reached is None else [rotation(each) for each in rng.normal(size=(count, 3, 3))]
     )
     views = _draw_clear(curve.mesh, curve.vertices, frames, held)
     best, least = None, math.inf if reached is None else reached

@@ -18,8 +18,6 @@ from ..curve.refine import arc_lengths
 from ..knots.diagrams.rerouting import Strand
 from .drawing import PlaneDrawing
 
-CROSSING = 100.0  # faces that a way may be longer to cross one strand less
-
 
 class Way(NamedTuple):
     """Where a strand leaves the rest of the curve and comes back to it, and how it may go on between these places."""
@@ -86,8 +84,11 @@ class Plane:
         at = np.interp((ends[k] - 0.5 * lengths[k]) / ends[-1] * along[-1], along, stops)
         return int(pieces[k]), self.drawing.wrapped(edge, float(at))
 
-    def way(self, strand: Strand) -> Way | None:
-        """The best way for a strand, whose own pieces cost nothing; None if there is none."""
+    def way(self, strand: Strand, crossing: float = 100.0) -> Way | None:
+        """The best way for a strand, whose own pieces cost nothing; None if there is none.
+
+        It may be so many faces longer to cross one strand less.
+        """
         first, last = strand.first, strand.inner[-1]
         (begin, start), (goal, end) = (
             self.place(first, 0.7 if first == last else 0.5),
@@ -96,9 +97,8 @@ class Plane:
         if begin == goal:
             return None
         far = 1e6 * self.face
-        price = np.where(
-            self.edges < len(self.drawing.at), CROSSING * self.face, far
-        )  # or circles that nothing crosses
+        # or circles that nothing crosses
+        price = np.where(self.edges < len(self.drawing.at), crossing * self.face, far)
         for edge in (first, last):
             price[self.first[edge] : self.first[edge + 1]] = far
         for a, b in [(self.first[edge], self.first[edge + 1]) for edge in strand.inner[:-1]]:

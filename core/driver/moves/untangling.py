@@ -15,7 +15,7 @@ from ...descent import Leg, Point, Step, attempt, on_target
 from ...io.trajectory import Iterate, StrandMoves
 from ...knots.closures import closed_towards
 from ...knots.diagrams import QuickInvariants, quick_invariants
-from ...untangle import Stage, untangled, worth
+from ...untangle import Legs, untangled, worth
 from ..move import Change, Move
 from ..outcome import Outcome
 from ..prepare import target_lengths
@@ -141,7 +141,7 @@ class Untangling(Move):
         knots = _closures(start.curve, ways)
         given = run.problem.obstacles, run.problem.radius, run.options.seed, next(self._shares, 0.0)
         work = untangled(start.curve, pins, *given)
-        stages: list[Stage] = []
+        stages: list[Legs] = []
         refused: Message | None = None
         earlier, least, began = run.strand_moves, None, time.perf_counter()
         while True:

@@ -26,7 +26,7 @@ from mobius_flow.core.driver.outcome import converged
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.driver.run import Run
 from mobius_flow.core.knots import knot, overhand, scramble
-from mobius_flow.core.untangle import Stage, Untangled
+from mobius_flow.core.untangle import Legs, Untangled
 from mobius_flow.core.untangle.rope import ViewCount
 from shapes import regular_polygon
 from solids import plate
@@ -110,7 +110,7 @@ def _cut(monkeypatch: pytest.MonkeyPatch, crossings: int, stop: Callable[[], Non
     """Have strand moves stopped in the middle of the next one, once so few crossings are left."""
     whole = untangling.untangled
 
-    def cut(*given: object) -> Iterator[Stage]:
+    def cut(*given: object) -> Iterator[Legs]:
         few = False
         for stage in whole(*given):
             if few:
@@ -232,8 +232,8 @@ def test_moves_that_leave_more_crossings_than_go_are_in_vain(monkeypatch) -> Non
 def test_moves_that_stretch_the_curve_between_pins_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     def far(curve: Curve, pins: np.ndarray, *_: object) -> Iterator[object]:
         away = 9.0 * curve.length * ~np.isin(np.arange(len(curve)), pins)
-        yield Stage(curve, (), ViewCount(2, 0))
-        yield Stage(curve, (curve.vertices + away[:, None],), ViewCount(1, 1))
+        yield Legs(curve, (), ViewCount(2, 0))
+        yield Legs(curve, (curve.vertices + away[:, None],), ViewCount(1, 1))
         return Untangled(1, False, Message("one crossing is left"), 1)
 
     monkeypatch.setattr(untangling, "untangled", far)

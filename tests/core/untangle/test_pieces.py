@@ -1,9 +1,11 @@
 """Each piece of a strand move keeps what it has to."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, Mesh
-from mobius_flow.core.collision import thickness
+from mobius_flow.core.collision import is_free, thickness
 from mobius_flow.core.curve.distances import arc_distance_of_vertices
 from mobius_flow.core.curve.pins import holds
 from mobius_flow.core.energies.edge_pairs import EdgePairs
@@ -15,7 +17,8 @@ from mobius_flow.core.knots.diagrams.projection import rotation
 from mobius_flow.core.knots.diagrams.rerouting import StrandMove, shortened, strands
 from mobius_flow.core.untangle.drawing import PlaneDrawing
 from mobius_flow.core.untangle.leading import Lead, lead
-from mobius_flow.core.untangle.rope import ElasticRope, Springs, _Model
+from mobius_flow.core.untangle.model import QuadraticModel
+from mobius_flow.core.untangle.rope import ElasticRope, Springs
 from mobius_flow.core.untangle.ways import Plane
 from taylor import taylor_slope
 
@@ -93,7 +96,7 @@ def test_forces_of_barrier_tension_and_weight_are_derivatives() -> None:
     v = np.random.default_rng(4).normal(size=(n, 3)) * 0.1 * r
     e, f = rope._strands(here, 4.0 * r, r)
     ell, mean = here.edge_lengths, float(here.edge_lengths.mean())
-    barrier, tension = _Model(n), _Model(n)
+    barrier, tension = QuadraticModel(n), QuadraticModel(n)
     rope._add_barrier(barrier, here, e, f)
     rope._add_tension(tension, here, 5, np.ones(n, dtype=bool), None)
     goal = (1.0 - rope._pull) * mean
@@ -126,7 +129,7 @@ def test_the_repulsion_in_the_plane_is_that_of_all_pairs_which_are_not_near_one_
         at_a, at_b = ((np.stack([i, j]) - each + reach + 1) % n < 2 * reach + 4 for each in (a, b))
         apart &= ~(at_a & at_b[::-1]).any(axis=0)
     i, j = i[apart], j[apart]
-    model, v = _Model(n), np.random.default_rng(5).normal(size=(n, 3)) * 0.05 * face
+    model, v = QuadraticModel(n), np.random.default_rng(5).normal(size=(n, 3)) * 0.05 * face
     rope._add_repulsion(model, here, crossings, np.ones(n, dtype=bool))
 
     def energy(t: float) -> float:
@@ -140,7 +143,7 @@ def test_the_repulsion_in_the_plane_is_that_of_all_pairs_which_are_not_near_one_
 
 def test_the_minimum_of_forces_is_that_of_the_dense_form() -> None:
     rng, n = np.random.default_rng(6), 12
-    model, dense = _Model(n), np.eye(3 * n)
+    model, dense = QuadraticModel(n), np.eye(3 * n)
     model.form += np.eye(3)
     for _ in range(5):  # functions of x_a − x_b / 2
         a, b = rng.permutation(n)[:8].reshape(2, 4)
@@ -157,11 +160,11 @@ def test_springs_lead_vertices_and_no_further_than_the_rest_allows() -> None:
     k = np.arange(20, 40)
     places = rope.seen[k] + [0.0, 0.0, 0.5 * rope.face]
     for _ in range(8):
-        rope.step(Springs(k, places, 30.0 * np.tile(np.eye(3), (20, 1, 1)), landed=False))
+        rope.step(Springs(k, places, np.tile(np.eye(3), (20, 1, 1)), landed=False))
     assert np.abs(rope.seen[k[5:-5]] - places[5:-5]).max() < 0.3 * rope.face
     through = places - [0.0, 0.0, 2.0 * rope.face]  # below all other strands, through which no way leads
     for _ in range(12):
-        rope.step(Springs(k, through, 30.0 * np.tile(np.eye(3), (20, 1, 1)), landed=False))
+        rope.step(Springs(k, through, np.tile(np.eye(3), (20, 1, 1)), landed=False))
     assert jones(simplified(drawing(rope).diagram)) == jones(simplified(drawing(laid("3_1")).diagram))
 
 
@@ -170,7 +173,7 @@ def test_a_rope_stays_one_of_its_radius() -> None:
     rope = laid("3_1", radius=radius)
     rope.thick, k = 0.1 * radius, np.arange(20, 40)  # only the proof keeps it so thick
     for _ in range(12):
-        rope.step(Springs(k, rope.seen[k] - [0.0, 0.0, rope.face], 30.0 * np.tile(np.eye(3), (20, 1, 1)), landed=False))
+        rope.step(Springs(k, rope.seen[k] - [0.0, 0.0, rope.face], np.tile(np.eye(3), (20, 1, 1)), landed=False))
     assert thickness(rope.curve) > 0.99 * radius
 
 
@@ -188,10 +191,14 @@ def test_a_move_in_space_leads_to_the_diagram_that_was_planned(name: str) -> Non
     assert simplified(after).crossings == simplified(move.after).crossings
 
 
-def test_what_is_taken_back_leaves_no_trace() -> None:
+def test_short_steps_are_one_leg_and_what_is_taken_back_leaves_no_trace() -> None:
     rope = laid("3_1", 60)
     before, mark = rope.take(3, 0), rope.mark()
-    assert len(before.path) == 6
+    legs = [before.start.vertices, *before.path]
+    assert 1 < len(legs) <= 6
+    for start, end in pairwise(legs):
+        assert is_free(rope.mesh, start, end)
+        assert np.linalg.norm(end - start, axis=1).max() < 1.01 * rope.stride * rope.face
     assert rope.step()
     rope.rewind(mark)
     assert not rope.take(3, 0).path

@@ -9,13 +9,13 @@ from families import family
 from mobius_flow.core import Curve, Iterate, Mesh, Obstacle, Task
 from mobius_flow.core.collision import check_embedded
 from mobius_flow.core.knots import knot, knot_type, scramble
-from mobius_flow.core.untangle import Stage, Untangled, untangled, worth
+from mobius_flow.core.untangle import Legs, Untangled, untangled, worth
 from solids import plate
 from tasks import check
 
 
 def check_stages(
-    start: Curve, stages: Sequence[Stage], pins: Sequence[int] = (), walls: Sequence[Obstacle] = ()
+    start: Curve, stages: Sequence[Legs], pins: Sequence[int] = (), walls: Sequence[Obstacle] = ()
 ) -> None:
     """Have the independent check accept stages."""
     frames = [(start, ()), *((each, path) for s in stages for each, path in ((s.start, ()), (s.end, s.path)))]
@@ -28,13 +28,13 @@ def check_stages(
 
 def run(curve: Curve, pins: Sequence[int] = (), walls: Sequence[Obstacle] = ()) -> tuple[Curve, Untangled]:
     """Where it ends and how, if the independent check accepts the way."""
-    stages: list[Stage] = []
+    stages: list[Legs] = []
     found = ended(untangled(curve, np.array(pins, dtype=np.intp), walls), stages)
     check_stages(curve, stages, pins, walls)
     return stages[-1].end, found
 
 
-def ended(work: Generator[Stage, None, Untangled], stages: list[Stage]) -> Untangled:
+def ended(work: Generator[Legs, None, Untangled], stages: list[Legs]) -> Untangled:
     """How it ends."""
     while True:
         try:
