@@ -201,5 +201,17 @@ def test_short_steps_are_one_leg_and_what_is_taken_back_leaves_no_trace() -> Non
         assert np.linalg.norm(end - start, axis=1).max() < 1.01 * rope.stride * rope.face
     assert rope.step()
     rope.rewind(mark)
-    assert not rope.take(3, 0).path
     np.testing.assert_array_equal(rope.vertices, before.path[-1])
+    assert rope.step()
+    assert len(rope.take(3, 0).path) == 1
+
+
+@pytest.mark.parametrize(("crossings", "long"), [(3, True), (20, False)])
+def test_faces_are_no_wider_than_the_rope_is_long_for(crossings: int, long: bool) -> None:
+    """For as many crossings as could be where it lies; else it would shrink, further and further."""
+    rope = laid("3_1", 60)
+    area = np.sqrt(np.linalg.det(np.cov(rope.seen[:, :2].T)))
+    length = np.linalg.norm(rope.mesh.changes(rope.seen), axis=1).sum()
+    rope.lie_down(crossings, 1.0)
+    assert bool(rope.face == pytest.approx(np.sqrt(10.0 * area / crossings))) is long
+    assert rope.face * 1.8 * crossings < 1.001 * length
