@@ -147,12 +147,13 @@ class ElasticRope:
         return False
 
     def rise(self, height: float = 0.5) -> None:
-        """Become so high, as a part of the size, that views from the side show other diagrams."""
+        """Rise to a part of the size, or until corners are right, so that views from the side show other diagrams."""
         size = np.ptp(self.seen, axis=0)
         most, now = height * size.max(), max(size[2], 1e-3 * size.max())
         while now < most:
             now, before = min(now + 0.7 * self.face, most), now
-            if not self._go(self.seen * [1.0, 1.0, now / before]):
+            seen = self.seen * [1.0, 1.0, now / before]
+            if self._cosines(Curve(seen, self.mesh)).min(initial=1.0) < 0.0 or not self._go(seen):
                 break
 
     def lie_down(self, crossings: int, wide: float = 1.2) -> None:

@@ -215,3 +215,11 @@ def test_faces_are_no_wider_than_the_rope_is_long_for(crossings: int, long: bool
     rope.lie_down(crossings, 1.0)
     assert bool(rope.face == pytest.approx(np.sqrt(10.0 * area / crossings))) is long
     assert rope.face * 1.8 * crossings < 1.001 * length
+
+
+def test_a_rope_rises_until_its_corners_are_right() -> None:
+    rope = laid("3_1", 60)
+    low = np.ptp(rope.seen[:, 2])
+    rope.rise(1e3)
+    assert np.ptp(rope.seen[:, 2]) > 1.5 * low
+    assert rope._cosines(Curve(rope.seen, rope.mesh)).min() >= 0.0
