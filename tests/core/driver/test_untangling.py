@@ -166,7 +166,7 @@ def test_interrupted_runs_say_where_they_stand() -> None:
 
 
 def test_components_have_their_own_lengths_again() -> None:
-    curve = scramble(knot("L2a1", 40), 1, moves=800)
+    curve = scramble(knot("L2a1", 40), 2, moves=800)
     result, _ = proved(curve, **ALWAYS)
     assert result.last.strand_moves.left == 2
     np.testing.assert_allclose(result.curve.component_lengths, curve.component_lengths, rtol=1e-6)
