@@ -180,7 +180,9 @@ class PulledRope:
                     out = 0.5 * (self.lengths / self.unit - point.curve.component_lengths)
                     if last is not None:  # knots may slide along their ropes without effort; where they are they stay
                         out[:] = out.mean()
-                    ahead[ends] += out[curve.mesh.component[ends], None] * outward(point.curve)
+                    onward = out[curve.mesh.component[ends], None] * outward(point.curve)
+                    ahead[ends] += onward
+                    ahead -= onward.mean(axis=(0, 1))  # the middle of all ends stays in its place
                     if is_rope(curve.mesh, path[0], placed(ahead), np.array(self.last.radius)):
                         path.append(placed(ahead))
                         point.curve = point.curve.with_vertices(ahead)
