@@ -9,7 +9,7 @@ from ..base.types import FloatArray, IntArray
 from ..solve.symmetric import factorised
 
 
-class QuadraticModel:
+class ElasticModel:
     """Forces on n vertices, less their springs, drags and stiffnesses: a quadratic function of displacements."""
 
     def __init__(self, n: int) -> None:

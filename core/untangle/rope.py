@@ -22,7 +22,7 @@ from ..curve.obstacle import Obstacle
 from ..energies.edge_pairs import EdgePairs
 from ..energies.rope import closest, phi
 from ..knots.diagrams.projection import plane_crossings
-from .model import QuadraticModel, add_at
+from .model import ElasticModel, add_at
 
 
 class ViewCount(NamedTuple):
@@ -107,7 +107,7 @@ class ElasticRope:
         check_time()
         here, mesh, face, r = Curve(self.seen, self.mesh), self.mesh, self.face, self.thick
         most = self.stride * face
-        mean, model, x = float(here.edge_lengths.mean()), QuadraticModel(mesh.size), here.vertices
+        mean, model, x = float(here.edge_lengths.mean()), ElasticModel(mesh.size), here.vertices
         cosine, inner = self._cosines(here), mesh.inner
         # bending, for which corners of more than 60 degrees are stiffer
         stiffness = (0.35 * face) ** 2 / mean**3 * (1.0 + 30.0 * np.maximum(0.5 - cosine, 0.0))
@@ -188,7 +188,7 @@ class ElasticRope:
         self.thick = max(self.thick, min(most, room, 1.15 * self.thick))
 
     def _add_tension(
-        self, model: QuadraticModel, here: Curve, crossings: int, lying: BoolArray, springs: Springs | None
+        self, model: ElasticModel, here: Curve, crossings: int, lying: BoolArray, springs: Springs | None
     ) -> None:
         """Tension towards the length that so many crossings need and edges of equal lengths, weight, and drag."""
         mesh, ell, face = self.mesh, here.edge_lengths, self.face
@@ -210,7 +210,7 @@ class ElasticRope:
         across = unit * np.where(lying, drag, 1.0)
         model.form += across[:, None, None] * (eye - tangent) + 0.1 * unit * tangent
 
-    def _add_repulsion(self, model: QuadraticModel, here: Curve, crossings: IntArray, lying: BoolArray) -> None:
+    def _add_repulsion(self, model: ElasticModel, here: Curve, crossings: IntArray, lying: BoolArray) -> None:
         """Repulsion in the plane between vertices within a face that are not near one crossing, nor along the curve."""
         mesh, x, face, n = self.mesh, here.vertices, self.face, self.mesh.size
         mean = float(here.edge_lengths.mean())
@@ -236,7 +236,7 @@ class ElasticRope:
             add_at(model.force, vertices, sign * force)
             add_at(model.form, vertices, form)
 
-    def _add_barrier(self, model: QuadraticModel, here: Curve, e: IntArray, f: IntArray) -> FloatArray:
+    def _add_barrier(self, model: ElasticModel, here: Curve, e: IntArray, f: IntArray) -> FloatArray:
         """The barrier at the rope's diameter, between edges that are near each other; return how far apart they are."""
         r, ell = max(self.thick, 1e-12 * self.face), here.edge_lengths
         chord, s, t = closest(EdgePairs.of(self.mesh, here.vertices, e, f))

@@ -17,7 +17,7 @@ from mobius_flow.core.knots.diagrams.projection import rotation
 from mobius_flow.core.knots.diagrams.rerouting import StrandMove, shortened, strands
 from mobius_flow.core.untangle.drawing import PlaneDrawing
 from mobius_flow.core.untangle.leading import Lead, lead
-from mobius_flow.core.untangle.model import QuadraticModel
+from mobius_flow.core.untangle.model import ElasticModel
 from mobius_flow.core.untangle.rope import ElasticRope, Springs
 from mobius_flow.core.untangle.ways import Plane
 from taylor import taylor_slope
@@ -96,7 +96,7 @@ def test_forces_of_barrier_tension_and_weight_are_derivatives() -> None:
     v = np.random.default_rng(4).normal(size=(n, 3)) * 0.1 * r
     e, f = rope._strands(here, 4.0 * r, r)
     ell, mean = here.edge_lengths, float(here.edge_lengths.mean())
-    barrier, tension = QuadraticModel(n), QuadraticModel(n)
+    barrier, tension = ElasticModel(n), ElasticModel(n)
     rope._add_barrier(barrier, here, e, f)
     rope._add_tension(tension, here, 5, np.ones(n, dtype=bool), None)
     goal = (1.0 - rope._pull) * mean
@@ -129,7 +129,7 @@ def test_the_repulsion_in_the_plane_is_that_of_all_pairs_which_are_not_near_one_
         at_a, at_b = ((np.stack([i, j]) - each + reach + 1) % n < 2 * reach + 4 for each in (a, b))
         apart &= ~(at_a & at_b[::-1]).any(axis=0)
     i, j = i[apart], j[apart]
-    model, v = QuadraticModel(n), np.random.default_rng(5).normal(size=(n, 3)) * 0.05 * face
+    model, v = ElasticModel(n), np.random.default_rng(5).normal(size=(n, 3)) * 0.05 * face
     rope._add_repulsion(model, here, crossings, np.ones(n, dtype=bool))
 
     def energy(t: float) -> float:
@@ -143,7 +143,7 @@ def test_the_repulsion_in_the_plane_is_that_of_all_pairs_which_are_not_near_one_
 
 def test_the_minimum_of_forces_is_that_of_the_dense_form() -> None:
     rng, n = np.random.default_rng(6), 12
-    model, dense = QuadraticModel(n), np.eye(3 * n)
+    model, dense = ElasticModel(n), np.eye(3 * n)
     model.form += np.eye(3)
     for _ in range(5):  # functions of x_a − x_b / 2
         a, b = rng.permutation(n)[:8].reshape(2, 4)
