@@ -154,8 +154,8 @@ def gaps_cut(drawing: Drawing, width: float, gap: float) -> list[Arc] | None:
         else:
             marks = [0.0, *(end for cut in own for end in cut), distance[-1]]
             spans = list(zip(marks[::2], marks[1::2], strict=True))
-        for (a, b), at in product(own, uppers[k]):  # an upper strand must not be cut away
-            if a < at < b or (mesh.closed[k] and (at - a) % distance[-1] < b - a):
+        for (a, b), above in product(own, uppers[k]):  # an upper strand must not be cut away
+            if a < above < b or (mesh.closed[k] and (above - a) % distance[-1] < b - a):
                 return None
         near = 0.3 * distance[-1] / len(distance)  # vertices nearer than this to an end are left out
         for a, b in spans:
