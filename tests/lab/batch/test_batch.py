@@ -7,7 +7,6 @@ import socket
 import sys
 import threading
 from contextlib import nullcontext
-from pathlib import Path
 
 import numpy as np
 import pytest
