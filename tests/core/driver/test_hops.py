@@ -12,7 +12,7 @@ from mobius_flow.core import Curve, Iterate, Mesh, Obstacle, RelaxOptions, Resul
 from mobius_flow.core.collision import FreeMotion, Limit
 from mobius_flow.core.curve import refine
 from mobius_flow.core.descent import Point, Step
-from mobius_flow.core.driver.moves import MOVES, Hops
+from mobius_flow.core.driver.moves import MOVES
 from mobius_flow.core.driver.moves.hops import (
     IS_UNKNOT,
     MAY_BE_UNKNOT,
