@@ -220,3 +220,11 @@ def test_what_arcs_save_on_the_way() -> None:
     np.testing.assert_allclose(saved, 0.1 * (2 * np.tan(np.pi / 6) - np.pi / 3), rtol=0.01)
     straight = [spans[0], np.tile([[1.0], [0.0], [0.0]], 6)]
     assert (_bends(hexagon.mesh, straight, np.full(6, 0.1))[2] < 0.2 * saved).all()
+
+
+@pytest.mark.parametrize("radius", [0.05, 0.1])
+def test_ropes_that_grow_stay_ropes(radius: float) -> None:
+    """Edges that are half a circle apart at the end only, and near each other at the start."""
+    drawn = knot("8_19").vertices
+    start = np.stack([drawn, 0.5 * (drawn + np.roll(drawn, -1, axis=0))], axis=1).reshape(-1, 3)
+    assert is_rope(Mesh((len(start),), (True,)), start, 2.0 * start, np.array([radius]))
