@@ -227,8 +227,9 @@ def _said(options: argparse.Namespace, result: Result, start: Iterate, written: 
     if not following and Path(options.output).suffix.lower() in written_formats():
         following = ["info", options.output]
     certified = "no contact on the whole path" if result.certified else "NO: contact is not ruled out everywhere"
-    if result.certified and result.last.radius:
-        radii = ", ".join(f"{radius:.4g}" for radius in dict.fromkeys(result.last.radius))
+    if result.certified and result.last.radius and start.radius:  # it gives way, or grows where strands are separated
+        least = map(min, zip(start.radius, result.last.radius, strict=True))
+        radii = ", ".join(f"{radius:.4g}" for radius in dict.fromkeys(least))
         certified = f"a rope of radius {radii} on the whole path"
     rows = [
         ("reason", told),

@@ -57,7 +57,9 @@ def enter(source: bpy.types.Object) -> bpy.types.Object:
     thick = strands.attributes.get("radius")
     for spline, points in zip(data.splines, strands.mesh.slices, strict=True):
         spline.points.foreach_set("radius", np.zeros(len(spline.points)) if thick is None else thick.values[points])
-    data[SOURCE] = {"object": source, "rendered": not source.hide_render}
+    others = [each[SOURCE] for each in bpy.data.curves if SOURCE in each]  # which may have hidden it
+    rendered = any(each["rendered"] for each in others if each["object"] == source)
+    data[SOURCE] = {"object": source, "rendered": rendered or not source.hide_render}
     carrier = object_like(source, data)
     show_instead(source, carrier)
     source.hide_set(True)

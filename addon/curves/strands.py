@@ -176,7 +176,11 @@ def _check_count(obj: bpy.types.Object, data: Any) -> None:
 
 def _drawings(data: Any) -> dict[int, Any]:
     """The drawings of strokes that are shown now, by the numbers of their layers."""
-    frames = {k: layer.current_frame() for k, layer in enumerate(data.layers) if not layer.hide}
+
+    def hidden(layer: Any) -> bool:
+        return layer is not None and (layer.hide or hidden(layer.parent_group))
+
+    frames = {k: layer.current_frame() for k, layer in enumerate(data.layers) if not hidden(layer)}
     return {k: frame.drawing for k, frame in frames.items() if frame is not None and len(frame.drawing.strokes)}
 
 

@@ -62,7 +62,10 @@ def rope_motion(
             edge, other = names[:, reached.argmin()].tolist()
             still = still_triangles(tuple(obstacles), exponent) if len(vertices) == 5 else None
             limit, met = time, Contact((edge,), still.obstacle_of(other).title) if still else Contact((edge, other))
-            in_part = len(vertices) == 4 and mesh.edge_component[edge] == mesh.edge_component[other]
+            # a rope touches nowhere at its start: there edges get longer, so that too many of their points count
+            in_part = len(vertices) == 4 and (
+                places is not points or (time == 0.0 and mesh.edge_component[edge] == mesh.edge_component[other])
+            )
     if met is None:
         return FreeMotion(1.0)
     if in_part and halvings and not np.array_equal(start, end):

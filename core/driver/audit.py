@@ -5,7 +5,7 @@ from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import dataclass, field
 from functools import partial
 from itertools import chain, pairwise
@@ -83,14 +83,16 @@ class Audit:
             yield Meeting((a, b), (x, y, z), crossed, len(signs) - crossed, linking, before, after)
 
     def _type(self, frame: Placed, parts: Sequence[tuple[int, FloatArray]]) -> KnotType | None:
-        """The type of rings moved by whole boxes; None if one is open, or goes round the box."""
+        """The type of rings moved by whole boxes; None if one is open, goes round the box, or they touch."""
         rings = []
         for number, shift in parts:
             first, last = self.topology.starts[number], self.topology.starts[number + 1] - 1
             if not self.topology.closed[number] or (frame.lattice[first] != frame.lattice[last]).any():
                 return None
             rings.append(frame.places[first:last] + shift @ frame.cell)
-        return knot_type(Curve.from_components(rings))
+        with suppress(CurveError):
+            return knot_type(Curve.from_components(rings))
+        return None
 
 
 @checked

@@ -58,6 +58,17 @@ def test_it_is_shown_in_motion_with_all_that_it_had(kind):
         there(points(copy), KNOT + np.float32([0, 0, 2])) if hasattr(bpy.types.Curves, "set_types") else None
 
 
+def test_what_is_relaxed_a_second_time_is_rendered_as_well():
+    source = KINDS["poly"]()
+    for _ in range(2):
+        source.hide_set(False)
+        bpy.ops.object.select_all(action="DESELECT")
+        source.select_set(True)
+        bpy.context.view_layer.objects.active = source
+        bpy.ops.curve.mobius_flow_relax(**FEW)
+        assert (source.hide_render, copy_of(bpy.context.object).hide_render) == (True, False)
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_clearing_gives_everything_back(kind):
     source = KINDS[kind]()
@@ -215,7 +226,9 @@ def branch():
 def blank():
     data = KINDS["strokes"]().data
     data.layers.remove(data.layers[0])
-    data.layers[0].hide = True
+    group = data.layer_groups.new("Hidden")
+    data.layers.move_to_layer_group(data.layers[0], group)
+    group.hide = True
 
 
 def edit():

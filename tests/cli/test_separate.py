@@ -23,8 +23,10 @@ def test_ropes_are_written_with_report_and_proof(cross, tmp_path, run):
     assert status == 0
     assert "all ropes keep clear" in said
     assert "component 2 went over component 1 near (0, 0, 0)" in said
-    assert "a rope of radius" in said
-    assert verify(outputs[2]).accepted
+    verdict = verify(outputs[2])
+    assert verdict.accepted
+    radii = said.partition("a rope of radius ")[2].partition(" on the whole path")[0]  # not those in the end
+    assert [float(each) for each in radii.split(", ")] == pytest.approx(verdict.radius, rel=1e-3)
     report = json.loads(outputs[1].read_text(encoding="utf-8"))
     assert report["crossings"] == [{"over": 1, "under": 0, "place": [0.0, 0.0, 0.0]}]
     assert (report["status"], report["share"], report["radius"]) == ("converged", 1.0, [0.5, 1.0])

@@ -69,6 +69,8 @@ def test_linking_numbers_and_types_change_as_told() -> None:
     assert [each.before for each in report.meetings(0)] == [None]
     assert list(audit([HOPF, HOPF], 12).meetings()) == []
     assert [each.linking for each in audit([HOPF, APART], 12, closed=False).meetings()] == [0]
+    touching = np.concatenate([CIRCLE, CIRCLE[::-1]])  # which is no type
+    assert [(str(each.before), each.after) for each in audit([HOPF, touching], 12).meetings()] == [("L2a1", None)]
 
 
 def test_what_goes_through_beads_or_happens_at_frames_is_counted() -> None:
