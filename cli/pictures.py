@@ -139,8 +139,9 @@ def _drawn(word: str, options: argparse.Namespace) -> tuple[list[Drawing], list[
         return found, [str(number) for number in range(1, len(found) + 1)]
     if suffix in _CODES and not options.format:
         source = Source.load(Path(word))
+        diagram = code_diagram(_CODES[suffix], source)
         try:
-            return [laid_out(code_diagram(_CODES[suffix], source))], [stem]
+            return [laid_out(diagram)], [stem]
         except CurveError as error:
             raise source.error(str(error)) from error
     if is_file:
@@ -151,6 +152,6 @@ def _drawn(word: str, options: argparse.Namespace) -> tuple[list[Drawing], list[
             if kind.diagram is None:
                 raise CurveError(kind.refusal)
             return [laid_out(kind.diagram)], [stem]
-    names = table_range(word) if ".." in word else [word]
+    names = table_range(word) if ".." in word and "/" not in word else [word]
     diagrams = [(name, named_diagram(name)) for name in names]
     return [seen([knot(name)])[0] if each is None else laid_out(each) for name, each in diagrams], names

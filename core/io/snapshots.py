@@ -139,15 +139,15 @@ def _read_xyz(path: Path) -> Iterator[Snapshot]:
             count, comment = lines.count(line), lines.next()
             said = dict(re.findall(r'(\w+)="?((?<=")[^"]*|[^\s"]+)', comment))
             first, columns = 1, said.get("Properties", "").split(":")
-            if "pos" in columns:
-                first = sum(map(int, columns[2 : columns.index("pos") : 3]))
             cell = np.zeros((3, 3))
-            if "Lattice" in said:
-                try:
+            try:
+                if "pos" in columns:
+                    first = sum(map(int, columns[2 : columns.index("pos") : 3]))
+                if "Lattice" in said:
                     cell = np.array(said["Lattice"].split(), dtype=np.float64).reshape(3, 3)
-                except ValueError:
-                    lines.fail("the lattice is not nine numbers")
-                cell *= np.array([[mark[0] in "Tt1"] for mark in said.get("pbc", "T T T").split()])
+                    cell *= np.reshape([mark[0] in "Tt1" for mark in said.get("pbc", "T T T").split()], (3, 1))
+            except ValueError:
+                lines.fail("the lattice is not nine numbers, pbc are not three letters, or properties not in threes")
             yield Snapshot(lines.table(count, range(first, first + 3)), cell)
         if stream.read(1 << 16).strip():
             lines.fail("a number of atoms is expected here")

@@ -61,6 +61,7 @@ def test_every_paper(room, run, suffix):
     [
         (("3_1", "out.png"), "out.png"),
         (("no-such", "out.svg"), "no knot is called"),
+        (("../no-such", "out.svg"), "no knot is called '../no-such'"),
         (("missing.txt", "out.svg"), "missing.txt"),
         (("bad.pd", "out.svg"), "bad.pd"),
         (("PD[X[1,2,3,4]]", "out.svg"), "twice"),

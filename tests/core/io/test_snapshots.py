@@ -80,6 +80,8 @@ def test_xyz_plain_and_extended(tmp_path: Path) -> None:
         ("a.xyz", "three\n", "line 1: 'three' is not a number of atoms"),
         ("a.xyz", "2\n\nC 0 0 0\nC 1 1\n", "line 2: the table below this line is damaged"),
         ("a.xyz", '1\nLattice="1 0 0"\nC 0 0 0\n', "line 2: the lattice"),
+        ("a.xyz", '1\nLattice="1 0 0 0 1 0 0 0 1" pbc="T T"\nC 0 0 0\n', "line 2: the lattice"),
+        ("a.xyz", "1\nProperties=species:S:x:pos:R:3\nC 0 0 0\n", "line 2: the lattice"),
         ("a.xyz", "\x00\xff", "cannot be read: 'utf-8' codec"),
         ("a.pdf", "", "unknown suffix '.pdf'"),
         ("a.xyz", "", "there are no frames"),
