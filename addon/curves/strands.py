@@ -73,7 +73,7 @@ class Strands:
         else:
             found = cls((), ()) if what_deforms(obj) else _read(obj, True)
             found = found if found.components else _read(obj, False)
-            if not found.components:
+            if not found.components or (len(obj.modifiers) and _shows_nothing(obj)):
                 sentence = "'{name}' shows no curves; draw some, or see what its modifiers do"
                 raise CurveError(Message(sentence, name=obj.name))
         for k, (points, closed) in enumerate(zip(found.components, found.closed, strict=True), 1):
@@ -166,6 +166,16 @@ def _read(obj: bpy.types.Object, own: bool) -> Strands:
     worn = obj if own else obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
     materials = [each and each.original for each in worn.data.materials]
     return Strands(components, tuple(closed.tolist()), attributes, materials, own)
+
+
+def _shows_nothing(obj: bpy.types.Object) -> bool:
+    """Whether modifiers delete all of a visible object, and make nothing in its place."""
+    sizes = [
+        len(getattr(each.object.data, "points", getattr(each.object.data, "vertices", [obj])))
+        for each in bpy.context.evaluated_depsgraph_get().object_instances
+        if each.object.original == obj or (each.parent is not None and each.parent.original == obj)
+    ]
+    return bool(sizes) and not any(sizes)
 
 
 def _check_count(obj: bpy.types.Object, data: Any) -> None:

@@ -194,10 +194,14 @@ def gone():
     bpy.context.object.data = bpy.data.hair_curves.new("Empty")
 
 
-def cut():
+def shorn():
     tree = nodes("GeometryNodeDeleteGeometry")
-    tree.nodes.new("GeometryNodeSetPosition")  # which might move something
     add_hair().modifiers.new("Nodes", "NODES").node_group = tree
+    return tree
+
+
+def cut():
+    shorn().nodes.new("GeometryNodeSetPosition")  # which might move something
 
 
 def dot():
@@ -243,6 +247,7 @@ def flat():
 BAD = {
     empty: "'Source' shows no curves; draw some, or see what its modifiers do",
     gone: "'Source' shows no curves; draw some, or see what its modifiers do",
+    shorn: "'Source' shows no curves; draw some, or see what its modifiers do",
     cut: "'Source' shows no curves; draw some, or see what its modifiers do",
     dot: "Spline 2 of 'Source' has fewer than 2 points; give it more, or delete it",
     far: " of spline 2 of 'Source' is not finite, or further away than anything; repair or delete it",
