@@ -88,7 +88,7 @@ def test_upper_strands_are_never_cut_away():
     """Two strands that twist by half a turn, so slim that gaps of wide ones would reach over both crossings."""
     t = 2.0 * np.pi * np.arange(240) / 240
     x, y = np.cos(t), np.sin(t)
-    drawing = Drawing.seen(Curve(np.column_stack([x, y * (x * x - 0.1), x * y])))
+    drawing = Drawing.seen(Curve(np.column_stack([x, y * (x * x - 0.05), x * y])))
     arcs = widest(drawing, 0.2, 1.5)[1]
     upper = np.rint(np.where(drawing.first_over, *drawing.passes.T)).astype(int)
     assert (len(upper), len(arcs)) == (2, 2)
