@@ -34,6 +34,7 @@ class Member:
         self._object, self._original = Reference(obj), Reference(obj.data)
         self._stand_in: Reference | None = None
         mark = obj.data.get(SOURCE)
+        self.drawn = mark["object"].name if mark and mark["object"] else obj.name  # what somebody has drawn
         self._source = Reference(mark["object"]) if mark and mark["object"] and not self._baked else None
 
     def begin(self) -> None:

@@ -273,15 +273,18 @@ class Session:
     def end(self, outcome: Outcome) -> None:
         if self._too_thick:
             outcome = outcome.adding("the bevel is too thick to be kept apart from itself")
-        names = spline_names(self.names, self.link.counts)
-        self.outcome = replace(outcome, clauses=tuple(in_blenders_words(each, names) for each in outcome.clauses))
+        words = [in_blenders_words(each, self._spline_names) for each in outcome.clauses]
+        self.outcome = replace(outcome, clauses=tuple(words))
+
+    @property
+    def _spline_names(self) -> list[Message]:
+        return spline_names([member.drawn for member in self.members], self.link.counts)
 
     def reworded(self, error: CurveError) -> CurveError:
         """The core's error, with the splines named by their objects; those about options use the names of options."""
         if isinstance(error, OptionError):
             return error
-        reason = in_blenders_words(str(error), spline_names(self.names, self.link.counts))
-        return CurveError(Sentence("{reason}", reason=reason), error.place)
+        return CurveError(Sentence("{reason}", reason=in_blenders_words(str(error), self._spline_names)), error.place)
 
     def spots(self, place: Place | None, curve: Curve) -> list[Spot]:
         """The spots on the objects of a place on the link, or on the same link with other vertices."""

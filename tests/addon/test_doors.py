@@ -215,6 +215,11 @@ def far():
     add_hair().data.attributes["position"].data[30].vector = (np.inf, 0, 0)
 
 
+def doubled():
+    points = add_loop().data.vertices
+    points[1].co = points[0].co
+
+
 def fur():
     data = bpy.data.hair_curves.new("Fur")
     data.add_curves([4] * 100_000)
@@ -251,6 +256,7 @@ BAD = {
     cut: "'Source' shows no curves; draw some, or see what its modifiers do",
     dot: "Spline 2 of 'Source' has fewer than 2 points; give it more, or delete it",
     far: " of spline 2 of 'Source' is not finite, or further away than anything; repair or delete it",
+    doubled: " of spline 1 of 'Source'",
     fur: "'Source' has 100000 curves, and at most 1000 are relaxed together; make an object of a few",
     branch: "Edges of 'Source' branch, or none is selected beside faces; choose loops or paths",
     **({blank: "'Source' shows no curves; draw some, or see what its modifiers do"} if STROKES else {}),
