@@ -154,6 +154,17 @@ def test_an_overhand_knot_is_pulled_by_its_ends():
     assert (np.diff(ends) >= 0.0).all()
     assert ends[-1] > 1.2 * ends[0]
     assert iterates[-1].curve.length == pytest.approx(loose.length, rel=1e-6)  # no rope is lost
+    middles = [each.curve.vertices[[0, -1]].mean(axis=0) for each in iterates]
+    assert np.ptp(middles, axis=0).max() < 1e-9  # both ends point to one side, and the knot would go there
+
+
+def test_rope_that_is_drawn_out_of_a_knot_counts_as_progress():
+    """The length stays, so that nothing else would tell that the rope is not at rest."""
+    first = next(tightening(Task(curve=overhand(100)), TightenOptions(vertices=200)))
+    rope = PulledRope(first, first.radius[0])
+    merits = [rope.point.merit for _ in islice(rope.pulled(400), 15)]
+    assert merits[-1] < merits[0] - 10.0
+    assert rope.curve.length == pytest.approx(first.curve.length, rel=1e-3)
 
 
 def test_vertices_double_where_open_ropes_touch_and_ends_stay():
