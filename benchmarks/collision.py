@@ -1,32 +1,22 @@
-"""Times of collision detection and of the repulsion of obstacles, in milliseconds of processor time.
+"""Times of collision detection, in milliseconds of processor time.
 
     python benchmarks/collision.py curves [VERTICES ...]
     python benchmarks/collision.py obstacle [VERTICES ...] [--mesh MESH.obj]
-    python benchmarks/collision.py repulsion [VERTICES ...] [--latitudes N]
-    python benchmarks/collision.py motions 105000
 
 ``curves``: the first contact along a long motion, the proof of a leg two thirds as long, embeddedness, gap, and the
 verifier's filter on that leg. ``obstacle``: a curve in a mesh, by default a bumpy sphere of 28,560 triangles; first
-contact and proof of the curve alone and with the mesh, clearance, and the filter. ``repulsion``: a torus knot well
-inside a sphere of triangles or the net of their sides, or near it; the simplices, those that an edge sees one by one
-and the clusters it sees, then the tree, the schedule of a curve, the test whether it still suits, and R with its
-derivative; up to 1,000 vertices also the relative error. Run them with one BLAS thread on a quiet machine.
-``motions`` compares so many random and adversarial motions of an edge near a triangle with exact arithmetic: nothing
-may be wrong, and hardly anything timid; it takes ten minutes.
+contact and proof of the curve alone and with the mesh, clearance, and the filter. Run them with one BLAS thread on a
+quiet machine.
 """
 
 import argparse
-import sys
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from time import process_time
 
 import numpy as np
 from mobius_flow.core import Curve, Obstacle, read_obstacle
 from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.collision import check_clear, check_embedded, free_motion, is_free, minimal_gap
-from mobius_flow.core.energies.repulsion import Repulsion
-from mobius_flow.core.energies.repulsion.repulsion import KEPT, Schedule
 from mobius_flow.core.proof.filter import doubtful_pairs
 
 
@@ -55,7 +45,7 @@ def ribbon(n: int) -> list[FloatArray]:
     return [middle, middle + 0.3 * float(np.linalg.norm(middle[1] - middle[0])) * turn]
 
 
-def sphere(latitudes: int, bumps: float = 0.0) -> Obstacle:
+def sphere(latitudes: int, bumps: float) -> Obstacle:
     """A surface around the origin by its latitudes and as many longitudes, but for the caps at the poles."""
     n = latitudes
     p, q = np.meshgrid(np.pi * (np.arange(n) + 0.5) / n, np.pi * np.arange(n) / (n / 2), indexing="ij")
@@ -64,7 +54,7 @@ def sphere(latitudes: int, bumps: float = 0.0) -> Obstacle:
     i, j = np.indices((n - 1, n)).reshape(2, -1)
     a, b = n * i + j, n * i + (j + 1) % n
     faces = np.concatenate([[a, b, b + n], [a, b + n, a + n]], axis=1).T
-    return Obstacle(points, faces, "bumpy" if bumps else "sphere")
+    return Obstacle(points, faces, "bumpy")
 
 
 def field(points: FloatArray, waves: int) -> FloatArray:
@@ -135,48 +125,7 @@ def obstacle(sizes: Sequence[int], given: Obstacle) -> None:
         show(str(share), [n, time, *(best(task, 5) for task in tasks)])
 
 
-def repulsion(sizes: Sequence[int], surface: Obstacle) -> None:
-    titles = ("vertices", "simplices", "single", "clusters", "tree", "schedule", "suits", "R and DR", "error")
-    show("obstacle, knot", titles)
-    sides = np.sort(np.concatenate([surface.faces[:, [i, i - 1]] for i in range(3)]), axis=1)
-    net = Obstacle(surface.vertices, np.unique(sides, axis=0), "net")
-    for n, shape in ((n, shape) for n in sizes for shape in (surface, net)):
-        for name, radius in (("inside", 0.6), ("near", 0.99)):
-            curve = Curve(radius / 3.0 * torus_knot(n))
-            (term,) = Repulsion.of([shape])
-            frozen = term.frozen_at(curve)
-            schedule = Schedule.of(curve, term.clusters, term.theta)
-            seen = (sum(len(panels) for _, panels in each) / n for each in (schedule.single, schedule.clustered))
-            times = (
-                best(lambda: Repulsion.of([shape]), 1),  # noqa: B023 (called at once)
-                best(lambda: Schedule.of(curve, term.clusters, term.theta), 3),  # noqa: B023
-                best(lambda: schedule.suits(curve, term.clusters, KEPT), 3),  # noqa: B023
-                best(lambda: frozen.value_and_derivative(curve), 3),  # noqa: B023
-            )
-            exact = Repulsion(term.clusters, theta=0.0)
-            error = [abs(term.value(curve) / exact.value(curve) - 1.0)] if n <= 1000 else []
-            show(f"{shape.name}, {name}", [n, len(shape.faces), *seen, *times, *error])
-
-
-def motions(count: int) -> None:
-    sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
-    from exact_decisions import Tally
-    from obstacle_motions import KINDS, free, meets, placed
-
-    for kind in KINDS:
-        rng, tally = np.random.default_rng(20261), Tally(meets)
-        for _ in range(count // len(KINDS)):
-            start, end = placed(rng, kind(rng))
-            tally.add(start, end, free(start, end))
-        print(f"{kind.__name__:12} {tally}", flush=True)
-
-
-SIZES = {
-    "curves": [200, 600, 1000, 10_000, 100_000],
-    "obstacle": [2000],
-    "repulsion": [512, 2048, 8192],
-    "motions": [105_000],
-}
+SIZES = {"curves": [200, 600, 1000, 10_000, 100_000], "obstacle": [2000]}
 
 
 def main() -> None:
@@ -185,16 +134,12 @@ def main() -> None:
     parser.add_argument("table", choices=SIZES)
     parser.add_argument("sizes", nargs="*", type=int, metavar="VERTICES")
     parser.add_argument("--mesh", metavar="MESH.obj", help="an obstacle (default: a bumpy sphere)")
-    parser.add_argument("--latitudes", type=int, default=120, metavar="N", help="of spheres (default: 120)")
     given = parser.parse_args()
     sizes = given.sizes or SIZES[given.table]
-    tables = {
-        "curves": lambda: curves(sizes),
-        "obstacle": lambda: obstacle(sizes, read_obstacle(given.mesh) if given.mesh else sphere(given.latitudes, 0.1)),
-        "repulsion": lambda: repulsion(sizes, sphere(given.latitudes)),
-        "motions": lambda: motions(sizes[0]),
-    }
-    tables[given.table]()
+    if given.table == "curves":
+        curves(sizes)
+    else:
+        obstacle(sizes, read_obstacle(given.mesh) if given.mesh else sphere(120, 0.1))
 
 
 if __name__ == "__main__":

@@ -2,11 +2,8 @@
 
     OPENBLAS_NUM_THREADS=1 python benchmarks/soak.py --count 2000 --seed 1
     OPENBLAS_NUM_THREADS=1 python benchmarks/soak.py --count 500 --kind world    arcs, pins and obstacles; all verified
-    OPENBLAS_NUM_THREADS=1 python benchmarks/soak.py --count 100 --kind drags
 
-Drags take hold of curves ten times each while they relax: gently, far away, to and fro from step to step, through the
-middle of the curve, with pins left and two strands in turn. The path is verified like its file, and the type identified
-before and after.
+The path is verified like its file, and the type identified before and after.
 """
 
 import argparse
@@ -15,7 +12,7 @@ import tempfile
 import time
 import traceback
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +20,6 @@ from hard_curves import hard_unknot
 from mobius_flow.core import (
     METHODS,
     Curve,
-    Hand,
     Iterate,
     MobiusFlowError,
     Obstacle,
@@ -41,7 +37,6 @@ from mobius_flow.core.proof import verify
 
 # slow kinds, and those that change the mesh, come up less often
 COMMON = ("lbfgs", "cg", "flow-moebius", "flow-h1", "flow-l2", "flow-h2", "penalty-lbfgs", "penalty-nesterov")
-DRAGGED = ("0_1", "3_1", "4_1", "5_2", "L2a1", "L5a1", "8_19", "3_1#3_1", "goeritz")
 
 
 def random_curve(rng: np.random.Generator) -> Curve:
@@ -99,32 +94,6 @@ def in_the_world(rng: np.random.Generator, curve: Curve) -> Task:
     return Task(curve=curve, obstacles=clear, pins=pins, pin_tangents=bool(rng.random() < 0.3) and len(pins) > 0)
 
 
-def drags(rng: np.random.Generator, hand: Hand, iterates: Iterator[Iterate]) -> Iterator[Iterate]:
-    """The iterates of a run during which the hand takes hold ten times, each for twelve of them, and rests for four."""
-    for _ in range(10):
-        iterate = next(iterates, None)
-        if iterate is None:
-            return
-        yield iterate
-        curve, kind = iterate.curve, str(rng.choice(["gentle", "far", "shaken", "through", "huge"]))
-        component, share = int(rng.integers(len(curve.mesh.component_sizes))), float(rng.random())
-        hand.grab(component, share)
-        piece = curve.mesh.slices[component]
-        held = curve.vertices[piece][int(share * (piece.stop - piece.start - 1))]
-        size, middle = float(np.ptp(curve.vertices, axis=0).max()), curve.vertices.mean(axis=0)
-        way = rng.normal(size=3) * {"gentle": 0.3, "far": 3.0, "huge": 1e6}.get(kind, 0.0) * size
-        for k, iterate in zip(range(1, 17), iterates, strict=False):
-            yield iterate
-            if kind == "shaken":
-                way = rng.normal(size=3) * 2.0 * size
-            share = 4.0 * k / 12 if kind == "through" else 0.0
-            if k <= 12:
-                hand.move(held + share * (middle - held) + way * (k / 12 if kind == "gentle" else 1.0))
-            elif k == 13:
-                hand.release(pin=bool(rng.random() < 0.1))
-    yield from iterates
-
-
 def problem(iterates: Sequence[Iterate], task: Task) -> str:
     """What is wrong with a run, after an independent check of its motion: "type", "contact", "nan", or "ok"."""
     first, last = iterates[0], iterates[-1]
@@ -145,15 +114,7 @@ def problem(iterates: Sequence[Iterate], task: Task) -> str:
 
 def flow(rng: np.random.Generator, kind: str = "flows") -> str:
     """Run one flow, and say how it went, also "refused" if a sentence says why."""
-    hand = Hand()
     try:
-        if kind == "drags":
-            curve = knot(str(rng.choice(DRAGGED)), int(rng.integers(60, 140)))
-            size, beside = np.ptp(curve.vertices), curve.vertices[:, 0].min() * 1.1
-            wall = Obstacle([[beside, -size, -size], [beside, size, -size], [beside, 0.0, size]], [[0, 1, 2]], "wall")
-            task = Task(curve=curve, obstacles=(wall,) if rng.random() < 0.3 else ())
-            options = RelaxOptions(vertices=len(curve), mesh="fixed", untangle="never", max_iterations=200)
-            return problem(list(drags(rng, hand, relax(task, options, hand))), task)
         curve = random_curve(rng)
         options = random_options(rng, len(curve))
         task = in_the_world(rng, curve) if kind == "world" else Task(curve=curve)
@@ -167,7 +128,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=2000)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--kind", choices=("flows", "world", "drags"), default="flows")
+    parser.add_argument("--kind", choices=("flows", "world"), default="flows")
     given = parser.parse_args()
     counts, started = Counter[str](), time.perf_counter()
     for k in range(given.count):

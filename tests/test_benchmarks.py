@@ -11,12 +11,10 @@ from soak import flow
 BENCHMARKS = Path(__file__).resolve().parents[1] / "benchmarks"
 ARGUMENTS = {
     "bundles": ["1"],
-    "batch": ["many", "2"],
     "collision": ["curves", "60"],
     "hops": ["T34", "--hops", "1"],
     "knots": ["knots", "--only", "3_1,L2a1,unknot-rope", "--tolerance", "1e-2"],
     "morphs": ["--only", "ochiai"],
-    "passes": ["goeritz"],
     "resolution": ["3_1"],
     "rope": ["4_1", "--vertices", "80", "--iterations", "20"],
     "seeded_runs": ["different", "--save", "runs.json"],
@@ -41,21 +39,19 @@ def test_it_runs(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     done = run(name, *ARGUMENTS[name])
     assert done.returncode == 0, done.stdout + done.stderr
-    few = {"batch": 1, "seeded_runs": 0, "soak": 1, "resolution": 3, "hops": 3, "passes": 3, "knots": 6, "rope": 3}
-    few["untangling"] = 2
+    few = {"seeded_runs": 0, "soak": 1, "untangling": 2, "resolution": 3, "hops": 3, "rope": 3, "knots": 6}
     least = few.get(name, 5)  # a title, and a line for each of four curves
     assert len(done.stdout.splitlines()) >= least
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("words", [["obstacle", "60"], ["repulsion", "60", "--latitudes", "12"], ["motions", "22"]])
-def test_the_other_tables_of_collisions(words):
-    done = run("collision", *words)
+def test_collisions_with_an_obstacle_are_measured():
+    done = run("collision", "obstacle", "60")
     assert done.returncode == 0, done.stderr
     assert len(done.stdout.splitlines()) > 3
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("kind", "seed"), [*(("world", k) for k in range(30)), *(("drags", k) for k in range(3))])
-def test_random_flows_among_obstacles_and_drags(kind, seed):
-    assert flow(np.random.default_rng([2, seed]), kind) in ("ok", "refused")
+@pytest.mark.parametrize("seed", range(30))
+def test_random_flows_among_obstacles(seed):
+    assert flow(np.random.default_rng([2, seed]), "world") in ("ok", "refused")

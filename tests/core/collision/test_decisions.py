@@ -1,7 +1,6 @@
 """All who decide about contact decide alike, about motions that nothing is general about and about tame ones.
 
-The checker shares no line with the program.  MOBIUS_FLOW_MOTIONS=4000 makes it some 400,000 motions, in an hour or two;
-``benchmarks/obstacles.py`` does so, too.
+The checker shares no line with the program.  MOBIUS_FLOW_MOTIONS=4000 makes it some 400,000 motions, in an hour or two.
 """
 
 import os
