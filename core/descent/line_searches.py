@@ -1,7 +1,6 @@
 """Line searches: what is tried first, Armijo's rule along the constraints, and Wolfe's (Section 6 of [RS21])."""
 
-import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 from typing import ClassVar, NamedTuple, Protocol
 
@@ -15,7 +14,7 @@ from ..solve.metrics import Metric
 from ..solve.saddle import TangentSpace
 from .directions import Direction
 from .problem import Point
-from .step import Leg, NoStep, Rejected, SearchState, Step, attempt
+from .step import Leg, NoStep, SearchState, Step, attempt
 
 NOTHING = 1e-15  # displacement, in the program's units, that changes no coordinate
 
@@ -169,85 +168,3 @@ class Armijo:
         """
         wanted = self.decrease * slope if slope < 0.0 else 2.0 * slope
         return trial.energy - point.energy <= wanted + slack + ENERGY_ROUNDING * abs(point.energy)
-
-
-@dataclass(frozen=True)
-class WeakWolfe:
-    """Widen or halve a bracket until the energy goes down enough and its slope has become flat enough.
-
-    Bisection after Lewis and Overton (Nonsmooth optimization via quasi-Newton methods, 2013): it needs no more than the
-    two conditions and ends for every function that is bounded below.
-    """
-
-    # decrease, curvature: c₁ < c₂ of the two conditions, for which [RS21] has no numbers. On a parabola they accept
-    # steps of 1 − c₂ to 2 (1 − c₁) times the way to its minimum: of twice, with the usual 10⁻⁴, which gain nothing
-    decrease: float = 0.25
-    curvature: float = 0.9
-    first: FirstTrial = field(default_factory=FirstTrial)
-    # on the way to target lengths, where these are prescribed
-    underway: Armijo = field(default_factory=Armijo)
-    max_trials: int = 40
-
-    def along(self, point: Point, direction: FloatArray, natural: float, last: float) -> Step | NoStep:
-        """Find a step with E(Q) ≤ E(P) + c₁ τ DE·d and DE(Q)·d ≥ c₂ DE(P)·d, d moved along to Q.
-
-        If contact ends the line before the second condition holds, the longest step found is taken.  Parameters are
-        those of `Armijo.along`.
-        """
-        if not on_target(point):
-            return self.underway.along(point, direction, natural, last)
-        end, limited_by = self.first(point, direction, math.inf)
-        slope = float(np.sum(point.derivative * direction))
-        low, high = 0.0, math.inf
-        best: Step | None = None
-        tau = min(natural, self.first.growth * last if math.isfinite(last) else 1.0, end)
-        for _ in range(self.max_trials):
-            if not tau * np.max(np.abs(direction)) > NOTHING:
-                break
-            # differences below the rounding of the energy count as none
-            most = point.energy + self.decrease * tau * slope + ENERGY_ROUNDING * abs(point.energy)
-            acceptable = partial(lambda most, trial: trial.energy <= most, most)
-            trial = attempt(point, point.vertices + tau * direction, point.residual, acceptable)
-            if isinstance(trial, Leg):
-                best, low = Step((trial,), tau, limited_by), tau
-                flat = np.sum(trial.end.derivative * trial.end.transport(direction)) >= self.curvature * slope
-                if flat or tau >= end:
-                    break
-            else:
-                high, limited_by = tau, trial.in_the_way or limited_by
-            tau = min(end, 2.0 * low) if math.isinf(high) else 0.5 * (low + high)
-        return NoStep.because(limited_by) if best is None else best
-
-
-@dataclass(frozen=True)
-class Accelerated:
-    """Nesterov's accelerated gradient: y = x + β (x − x_last), then x_next = y − τ u(y).
-
-    (Yu. Nesterov, A method for solving the convex programming problem with convergence rate O(1/k²), 1983.)  Both
-    sub-steps are truncated by collision detection, and the momentum is reset when the objective goes up (O'Donoghue and
-    Candès, Adaptive restart for accelerated gradient schemes, 2015).
-    """
-
-    search: WeakWolfe = field(default_factory=WeakWolfe)  # finds τ
-    second_order: ClassVar[bool] = False
-    other_metrics: ClassVar[tuple[Metric, ...]] = ()
-
-    def step(self, point: Point, state: SearchState) -> tuple[Step | NoStep, SearchState]:
-        """Extrapolate, then take a gradient step from there; the path has both legs.
-
-        The memory are the vertices before, and Nesterov's t_k.
-        """
-        before, last = (point.vertices, 1.0) if state.memory is None else state.memory
-        t = 0.5 * (1.0 + math.sqrt(1.0 + 4.0 * last**2))
-        momentum = (last - 1.0) / t * (point.vertices - before)
-        part, _ = self.search.first(point, momentum, 1.0)
-        end = point.vertices + part * momentum
-        first = attempt(point, end, point.residual, lambda q: True) if part else Rejected()
-        start = first.end if isinstance(first, Leg) else point
-        step = self.search.along(start, -start.gradient, np.inf, state.last_step)
-        if isinstance(step, NoStep):
-            return (step, state) if state.memory is None else self.step(point, replace(state, memory=None))
-        if isinstance(first, Leg):
-            step = replace(step, legs=(first, *step.legs))
-        rising = step.point.energy > point.energy
-        return step, SearchState(None if rising else (point.vertices, t), step.size)

@@ -3,28 +3,60 @@
 A geometry is the set that iterates lie on: polygons of prescribed lengths, or all polygons, lengths costing a penalty.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
 
 from ..base import FloatArray, Table
-from ..curve import Curve, free_edges
-from ..solve.constraints import ConstraintDerivative
+from ..curve import Curve
 from ..solve.metrics import METRICS, InnerProduct, Metric, MoebiusMetric
 from ..solve.saddle import TangentSpace
 from .directions import ConjugateGradient, LimitedMemoryBFGS, SteepestDescent
-from .line_searches import Accelerated, Armijo, FirstTrial, LineSearch, WeakWolfe
+from .line_searches import Armijo, FirstTrial, LineSearch
 from .problem import Point, Problem
-from .second_order import BackwardEuler, TrustRegion
+from .second_order import TrustRegion
 from .step import NoStep, SearchState, Step
 
 _GRADIENTS = "projected fractional Sobolev gradients"
 
 
 @dataclass(frozen=True)
-class Constrained:
+class Geometry(ABC):
+    """The set that iterates lie on, its tangent spaces, and the ways from these back to the set."""
+
+    penalty: float | None = None  # α, what errors of lengths cost; None where lengths are prescribed
+
+    @property
+    def prescribes(self) -> bool:
+        """Whether lengths are prescribed, so that there are multipliers and a residual."""
+        return self.penalty is None
+
+    @abstractmethod
+    def value_and_derivative(self, problem: Problem, curve: Curve) -> tuple[float, FloatArray]:
+        """What is minimised on the set, and its derivative, shape (n, m)."""
+
+    @abstractmethod
+    def tangent_space(self, problem: Problem, curve: Curve, inner: InnerProduct) -> TangentSpace:
+        """Where directions at a curve lie, with the metric there."""
+
+    @abstractmethod
+    def residual(self, problem: Problem, curve: Curve) -> FloatArray:
+        """How far a curve is from the set; shape (rows of the constraints,)."""
+
+    @abstractmethod
+    def retract(self, base: Point, vertices: FloatArray, level: FloatArray, space: TangentSpace) -> Point | None:
+        """Find a point near ``vertices`` with the residual ``level``; None if there is none in reach."""
+
+    @abstractmethod
+    def transport(self, point: Point, u: FloatArray) -> FloatArray:
+        """A vector of another tangent space moved to that of a point; shape (n, m)."""
+
+
+@dataclass(frozen=True)
+class Constrained(Geometry):
     """The manifold {Φ = 0}, to which (42) of [RS21] leads back after a step."""
 
     # of lengths, a relative error, and of barycenters: far below any gap that can be proved
@@ -36,18 +68,14 @@ class Constrained:
     small: float = 1e-3
     # least rate of both; where it is slower, a shorter step is cheaper than more iterations
     contraction: float = 0.6
-    prescribes = True  # so that there are multipliers and a residual
 
     def value_and_derivative(self, problem: Problem, curve: Curve) -> tuple[float, FloatArray]:
-        """What is minimised on the set, and its derivative, shape (n, m)."""
         return problem.objective.value_and_derivative(curve)
 
     def tangent_space(self, problem: Problem, curve: Curve, inner: InnerProduct) -> TangentSpace:
-        """Where directions at a curve lie, with the metric there."""
         return inner.tangent_space(problem.constraints.derivative(curve))
 
     def residual(self, problem: Problem, curve: Curve) -> FloatArray:
-        """How far a curve is from the set; shape (rows of the constraints,)."""
         return problem.constraints.residual(curve)
 
     def retract(self, base: Point, vertices: FloatArray, level: FloatArray, space: TangentSpace) -> Point | None:
@@ -79,51 +107,7 @@ class Constrained:
         return None
 
     def transport(self, point: Point, u: FloatArray) -> FloatArray:
-        """A vector of another tangent space moved to that of a point; shape (n, m)."""
         return point.tangent_space.project(u)
-
-
-@dataclass(frozen=True)
-class Penalised:
-    """All polygons that are where their pins are; lengths cost α Σ ℓ⁰ log(ℓ/ℓ⁰)², as in Section 6.4 of [RS21].
-
-    The metric is J + α DΦᵀ I_{L²} DΦ, or J alone where footnote 8 leaves the extension out.
-    """
-
-    penalty: float = 1000.0  # α
-    prescribes = False
-
-    def value_and_derivative(self, problem: Problem, curve: Curve) -> tuple[float, FloatArray]:
-        energy, derivative = problem.objective.value_and_derivative(curve)
-        targets = problem.constraints.lengths
-        stretch = np.log(curve.edge_lengths / targets)
-        weights = self.penalty * targets
-        pull = ConstraintDerivative.of_lengths(curve).apply_transpose(2.0 * weights * stretch)
-        return energy + float(weights @ stretch**2), derivative + pull
-
-    def tangent_space(self, problem: Problem, curve: Curve, inner: InnerProduct) -> TangentSpace:
-        """The whole space, but for pins."""
-        penalty = self.penalty if problem.metric.extends_penalty else 0.0
-        constraints = problem.constraints
-        rows = ConstraintDerivative.of_lengths(curve, constraints.pins.vertices)
-        return inner.tangent_space(replace(rows, symmetry=constraints.symmetry), penalty * constraints.lengths)
-
-    def residual(self, problem: Problem, curve: Curve) -> FloatArray:
-        """Every polygon is allowed: 0."""
-        return np.zeros(len(free_edges(curve.mesh, problem.constraints.pins.vertices)))
-
-    def retract(self, base: Point, vertices: FloatArray, level: FloatArray, space: TangentSpace) -> Point | None:
-        """The vertices as they are, unless an edge has no length."""
-        point = base.problem.at(vertices)
-        return point if point.nondegenerate else None
-
-    def transport(self, point: Point, u: FloatArray) -> FloatArray:
-        """There is only one tangent space."""
-        return u
-
-
-Geometry = Constrained | Penalised
-"""The set that iterates lie on, its tangent spaces, and the ways from these back to the set."""
 
 
 class StepRule(Protocol):
@@ -186,26 +170,16 @@ def _all() -> Iterator[Method]:
     whole, restoring = MoebiusMetric(least_distance=1e-9), Constrained(small=1e-300)
     label = "Gradient Flow of Reiter and Schumacher"
     yield Method("paper", text, LineSearch(steepest, search), whole, restoring, label=label)
-    explicit = LineSearch(steepest, armijo)
-    for rule, kind, word in ((explicit, "flow", "explicit"), (BackwardEuler(), "implicit", "implicit")):
-        for name, metric in METRICS.items():
-            if (kind, name) != ("flow", "moebius"):
-                text = f"projected gradient flow, {word}, {metric.description}"
-                label = f"{word.title()} Flow in {metric.description}"
-                yield Method(f"{kind}-{name}", text, rule, metric, label=label, comparison=True)
-    wolfe, geometry = WeakWolfe(), Penalised()
-    for name, text, title, steps in (
-        ("lbfgs", "L-BFGS", "L-BFGS", LineSearch(LimitedMemoryBFGS(history=30), wolfe)),
-        ("cg", "conjugate gradients (PR+)", "Conjugate Gradients", LineSearch(ConjugateGradient(), wolfe)),
-        ("nesterov", "Nesterov's accelerated gradient", "Nesterov's Accelerated Gradient", Accelerated(wolfe)),
-    ):
-        label, text = f"{title} with Length Penalty", f"{text} on the penalised energy"
-        yield Method(f"penalty-{name}", text, steps, geometry=geometry, label=label, comparison=True)
+    for name, metric in METRICS.items():
+        if name != "moebius":
+            text = f"projected gradient flow, explicit, {metric.description}"
+            label = f"Explicit Flow in {metric.description}"
+            yield Method(f"flow-{name}", text, LineSearch(steepest, armijo), metric, label=label, comparison=True)
 
 
 METHODS: Mapping[str, Method] = Table(
     "mobius_flow.methods",
     lambda it: isinstance(it, Method),
-    {method.name: method for method in sorted(_all(), key=lambda each: each.comparison)},
+    {method.name: method for method in _all()},
 )
-"""Every method that can be chosen, by name; those for comparison come last, and what packages add after them."""
+"""Every method that can be chosen, by name; those for comparison come last, with those that packages add."""

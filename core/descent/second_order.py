@@ -1,6 +1,4 @@
-"""Steps by second derivatives: trust regions, implicit flows, the way off a saddle, and the quadratic end.
-
-The trust region and backward Euler are those of Section 6.4 of [RS21].
+"""Steps by second derivatives: the trust region of Section 6.4 of [RS21], the way off a saddle, the quadratic end.
 
 Near a minimum J_C⁻¹ D²L has a few eigenvalues far below its bulk, those of Möbius maps being some 11/N²: in the metric
 hundreds of steps crawl along their valleys.  With a multiple of the metric that makes it positive definite on the
@@ -20,13 +18,13 @@ from scipy.linalg import eigh
 from ..base import ENERGY_ROUNDING, FloatArray, check_time
 from ..energies.components import energy_scale
 from ..energies.energy import Approximate
-from ..solve.metrics import Metric, MoebiusMetric
+from ..solve.metrics import Metric
 from ..solve.saddle.indefinite import Chains, FactorisedHessian
 from .directions import LimitedMemoryBFGS
-from .hessian import ASSEMBLED_SIZE, energy_hessian, lagrangian_hessian, lagrangian_matrix, projected_conjugate_gradient
-from .line_searches import NOTHING, Armijo, FirstTrial, LineSearch, NormalStep, on_target
+from .hessian import ASSEMBLED_SIZE, lagrangian_hessian, lagrangian_matrix, projected_conjugate_gradient
+from .line_searches import NOTHING, Armijo, FirstTrial, LineSearch, on_target
 from .problem import Point
-from .step import Leg, NoStep, SearchState, Step, attempt, judged
+from .step import Leg, NoStep, SearchState, Step, attempt
 
 
 @dataclass(frozen=True)
@@ -137,81 +135,6 @@ def _minimum_in_ball(q: FloatArray, g: FloatArray, radius: float) -> FloatArray:
     if values[0] < 0.0 and missing > 1e-10 * radius**2:  # the hard case: go on along the lowest eigenvector
         c[0] += math.copysign(math.sqrt(missing), c[0])
     return np.asarray(vectors @ c)
-
-
-@dataclass(frozen=True)
-class BackwardEuler:
-    """Halve τ until the equations are solved, Armijo's rule holds and the motion is proved.
-
-    With S_P the projected-gradient operator of (41) at P, one step of size τ is the tangent vector w with
-
-        w + τ S_P DE(Q(w)) = 0,   Q(w) the feasible point that P + w leads to by (42),
-
-    constraint forces being those of P (as in the SHAKE scheme of mechanics).  Newton's method solves it, projected
-    conjugate gradients its linear systems, preconditioned by A/τ + J_C.
-    """
-
-    # the metric that is added to the flow's own, divided by τ, for Newton's method and the way to the constraints
-    preconditioner: Metric = field(default_factory=MoebiusMetric)
-    # first_step, growth: τ of the first step, and how much longer than the last one a step may be
-    first_step: float = 0.1
-    growth: float = 2.0
-    # newton_iterations, newton_tolerance: of Newton's method, relative to the first residual: a step need not be more
-    # exact than the time discretisation
-    newton_iterations: int = 8
-    newton_tolerance: float = 1e-3
-    # krylov_iterations, krylov_tolerance: of its linear systems
-    krylov_iterations: int = 60
-    krylov_tolerance: float = 0.05
-    armijo: Armijo = field(default_factory=Armijo)  # Armijo's rule
-    second_order: ClassVar[bool] = True
-
-    @property
-    def other_metrics(self) -> tuple[Metric, ...]:
-        return (self.preconditioner,)
-
-    def step(self, point: Point, state: SearchState) -> tuple[Step | NoStep, SearchState]:
-        """Take one step; the memory is the last τ.
-
-        A share of the way to the target lengths is taken along, if they are not reached yet.  Feasibility is restored
-        in the preconditioner's metric: in a weak one like L² the shortest way back is too rough (footnote 7 of [RS21]).
-        """
-        tau = self.first_step if state.memory is None else self.growth * state.memory
-        own, flow = point.inner_product, point.tangent_space
-        preconditioner, share, limited_by = self.preconditioner.at(point.curve), 1.0, None
-        for _ in range(self.armijo.max_trials):
-            space = preconditioner.plus(own, 1.0 / tau).tangent_space(flow.constraints)
-            normal = NormalStep.at(point, space)
-            base = point.vertices + share * normal.longest * normal.full
-            level = (1.0 - share * normal.longest) * point.residual
-            w, first, last, solved = np.zeros_like(point.vertices), 0.0, math.inf, None
-            for _ in range(self.newton_iterations):  # for w + τ S_P DE(Q(w)) = 0
-                trial = point.retract(base + w, level, space)
-                if trial is None or not math.isfinite(trial.energy):
-                    break
-                right = -(trial.derivative + flow.apply(w) / tau)
-                size = math.sqrt(max(0.0, float(np.sum(right * space.gradient(right)[0]))))
-                first = first or size
-                if size <= self.newton_tolerance * first:
-                    solved = trial
-                if solved or not size < 2.0 * last:
-                    break
-                last = size
-                implicit = partial(lambda h, tau, v: h(v) + flow.apply(v) / tau, energy_hessian(trial), tau)
-                most, tolerance = self.krylov_iterations, self.krylov_tolerance
-                w += projected_conjugate_gradient(implicit, right, space, tolerance, most)
-            if solved is not None:
-                slope = float(np.sum(point.derivative * (solved.vertices - point.vertices)))
-                if slope > 0.0 and share * normal.longest > normal.least:
-                    share *= 0.25  # the way to the target lengths costs more than the flow gains
-                    continue
-                judgement = judged(point, solved, partial(self.armijo.sufficient, point, slope, 0.0))
-                if isinstance(judgement, Leg):
-                    return Step((judgement,), tau, limited_by), SearchState(tau, tau)
-                limited_by = judgement.in_the_way or limited_by
-            tau *= 0.5
-            share *= 0.5
-        return NoStep.because(limited_by), state
 
 
 def step_off(

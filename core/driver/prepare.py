@@ -11,7 +11,6 @@ from ..curve import TAUT, Curve, Mesh, Obstacle, arcs, at_edges, bending_radii, 
 from ..curve.refine import Resolution, graded_spacing, normalised, refined_alike
 from ..curve.symmetry import TOLERANCE, Symmetry, SymmetryGroup, symmetries
 from ..descent import METHODS, Problem, Task
-from ..descent.methods import Penalised
 from ..energies import Term, TwiceDifferentiable, is_moebius_invariant
 from ..energies.rope import Rope
 from ..solve.metrics import Metric
@@ -38,7 +37,7 @@ def start_problem(given: Task | Curve, options: RelaxOptions) -> Problem:
     pins = task.held
     geometry = method.geometry
     if options.penalty is not None:
-        if not isinstance(geometry, Penalised):
+        if geometry.prescribes:
             raise OptionError(f"penalty is {options.penalty}; the method keeps lengths and has no penalty")
         geometry = replace(geometry, penalty=options.penalty)
     lengths = target_lengths(task.curve, pins.vertices, task.obstacles, options)

@@ -11,8 +11,9 @@ from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.descent import Point, SearchState, Step
 from mobius_flow.core.descent.directions import SteepestDescent
 from mobius_flow.core.descent.hessian import lagrangian_hessian
-from mobius_flow.core.descent.line_searches import Accelerated, Armijo, FirstTrial, LineSearch, WeakWolfe
-from mobius_flow.core.descent.second_order import BackwardEuler, TrustRegion, step_off
+from mobius_flow.core.descent.line_searches import Armijo, FirstTrial, LineSearch
+from mobius_flow.core.descent.second_order import TrustRegion, step_off
+from mobius_flow.lab.methods import Accelerated, BackwardEuler, WeakWolfe
 
 
 def test_armijo_asks_for_half_of_the_predicted_decrease() -> None:

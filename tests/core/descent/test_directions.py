@@ -6,8 +6,8 @@ from descent_cases import GEOMETRIES, start
 from descent_contracts import point_on, with_geometry
 from mobius_flow.core.descent import Step
 from mobius_flow.core.descent.directions import ConjugateGradient, LimitedMemoryBFGS
-from mobius_flow.core.descent.line_searches import Armijo, WeakWolfe
-from mobius_flow.core.descent.methods import Penalised
+from mobius_flow.core.descent.line_searches import Armijo
+from mobius_flow.lab.methods import Penalised, WeakWolfe
 from shapes import torus_trefoil
 from taylor import taylor_slope
 

@@ -19,8 +19,8 @@ from mobius_flow.core.collision import Contact
 from mobius_flow.core.descent import NoStep, Point, SearchState, Step
 from mobius_flow.core.descent.directions import SteepestDescent
 from mobius_flow.core.descent.line_searches import Armijo, FirstTrial, LineSearch
-from mobius_flow.core.descent.methods import Penalised
 from mobius_flow.core.descent.step import Leg, Rejected, attempt
+from mobius_flow.lab.methods import Penalised
 from shapes import hopf_link
 
 
