@@ -147,8 +147,9 @@ def _rows(path: str, found: Info, closed: bool, types: Mapping[str, int]) -> Ite
         count = sum(types.values())
         shares = ", ".join(f"{name} {100 * number / count:.3g} %" for name, number in types.items())
         yield "closures", f"{shares} of {count}"
-    if found.type.homfly and len(text := homfly_text(found.type.homfly)) < 100:
-        yield "HOMFLY polynomial", text
+    if found.type.homfly:
+        text = homfly_text(found.type.homfly)
+        yield "HOMFLY polynomial", text if len(text) < 100 else "long; see --json"
     if found.type.floer is not None:
         yield "genus", f"{found.type.floer.genus}{', fibered' * found.type.floer.fibered} (by {FLOER})"
     if found.type.group is not None:

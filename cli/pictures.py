@@ -135,6 +135,8 @@ def _drawn(word: str, options: argparse.Namespace) -> tuple[list[Drawing], list[
     suffix, stem = Path(word).suffix.lower(), Path(word).stem
     is_file = word == curves.STREAM or suffix in FORMATS or os.path.isfile(word)
     if suffix == ".npz":
+        if options.layout:
+            raise OptionError(f"{word}: --layout is for curves, and frames of a trajectory are views; leave it out")
         found = seen(motion(word, options.frames).curves)
         return found, [str(number) for number in range(1, len(found) + 1)]
     if suffix in _CODES and not options.format:

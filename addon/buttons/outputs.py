@@ -13,7 +13,7 @@ from ...core.curve.tube import caps, places_between, quads, rings
 from ...core.driver.words import named
 from ...core.keys.colours import COLOURINGS, COMPONENT, DISTANCE, ENERGY, vertex_values
 from ...core.keys.smooth_fit import FEWEST, SmoothFit, bezier_points, fitted
-from ..curves import bevel
+from ..curves import bake, bevel
 from ..curves.assets import add_nodes
 from ..curves.doors import object_like
 from ..curves.keyframes import add_keys
@@ -122,6 +122,12 @@ FBX does with NLA Strips and All Actions off, one frame later"""
             tube = tube_object(obj, each, radii, self.sides)
             part = slice(first, first := first + each.mesh.size)
             write_values(tube.data, {name: array[part] for name, array in values.items()})
+            forces, struts = bake.contacts(obj.data)
+            if len(forces) == each.mesh.size:
+                write_values(tube.data, {"contact_force": forces})
+                beside = struts_object(obj, struts)
+                for collection in obj.users_collection:
+                    collection.objects.link(beside)
             if self.every_frame:
                 # at the middles of the rings as shown, Blender's nodes compute the arc length from the start of a
                 # component; the curvature, which is the angle by which the polygon turns over half the length of both
@@ -212,6 +218,16 @@ def tube_object(obj: bpy.types.Object, recorded: Recorded, radii: FloatArray, si
         for k, block in enumerate(mesh.shape_keys.key_blocks[1:], 1):
             near, path = frames[k - 1 : k + 2], f'key_blocks["{block.name}"].value'
             add_keys(mesh.shape_keys, f"{made.name} Motion", path, 0, near, np.array([0.0, 1.0, 0.0])[: len(near)])
+    return made
+
+
+def struts_object(obj: bpy.types.Object, struts: FloatArray) -> bpy.types.Object:
+    """Make a mesh of a curve's struts, edges that have their forces, relative to the tension, as an attribute."""
+    mesh = bpy.data.meshes.new(f"{obj.name} Struts")
+    mesh.from_pydata(struts[:, :6].reshape(-1, 3).tolist(), np.arange(2 * len(struts)).reshape(-1, 2).tolist(), [])
+    mesh.attributes.new("force", "FLOAT", "EDGE").data.foreach_set("value", struts[:, 6].astype(np.float32))
+    made = object_like(obj, mesh)
+    made[TUBE_OF] = obj
     return made
 
 

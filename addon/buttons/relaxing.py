@@ -206,8 +206,8 @@ moved as little as that allows; ends and pins stay in place. Where two curves me
 
 
 class CURVE_OT_mobius_flow_tighten(Relaxing, bpy.types.Operator):
-    """Pull the selected knots tight, open ones by their ends: ropes of nine tenths of their thickness, which stays, \
-as short as can be, and keep the motion as keyframes"""
+    """Pull the selected knots tight, open ones by their ends, as ropes whose thickness stays, and keep the motion as \
+keyframes. Tube Mesh then shows where they press on each other"""
 
     bl_label = "Tighten"
     needs = (ENTERABLE, POLYGONS)

@@ -100,6 +100,8 @@ def update(data: bpy.types.Curve, timing: Timing | None = None) -> None:
     """Record how the keys are after a change made here or, with a timing, after more keys were written."""
     record = data[_RECORD]
     record["fingerprint"], record["shapes"] = _fingerprint(data), _digest(data)
+    for name in ("forces", "struts"):  # are about points that were there before
+        record.pop(name, None)
     if timing is not None:  # the rest before the first key of all is the one that was baked
         after = timing.hold_start - 1 if timing.loop else timing.hold_end  # a loop begins again at the first frame
         record["bevel_depth"], record["holds"] = data.bevel_depth, [record["holds"][0], after]
@@ -110,6 +112,23 @@ def rope(data: bpy.types.Curve) -> float:
     if it is none, or points were moved since.
     """
     return float(data[_RECORD].get("rope", 0.0)) if is_baked(data) and not is_edited(data) else 0.0
+
+
+def press(data: bpy.types.Curve, forces: FloatArray, struts: FloatArray) -> None:
+    """Note where a curve, if it is baked, touches at its last key: see `contacts`."""
+    if _RECORD in data:
+        data[_RECORD]["forces"], data[_RECORD]["struts"] = forces.tolist(), struts.ravel().tolist()
+
+
+def contacts(data: bpy.types.Curve) -> tuple[FloatArray, FloatArray]:
+    """Contact forces at the points of a curve that was pulled tight, (n,), and its struts, as shown at the last key.
+
+    A row of struts, (k, 7), has two ends and a force. There are no forces, (0,), where nothing was pulled tight.
+    """
+    known = data[_RECORD] if is_baked(data) and not is_edited(data) else {}
+    struts = np.array(known.get("struts", ())).reshape(-1, 7)
+    ends = sizes(data)[-1].of(struts[:, :6].reshape(-1, 3)).reshape(-1, 6)
+    return np.array(known.get("forces", ())), np.column_stack([ends, struts[:, 6]])
 
 
 def scale_bevel(data: bpy.types.Curve, factor: float) -> None:

@@ -76,7 +76,9 @@ def leave(data: bpy.types.Curve) -> None:
         if copy[CARRIER] in carriers or (copy[CARRIER] is None and _BEFORE in copy):
             bpy.data.batch_remove([copy, copy.data])
     drop_nodes(_MOTION)
-    if source is not None and source.name in bpy.context.view_layer.objects:
+    others = (obj.data for obj in bpy.data.objects if obj.type == "CURVE" and obj.data != data)  # copies of carriers
+    hidden = any(SOURCE in each and each[SOURCE]["object"] == source for each in others)
+    if source is not None and source.name in bpy.context.view_layer.objects and not hidden:
         source.hide_render = not rendered
         source.hide_set(False)
         source.select_set(True)

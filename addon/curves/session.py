@@ -13,17 +13,19 @@ from typing import Any
 
 import bpy
 import numpy as np
+from scipy.spatial import cKDTree
 
 from ...core import Curve, Hand, Iterate, Obstacle, Outcome, RelaxOptions, Task, WithOutcome
 from ...core.base import CurveError, FloatArray, Message, MobiusFlowError, OptionError, Place, Sentence
 from ...core.collision import is_rope
 from ...core.driver.prepare import rope_radius
 from ...core.driver.words import in_blenders_words, named, spline_names
+from ...core.keys.contact_map import contact_forces
 from ...core.keys.key_options import Course, KeyOptions, Output
 from ...core.keys.motion import Key, Keys, Kind, Proof, Recording
 from ...core.keys.placement import Frame, Measure, Placement, Spot, spots
 from ...core.keys.tube import eased, rope_radii
-from ...core.ropes import SeparateOptions, TightenOptions
+from ...core.ropes import SeparateOptions, Tightened, TightenOptions
 from ..engine.worker import begun, in_common_space
 from . import bake, bevel, doors, pins
 from .goals import Goals
@@ -390,6 +392,22 @@ class Session:
             radii = radii / [key.size.factor for key in drawn.keys]
         return keys, frames, course, radii
 
+    def _press(self, outcome: Tightened) -> None:
+        """Note where ropes press on each other in the end; a strut belongs to the object that its first edge is on."""
+        last, mesh = self.motion.last, self.motion.start.mesh
+        assert last is not None, "it has ended"
+        curve, points = last.curve, self.motion.size.undone(self.link.to_world(mesh, self.motion.shown.points))
+        forces = contact_forces(curve, outcome.struts, min(last.radius))[cKDTree(curve.vertices).query(points)[1]]
+        struts, middles = np.array(outcome.struts).reshape(-1, 3), curve.vertices[curve.mesh.tails]
+        edges, middles = struts[:, :2].astype(np.intp), middles + 0.5 * curve.edge_vectors
+        owner = np.searchsorted(np.cumsum(self.link.counts), curve.mesh.edge_component[edges[:, 0]], side="right")
+        for k, (obj, place, vertices) in enumerate(
+            zip(self.objects, self.link.placements, self.link.slices(mesh), strict=True)
+        ):
+            own = owner == k
+            ends = [place.to_local(middles[each]) for each in edges[own].T]
+            bake.press(obj.data, forces[vertices], np.column_stack([*ends, struts[own, 2]]))
+
     def bake(self, prepared: Prepared) -> Iterator[Report | None]:
         """Write what was prepared in short pieces, so that a window can be drawn in between, and report at last.
 
@@ -408,6 +426,10 @@ class Session:
         seen = 0.0 if rope is None else float(rope[-1, 0]) / keys.keys[-1].size.factor
         for member, scale in zip(self.members, self.link.scales, strict=True):
             member.keep(keys, frames, options, course, seen / scale)
+        if isinstance(self.outcome, Tightened):
+            self._press(self.outcome)
+        if isinstance(self.outcome, Tightened):
+            self._press(self.outcome)
         self.goals.hide(objects)
         played = bake.scene_range(objects)
         shown = keys.keys[-1].size.factor * stretch(objects[0])

@@ -179,7 +179,8 @@ def _paint(objects: Sequence[bpy.types.Object], look: str) -> None:
 
 def _tubes(obj: bpy.types.Object) -> list[bpy.types.Object]:
     """The meshes that were made of a curve's tube."""
-    return [each for each in bpy.data.objects if each.type == "MESH" and each.get(TUBE_OF) == obj]
+    meshes = (each for each in bpy.data.objects if each.type == "MESH" and each.get(TUBE_OF) == obj)
+    return [each for each in meshes if each.data.polygons]  # and not of struts
 
 
 def _undressed(objects: Sequence[bpy.types.Object]) -> list[bpy.types.Material]:

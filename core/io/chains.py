@@ -92,6 +92,8 @@ def cell_of(box: npt.ArrayLike) -> FloatArray:
         raise OptionError(f"box is no array of numbers: {str(error).splitlines()[0]}") from error
     if edges.shape in ((3,), (6,)):
         x, y, z, xy, xz, yz = [*edges.tolist(), 0.0, 0.0, 0.0][:6]
+        if min(x, y, z) < 0.0:
+            raise OptionError(f"box has the lengths {x:g}, {y:g}, {z:g}; give lengths above 0, or 0 where it is open")
         return np.array([[x, 0.0, 0.0], [xy, y, 0.0], [xz, yz, z]])
     if edges.shape != (3, 3):
         raise OptionError(f"box has shape {edges.shape}; give three lengths, or six with xy, xz, yz, or three rows")

@@ -121,6 +121,8 @@ def _read_dump(path: Path) -> Iterator[Snapshot]:
                     points = points @ sides + low
                 molecules = table[:, 4].astype(np.intp) if "mol" in words else None
                 names = table[:, 3].astype(np.intp)
+                if (twice := names[1:][np.diff(names) == 0]).size:
+                    lines.fail(f"the id {twice[0]} is there twice in the table that ends here")
                 yield Snapshot(points, sides * periodic[:, None], images, step, names, molecules)
                 step = None
             elif item in ("ITEM: UNITS", "ITEM: TIME"):
@@ -139,16 +141,18 @@ def _read_xyz(path: Path) -> Iterator[Snapshot]:
             count, comment = lines.count(line), lines.next()
             said = dict(re.findall(r'(\w+)="?((?<=")[^"]*|[^\s"]+)', comment))
             first, columns = 1, said.get("Properties", "").split(":")
-            cell = np.zeros((3, 3))
+            cell, periodic = np.zeros((3, 3)), np.zeros(3, dtype=bool)
             try:
                 if "pos" in columns:
                     first = sum(map(int, columns[2 : columns.index("pos") : 3]))
                 if "Lattice" in said:
                     cell = np.array(said["Lattice"].split(), dtype=np.float64).reshape(3, 3)
-                    cell *= np.reshape([mark[0] in "Tt1" for mark in said.get("pbc", "T T T").split()], (3, 1))
+                    periodic = np.reshape([mark[0] in "Tt1" for mark in said.get("pbc", "T T T").split()], 3)
             except ValueError:
                 lines.fail("the lattice is not nine numbers, pbc are not three letters, or properties not in threes")
-            yield Snapshot(lines.table(count, range(first, first + 3)), cell)
+            if (periodic > cell.any(axis=1)).any():
+                lines.fail("the lattice has no extent along an axis that is periodic")
+            yield Snapshot(lines.table(count, range(first, first + 3)), cell * periodic[:, None])
         if stream.read(1 << 16).strip():
             lines.fail("a number of atoms is expected here")
 

@@ -1,10 +1,11 @@
-"""Where a rope presses on itself: a map of contacts, arc by arc."""
+"""Where a rope presses on itself: a map of contacts, arc by arc, and the forces at its vertices."""
 
 from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
 
+from ..base.types import FloatArray
 from ..curve import Curve
 from .figure import Figure, Stroke
 
@@ -31,3 +32,13 @@ def contact_map(curve: Curve, struts: Sequence[tuple[int, int, float]]) -> Figur
         for x, y in pairwise((place[edge], place[other], place[edge])):
             figure.strokes.append(Stroke(dot + np.array([x, y]), 5.0 * (force / largest) ** 0.5, CONTACT))
     return figure
+
+
+def contact_forces(curve: Curve, struts: Sequence[tuple[int, int, float]], radius: float) -> FloatArray:
+    """Force per length that presses on the rope at each vertex, relative to its tension over its radius; (n,)."""
+    forces = np.zeros(len(curve.edge_lengths))
+    for *edges, force in struts:
+        forces[edges] += radius * force
+    at_ends = np.stack([curve.mesh.tails, curve.mesh.heads])
+    pressing, lengths = (np.bincount(at_ends.ravel(), np.tile(x, 2), len(curve)) for x in (forces, curve.edge_lengths))
+    return np.asarray(pressing / lengths)

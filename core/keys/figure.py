@@ -33,7 +33,7 @@ class Pen:
     """
 
     size: float = option(100.0, "Size", "side of the square that each diagram fills, in points", low=0.0, high=1e4)
-    width: float = option(2.0, "Width", "width of strands, in points, where there is room", low=0.0, high=1e3)
+    width: float = option(2.0, "Width", "width of strands, in points, where there is room", low=1e-3, high=1e3)
     gap: float = option(1.5, "Gap", "space beside upper strands, in widths", low=0.0, high=100.0)
     colours: str = option("component", "Colours", "what has colours of its own", choices=COLOURS)
     line: str = option("solid", "Line", "what strands look like", choices=LINES)

@@ -10,6 +10,7 @@ from ..base import FloatArray
 from .figure import Figure
 
 _SPECIAL = re.compile(r"[#$%&_{}^~\\]")  # to TeX
+_MATHS = str.maketrans({"<": "$<$", ">": "$>$", "|": "$|$", "⊔": "$\\sqcup$"})  # what its fonts of texts lack
 _SUBSCRIPT = re.compile(r"_(\d+)")
 
 
@@ -65,7 +66,8 @@ def tikz(figure: Figure) -> bytes:
         lines.append(f"\\fill[color={colour(head.colour)}] {corners} -- cycle;")
     for label in figure.labels:
         words = [
-            f"$_{{{part}}}$" if low else _SPECIAL.sub(r"\\char`\\\g<0>{}", part) for part, low in _parts(label.text)
+            f"$_{{{part}}}$" if low else _SPECIAL.sub(r"\\char`\\\g<0>{}", part).translate(_MATHS)
+            for part, low in _parts(label.text)
         ]
         size = f"\\fontsize{{{_number(label.height)}bp}}{{{_number(label.height)}bp}}\\selectfont"
         lines.append(f"\\node at ({_number(label.place[0])},{_number(label.place[1])}) {{{size} {''.join(words)}}};")

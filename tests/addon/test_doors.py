@@ -69,6 +69,20 @@ def test_what_is_relaxed_a_second_time_is_rendered_as_well():
         assert (source.hide_render, copy_of(bpy.context.object).hide_render) == (True, False)
 
 
+def test_a_source_stays_hidden_until_the_last_carrier_is_cleared():
+    source = KINDS["poly"]()
+    bpy.ops.curve.mobius_flow_relax(**FEW)
+    first = bpy.context.object
+    bpy.ops.object.duplicate()
+    bpy.ops.curve.mobius_flow_bake_again(**FEW)
+    assert copy_of(first).visible_get()
+    for there in (True, False):
+        bpy.ops.curve.mobius_flow_clear()
+        assert source.visible_get() is not there
+        if there:
+            first.select_set(True)
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_clearing_gives_everything_back(kind):
     source = KINDS[kind]()

@@ -1,9 +1,11 @@
 """Tighten: selected knots are pulled tight, keyed and proved as a relaxation is."""
 
 import bpy
+import numpy as np
 import pytest
 from blender_scenes import add_curve
 from mobius_flow import Relaxation
+from mobius_flow.addon.curves import bake
 from mobius_flow.addon.scripting import begin
 from mobius_flow.core.collision import thickness
 from mobius_flow.core.knots import knot
@@ -23,7 +25,29 @@ def test_a_button_pulls_a_trefoil_tight_and_clear_undoes_it():
     assert last.length / thickness(last) < 32.9
     assert last.length < 0.7 * first.length
     assert thickness(last) == pytest.approx(0.9 * thickness(first), rel=1e-5)
+    check_contacts(obj, last)
     before.clear()
+    assert len(bake.contacts(obj.data)[0]) == 0
+
+
+def check_contacts(obj, curve):
+    """Tube Mesh has the forces of the struts beside it, whose lengths are two radii."""
+    obj.rotation_euler.x, obj.location.z = 1.0, 3.0
+    bpy.ops.curve.mobius_flow_tube_mesh(sides=3)
+    struts = bpy.data.objects["Knot Struts"]
+    ends = np.array([point.co for point in struts.data.vertices]).reshape(-1, 2, 3)
+    assert len(ends) > 50
+    np.testing.assert_allclose(np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1), 2 * thickness(curve), rtol=0.1)
+    assert np.linalg.norm(curve.vertices - ends[0, 0], axis=1).min() < 0.5 * curve.edge_lengths.max()
+    np.testing.assert_array_equal(struts.matrix_world, bpy.data.objects["Knot Tube"].matrix_world)
+    pressing = np.array([each.value for each in bpy.context.object.data.attributes["contact_force"].data])[::3]
+    forces = sum(each.value for each in struts.data.attributes["force"].data)
+    at_vertices = 0.5 * (curve.edge_lengths + curve.edge_lengths[curve.mesh.previous])
+    assert pressing @ at_vertices == pytest.approx(2 * forces * thickness(curve), rel=1e-3)
+    for each in (struts, bpy.context.object):
+        bpy.data.objects.remove(each)
+    obj.select_set(True)
+    obj.hide_set(False)
 
 
 def test_a_live_run_tells_the_ropelength(operator):

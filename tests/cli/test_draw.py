@@ -70,6 +70,7 @@ def test_every_paper(room, run, suffix):
         (("3_1", "out.svg", "--size", "-1"), "size is -1"),
         (("4_1..3_1", "out.svg"), "comes before"),
         (("missing.npz", "out.svg", "--frames", "1"), "frames is 1"),
+        (("missing.npz", "out.svg", "--layout"), "--layout is for curves"),
     ],
 )
 def test_bad_input_is_one_line(room, refused, words, said):

@@ -149,6 +149,7 @@ def test_a_heap_of_beads_is_refused() -> None:
         ({}, "does not say which beads are chains"),
         ({"chains": 12, "box": [1, 2]}, "give three lengths"),
         ({"chains": 12, "box": "x"}, "box"),
+        ({"chains": 12, "box": [10, -10, 10]}, "box has the lengths 10, -10, 10; give"),
         ({"chains": 12, "box": [1, np.nan, 1]}, "frame 0: the box is flat, or not finite"),
         ({"chains": 12, "box": [[1, 0, 0], [1, 0, 0], [0, 0, 1]]}, "frame 0: the box is flat"),
         ({"chains": 12, "box": [1e-30] * 3}, "more than 2³¹ boxes away"),

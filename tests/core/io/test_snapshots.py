@@ -75,6 +75,8 @@ def test_xyz_plain_and_extended(tmp_path: Path) -> None:
         ("a.lammpstrj", dump(POINTS).replace("3.5", "x"), "line 9: the table below this line is damaged: could not"),
         ("a.lammpstrj", dump(POINTS, atoms="id mol a b c"), "line 9: atoms need the columns id, x, y and z"),
         ("a.lammpstrj", dump(POINTS).replace("0 4", "4 4"), "line 8: the box has no extent along y"),
+        ("a.lammpstrj", dump(POINTS).replace("2 7", "3 7"), "line 12: the id 3 is there twice"),
+        ("a.xyz", '1\nLattice="1 0 0 0 0 0 0 0 1"\nC 1 2 3\n', "line 2: the lattice has no extent along an axis"),
         ("a.lammpstrj", dump(POINTS, box="BOX BOUNDS abc origin\n1\n2\n3"), "line 5: 'ITEM: BOX BOUNDS abc origin'"),
         ("a.lammpstrj", "1 2 3\n", "line 1: '1 2 3' is not expected here in a LAMMPS dump"),
         ("a.xyz", "three\n", "line 1: 'three' is not a number of atoms"),

@@ -128,7 +128,7 @@ def test_strands_that_cross_at_small_angles_or_run_side_by_side(axes):
 
 SHEET = figure(
     [laid_out(named_diagram(name)) for name in ("3_1", "L2a1")],
-    ["3_1#m3_1 <&>", "50 % $x^2_1"],
+    ["3_1#m3_1 ⊔ <&>", "50 % $x^2_1"],
     Pen(arrows=True, numbers=True, line="dashed", colours="along"),
 )
 
@@ -138,7 +138,7 @@ def test_svg_is_well_formed():
     paths = [each for each in tree.iter() if each.tag.endswith("path")]
     assert len(paths) == len(SHEET.strokes) + len(SHEET.heads)
     texts = ["".join(each.itertext()) for each in tree.iter() if each.tag.endswith("text")]
-    assert texts == ["1", "2", "3", "31#m31 <&>", "1", "2", "50 % $x^21"]
+    assert texts == ["1", "2", "3", "31#m31 ⊔ <&>", "1", "2", "50 % $x^21"]
 
 
 def test_pdf_has_its_objects_where_it_says():
@@ -160,6 +160,11 @@ def test_tikz_compiles(tmp_path):
     words = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "page.tex"]
     done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 0, done.stdout[-2000:]
+    assert "Missing character" not in (tmp_path / "page.log").read_text(encoding="latin-1")
+
+
+def test_signs_that_fonts_of_texts_lack_are_set_as_mathematics():
+    assert rb"m3$_{1}$ $\sqcup$ $<$\char`\&{}$>$" in PAPERS[".tex"](SHEET)
 
 
 @pytest.mark.parametrize(
@@ -167,6 +172,7 @@ def test_tikz_compiles(tmp_path):
     [
         ({"size": -1.0}, "size is -1.0"),
         ({"width": float("nan")}, "width is nan"),
+        ({"width": 1e-9}, "width is 1e-09"),
         ({"colours": "red"}, "colours is 'red'"),
         ({"line": "wavy"}, "line 'wavy' is unknown"),
         ({"arrows": 1}, "arrows is 1"),
