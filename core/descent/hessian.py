@@ -35,7 +35,7 @@ def lagrangian_hessian(point: Point) -> LinearMap:
     """v ↦ (D²E − Σ λ_k D²Φ_k) v on tangent vectors v, with λ from (41).
 
     Rows are functions Φ(P, s) of vertices and logarithms s of edge lengths.  As ds = 0 along tangent vectors,
-    D²Φ (v, ·) = ∂²_P Φ (v, ·) + ∂_s Φ · D²s (v, ·).
+    D²Φ (v, ·) = ∂_s Φ · D²s (v, ·): barycenters are linear in either.
     """
     of_energy = energy_hessian(point)
     ell, mesh, constraints = point.curve.edge_lengths, point.problem.mesh, point.tangent_space.constraints
@@ -46,16 +46,13 @@ def lagrangian_hessian(point: Point) -> LinearMap:
         # D² log ℓ (v, ·) = (Δv − 2 ⟨τ, Δv⟩ τ)/ℓ²
         dv = mesh.changes(v)
         bend = weight * (dv - 2.0 * np.einsum("ij,ij->i", tau, dv)[:, None] * tau)
-        image = of_energy(v) - mesh.scatter(-bend, bend)
-        for block, multipliers in constraints.of_blocks(point.multipliers):
-            image = image - block.curvature(multipliers, v)
-        return image
+        return of_energy(v) - mesh.scatter(-bend, bend)
 
     return apply
 
 
 def lagrangian_matrix(point: Point) -> FloatArray:
-    """The same, the second derivatives of blocks left out, as a matrix on tangent vectors; shape (n·m, n·m)."""
+    """The same as a matrix on tangent vectors; shape (n·m, n·m)."""
     ell, mesh, (n, m) = point.curve.edge_lengths, point.problem.mesh, point.vertices.shape
     tau, tensions = point.curve.edge_vectors / ell[:, None], point.tangent_space.constraints.loads(point.multipliers)[0]
     normal = np.eye(m) - 2.0 * tau[:, :, None] * tau[:, None, :]

@@ -99,9 +99,8 @@ class Constrained(Geometry):
                 return None
             last = error
             correction = space.restoration(base.problem.constraints, point.curve, residual)
-            if correction is not None:  # by how much it turns or stretches edges
-                change = np.linalg.norm(point.curve.mesh.changes(correction), axis=1)
-            if correction is None or np.max(change / point.curve.edge_lengths) > self.small:
+            change = np.linalg.norm(point.curve.mesh.changes(correction), axis=1)  # how it turns or stretches edges
+            if np.max(change / point.curve.edge_lengths) > self.small:
                 correction = -space.pseudo_inverse(residual)
             vertices = vertices + correction
         return None

@@ -1,6 +1,6 @@
 """What is minimised, in which metric, on which set: values at a point are computed once, on demand."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -15,7 +15,7 @@ from ..curve.symmetry import NO_SYMMETRY, Symmetry
 from ..energies import Objective
 from ..energies.pull import Pull
 from ..energies.rope import Rope
-from ..solve.constraints import Block, Constraints
+from ..solve.constraints import Barycenters, Constraints
 from ..solve.metrics import InnerProduct, Metric, SparseInnerProduct
 from ..solve.saddle import TangentSpace
 from .task import Units
@@ -64,7 +64,7 @@ class Problem:
         obstacles: tuple[Obstacle, ...],
         solver: PairSums,
         geometry: "Geometry",
-        blocks: Sequence[Block] | None = None,
+        barycenters: Barycenters | None = None,
         symmetry: Symmetry = NO_SYMMETRY,
         radius: FloatArray | None = None,
     ) -> "Problem":
@@ -73,7 +73,7 @@ class Problem:
         if len(symmetry):  # about whose centre Σ ℓ_I m_I is symmetric, whatever the lengths are on the way
             units = replace(units, offset=symmetry.centre)
         own = curve.with_vertices(units.from_user(curve.vertices))
-        constraints = replace(Constraints.of(own, pins, blocks), lengths=lengths / units.scale, symmetry=symmetry)
+        constraints = replace(Constraints.of(own, pins, barycenters), lengths=lengths / units.scale, symmetry=symmetry)
         objective = solver.objective(map(units.obstacle_from_user, obstacles))
         problem = cls(curve.mesh, objective, solver.metric, constraints, units, geometry, solver, obstacles)
         return problem if radius is None else problem.as_rope(radius)
@@ -81,14 +81,14 @@ class Problem:
     def on(self, curve: Curve, lengths: FloatArray | None = None, symmetry: Symmetry | None = None) -> "Point":
         """The point of a curve on another mesh, in the same problem there; all in the user's units.
 
-        Pins, blocks, the growth so far and, unless there is a new one, the symmetry stay; targets are what the curve
+        Pins, parts, the growth so far and, unless there is a new one, the symmetry stay; targets are what the curve
         has, but for lengths that are given, shape (edges,). A CurveError if the curve has too many vertices for the
         solver.
         """
         symmetry = self.constraints.symmetry.on(curve) if symmetry is None else symmetry
         pins, held = self.constraints.pins.on(curve), self.constraints
         lengths = curve.edge_lengths if lengths is None else lengths
-        given = pins, self.obstacles, self.solver, self.geometry, held.blocks, symmetry
+        given = pins, self.obstacles, self.solver, self.geometry, held.barycenters, symmetry
         problem = Problem.of(curve, lengths, *given, radius=self.radius)
         constraints = replace(problem.constraints, grown=held.grown)
         return replace(problem, constraints=constraints).at_curve(curve)

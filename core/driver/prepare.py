@@ -212,7 +212,7 @@ class Symmetrised:
 
 
 def check_foreign(problem: Problem, start: Curve, options: RelaxOptions) -> None:
-    """Try the energy, terms, metric and constraints that are objects rather than names; start is in the user's units.
+    """Try the energy, terms and metric that are objects rather than names; start is in the user's units.
 
     A wrong sign would show as steps that never go down, which says nothing about the reason.  Raises OptionError with
     the numbers that do not fit.  Functions whose difference quotients do not settle, as they are not smooth, pass.
@@ -241,12 +241,6 @@ def check_foreign(problem: Problem, start: Curve, options: RelaxOptions) -> None
             except TypeError as error:  # NumPy's, of functions for real numbers alone
                 raise OptionError(f"{name} has no second derivative by complex steps: {error}") from None
             _check_slope(f"the derivative of {name}", _derivative_of(term), change, curve, direction)
-    for block in problem.constraints.blocks:
-        if type(block).__module__.partition(".core.")[0] != __name__.partition(".core.")[0]:
-            edges = random[curve.mesh.heads] - random[curve.mesh.tails]
-            stretch = np.sum(edges * curve.edge_vectors, axis=1) / curve.edge_lengths**2
-            slope = block.derivative(curve).apply(random, stretch)
-            _check_slope(f"constraint {type(block).__name__!r}", block.residual, slope, curve, random)
     if isinstance(options.metric, Metric):
         products = random.T @ problem.inner_product(curve).apply(random)
         norms, name = np.diagonal(products), options.metric.name

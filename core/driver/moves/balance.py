@@ -123,8 +123,8 @@ class Balance(Move):
             lengths = constraints.lengths.copy()
             for part in image.mesh.slices:
                 lengths[part] *= image.edge_lengths[part].sum() / lengths[part].sum()
-            blocks = tuple(block.on(image) for block in constraints.blocks)
-            problem = replace(own, constraints=replace(constraints, lengths=lengths, blocks=blocks))
+            held = replace(constraints, lengths=lengths, barycenters=constraints.barycenters.on(image))
+            problem = replace(own, constraints=held)
             for end in (q, -q):  # the same map, with the pole coming from either side
                 if way := self._way(point, images, end, problem):
                     return way

@@ -161,10 +161,10 @@ class Hold(AwaitHand):
         if pin:
             constraints = run.problem.constraints
             pins = Pins.of(run.iterate.curve, np.union1d(constraints.pins.vertices, [pull.vertex]))
-            held = constraints.replacing(Barycenters.of(run.point.curve, pins, constraints.block(Barycenters).parts))
+            held = Barycenters.of(run.point.curve, pins, constraints.barycenters.parts)
             # targets that are not reached yet might be too short: they give way to present lengths
             lengths = constraints.lengths if on_target(run.point) else run.point.curve.edge_lengths
-            run.view(run.point.changing(constraints=replace(held, pins=pins, lengths=lengths)))
+            run.view(run.point.changing(constraints=replace(constraints, barycenters=held, pins=pins, lengths=lengths)))
 
     def undo(self) -> None:
         run = self.run

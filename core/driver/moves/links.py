@@ -41,14 +41,14 @@ class SplitLinks(Move):
         if not run.problem.geometry.prescribes or run.iterate.index % self.interval:
             return None
         parts = separate_parts(run.iterate.curve, run.problem.obstacles, self.gap, self.most)
-        if max(parts) <= max(constraints.block(Barycenters).parts):
+        if max(parts) <= max(constraints.barycenters.parts):
             return None
         held = Barycenters.of(run.point.curve, constraints.pins, parts)
-        return Change(point=run.point.changing(constraints=constraints.replacing(held)))
+        return Change(point=run.point.changing(constraints=replace(constraints, barycenters=held)))
 
     def converged(self, outcome: Outcome) -> Outcome | None:
         """Report the sum of the parts' own energies, unless pins hold them all."""
-        held = self.run.problem.constraints.block(Barycenters)
+        held = self.run.problem.constraints.barycenters
         if not max(held.parts) or not held.loose:
             return None
         alone = sum(moebius_energy(part)[0] for part in split(self.run.iterate.curve, held.parts))
@@ -145,7 +145,7 @@ def _may_shrink(run: Run) -> list[Curve]:
         return []
     return [
         part
-        for part in split(run.iterate.curve, run.problem.constraints.block(Barycenters).parts)
+        for part in split(run.iterate.curve, run.problem.constraints.barycenters.parts)
         if part.dimension == 3 and part.mesh.all_closed and is_unresolved(part)
         # less than any composite has: two trefoils (74.4 each) less a circle make 144.8, two Hopf links (47.5 each) 91
         if moebius_energy(part)[0] >= (140.0 if len(part.mesh.component_sizes) == 1 else 90.0)

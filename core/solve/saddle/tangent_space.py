@@ -63,8 +63,8 @@ class TangentSpace(ABC):
         """C^† ξ, the shortest u with C u = ξ; shapes (rows of C,) -> (n, m)."""
         return self.constraints.symmetry.mean(self.solve(None, xi)[0])
 
-    def restoration(self, constraints: Constraints, curve: Curve, residual: FloatArray) -> FloatArray | None:
-        """A short u, (n, m), with DΦ u = −Φ near by; by default the Euclidean one in O(n), None if there is none."""
+    def restoration(self, constraints: Constraints, curve: Curve, residual: FloatArray) -> FloatArray:
+        """A short u, (n, m), with DΦ u = −Φ near by; by default the Euclidean one in O(n)."""
         return euclidean_correction(constraints, curve, residual)
 
     def project(self, u: FloatArray) -> FloatArray:
@@ -76,12 +76,12 @@ class TangentSpace(ABC):
         return float(np.sqrt(max(0.0, np.sum(u * self.apply(u)))))
 
 
-def euclidean_correction(constraints: Constraints, curve: Curve, residual: FloatArray) -> FloatArray | None:
+def euclidean_correction(constraints: Constraints, curve: Curve, residual: FloatArray) -> FloatArray:
     """The solution of C u = −Φ, C = DΦ at the curve, that is shortest as lengths are concerned, in O(n); shape (n, m).
 
-    What changes no length, such as a translation, is left to the blocks of further rows.  At pins u is 0.  Φ has shape
-    (r + k,) for r lengths and k rows of blocks.  Where all edges of a closed component, or of an arc between two pins,
-    are collinear, u is too large to be of any use; it is None if a block knows no such correction.
+    Translations, which change no length, are left to barycenters.  At pins u is 0.  Φ has shape (r + k,) for r lengths
+    and k rows of barycenters.  Where all edges of a closed component, or of an arc between two pins, are collinear, u
+    is too large to be of any use.
     """
     ell, mesh, pins = curve.edge_lengths, curve.mesh, constraints.pins.vertices
     rows, free = free_edges(mesh, pins), np.where(holds(mesh, pins), 0.0, 1.0)
@@ -105,10 +105,8 @@ def euclidean_correction(constraints: Constraints, curve: Curve, residual: Float
     share = corner * (x[first] + sign * x[last]) / rest
     tension: FloatArray = x + share[mesh.edge_component] * z
     pull = tension[:, None] * tau
-    u: FloatArray | None = free[:, None] * mesh.scatter(-pull, pull)
-    for block, own in constraints.of_blocks(residual[len(rows) :]):
-        u = None if u is None else block.corrected(curve, u, stretch, own)
-    return u
+    u = free[:, None] * mesh.scatter(-pull, pull)
+    return constraints.barycenters.corrected(curve, u, stretch, residual[len(rows) :])
 
 
 class DenseTangentSpace(TangentSpace):

@@ -11,8 +11,6 @@ from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.energies import ENERGIES, KPointEnergy
 from mobius_flow.core.energies.density import Partials, PointPairs, TangentPointDensity
 from mobius_flow.core.energies.quadrature import ENDS
-from mobius_flow.core.solve.constraints import BLOCKS
-from mobius_flow.core.solve.constraints.barycenters import Barycenters
 from mobius_flow.core.solve.metrics import L2Metric, SparseInnerProduct
 from shapes import torus_trefoil
 
@@ -129,16 +127,3 @@ def test_a_metric_that_is_none(metric: Lopsided, said: str) -> None:
     start(metric=Lopsided())
     with pytest.raises(OptionError, match=said):
         start(metric=metric)
-
-
-class Backwards(Barycenters):
-    """Barycenters whose rows have the wrong sign."""
-
-    def residual(self, curve: Curve) -> FloatArray:
-        return -super().residual(curve)
-
-
-def test_a_constraint_whose_derivative_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("mobius_flow.core.solve.constraints.BLOCKS", (*BLOCKS, Backwards.of))
-    with pytest.raises(OptionError, match=r"constraint 'Backwards' has the slope .* its derivative has the wrong sign"):
-        start()

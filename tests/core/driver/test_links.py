@@ -82,15 +82,13 @@ def parted():
     rng = np.random.default_rng(4)
     curve = rings(0, 5, 10)
     curve = curve.with_vertices(curve.vertices + 0.1 * rng.normal(size=curve.vertices.shape))
-    blocks = (Barycenters.of(curve, parts=(0, 1, 1)),)
-    return curve, Constraints(1.1 * curve.edge_lengths, blocks)
+    return curve, Constraints(1.1 * curve.edge_lengths, Barycenters.of(curve, parts=(0, 1, 1)))
 
 
 def test_barycenters_of_many_parts_take_no_more_memory_than_one():
     curve = rings(*(4.0 * k for k in range(50)), size=400)
     tracemalloc.start()
-    blocks = (Barycenters.of(curve, parts=tuple(range(50))),)
-    derivative = Constraints(curve.edge_lengths, blocks).derivative(curve)
+    derivative = Constraints(curve.edge_lengths, Barycenters.of(curve, parts=tuple(range(50)))).derivative(curve)
     derivative.apply_transpose(derivative.apply(curve.vertices))
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
@@ -119,10 +117,11 @@ def test_held_parts_stay_held_on_another_mesh():
     options = RelaxOptions(vertices=60)
     curve, fine = (refine(rings(0, 5), vertices) for vertices in (30, 60))
     problem = start_problem(curve, options)
-    parted = problem.constraints.replacing(Barycenters.of(problem.at_curve(curve).curve, parts=(0, 1)))
+    held = Barycenters.of(problem.at_curve(curve).curve, parts=(0, 1))
+    parted = replace(problem.constraints, barycenters=held)
     problem = replace(problem, constraints=parted)
     point = problem.on(fine)
-    assert point.problem.constraints.block(Barycenters).parts == (0, 1)
+    assert point.problem.constraints.barycenters.parts == (0, 1)
     np.testing.assert_allclose(point.residual[len(fine) :], np.zeros(6), atol=1e-12)
 
 

@@ -43,7 +43,7 @@ def test_corrections_solve_the_linearised_constraints_by_the_shortest_way(name: 
     """u = −Lᵀ (L Lᵀ)⁻¹ Φ and translations, L the rows of the lengths."""
     curve, parts = CURVES[name]
     n, m = curve.vertices.shape
-    constraints = Constraints(curve.edge_lengths, (Barycenters.of(curve, parts=parts),))
+    constraints = Constraints(curve.edge_lengths, Barycenters.of(curve, parts=parts))
     derivative = constraints.derivative(curve)
     residual = np.random.default_rng(43).normal(size=derivative.count)
     u = euclidean_correction(constraints, curve, residual)
@@ -131,7 +131,7 @@ def test_a_polygon_within_a_line_is_given_up() -> None:
 def test_errors_of_barycenters_are_displacements() -> None:
     curve = hopf_link(40)
     for parts in (None, (0, 1)):
-        constraints = Constraints(curve.edge_lengths, (Barycenters.of(curve, parts=parts),))
+        constraints = Constraints(curve.edge_lengths, Barycenters.of(curve, parts=parts))
         shift = np.where(curve.mesh.component[:, None] == 1, [0.0, 0.0, 1e-3], 0.0)
         residual = constraints.residual(curve.with_vertices(curve.vertices + shift))
         assert constraints.error(curve.mesh, residual) == pytest.approx(5e-4 if parts is None else 1e-3, rel=1e-6)

@@ -61,7 +61,7 @@ INNER_PRODUCTS = {name: metric.at for name, metric in METRICS.items()} | {
 def case(name: str) -> tuple[Curve, Constraints]:
     curve, parts, vertices = CASES[name]
     pins = Pins.of(curve, np.array(vertices, dtype=np.intp))
-    return curve, Constraints(curve.edge_lengths, (Barycenters.of(curve, pins, parts),), pins)
+    return curve, Constraints(curve.edge_lengths, Barycenters.of(curve, pins, parts), pins)
 
 
 def inner_product(product: str, curve: Curve) -> InnerProduct:
@@ -143,7 +143,7 @@ def test_the_derivative_has_slope_two_an_adjoint_and_full_rank(name: str) -> Non
     curve, constraints = case(name)
     derivative, m, pins = constraints.derivative(curve), curve.dimension, constraints.pins.vertices
     np.testing.assert_allclose(constraints.residual(curve), 0, atol=1e-13)
-    loose = len(constraints.block(Barycenters).loose)
+    loose = len(constraints.barycenters.loose)
     assert derivative.count == len(free_edges(curve.mesh, pins)) + m * loose == len(constraints.residual(curve))
     multipliers, u = np.random.default_rng(79).normal(size=derivative.count), 0.01 * rough_field(curve, pins)
     assert derivative.apply(u) @ multipliers == pytest.approx(np.sum(u * derivative.apply_transpose(multipliers)))
@@ -168,8 +168,8 @@ def test_small_corrections_leave_pins_alone(name: str) -> None:
     np.testing.assert_allclose(derivative.apply(u), -residual, atol=1e-10 * np.abs(u).max() / curve.edge_lengths.min())
     moved = u + (np.linalg.pinv(derivative.length_rows().toarray()) @ residual[: len(derivative.edges)]).reshape(n, m)
     for block, own in ((c, moved[s]) for c, s in enumerate(curve.mesh.slices)):
-        part = constraints.block(Barycenters).parts[block]
-        still = own if part not in constraints.block(Barycenters).loose else own - own.mean(axis=0)
+        part = constraints.barycenters.parts[block]
+        still = own if part not in constraints.barycenters.loose else own - own.mean(axis=0)
         np.testing.assert_allclose(still, 0.0, atol=1e-9 * (np.abs(u).max() + 1e-300))
 
 
