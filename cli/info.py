@@ -8,10 +8,9 @@ from importlib.util import find_spec
 
 from ..core import CurveError
 from ..core.base import check_known, counted
-from ..core.curve.refine import closed_far_away
 from ..core.driver.info import Info, info, measure
 from ..core.energies import ENERGIES
-from ..core.knots.closures import closures
+from ..core.knots.closures import closed_far_away, closures
 from ..core.knots.diagrams.homfly import homfly_text
 from ..core.knots.exterior import FLOER
 from . import curves
@@ -65,7 +64,7 @@ def _energy(options: argparse.Namespace) -> int:
 def add_info(parser: argparse.ArgumentParser) -> None:
     parser.description, parser.epilog = "Identify the knot type of curves, and measure them.", _INFO_EPILOG
     curves.add_input(parser, "curves", "inputs", "+")
-    text = "close open components: their ends go straight away from the centre and are joined far out"
+    text = "close open components: their ends go straight away, in one direction, and are joined far out"
     parser.add_argument("--close", action="store_true", help=text)
     text = "also close open components in N random directions, and tell how often each type comes out"
     parser.add_argument("--closures", type=int, metavar="N", help=text)

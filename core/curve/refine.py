@@ -287,33 +287,6 @@ def evenly(points: FloatArray, closed: bool, count: int) -> FloatArray:
     return at_shares(points, closed, np.linspace(0.0, 1.0, count, endpoint=not closed))
 
 
-def closed_far_away(curve: Curve) -> Curve:
-    """Join the ends of open components: they go straight away from the centre of the vertices, then around it far out.
-
-    Closed components stay.  The knot type is the closed curve's; for arcs whose ends are deep inside, it depends on
-    where they leave, as with every closure.
-    """
-    center = curve.vertices.mean(axis=0)
-    radius = float(np.linalg.norm(curve.vertices - center, axis=1).max())
-    parts = []
-    for k, (part, closed) in enumerate(zip(curve.components, curve.mesh.closed, strict=True)):
-        if closed:
-            parts.append(part)
-            continue
-        first, last = ((p - center) / (np.linalg.norm(p - center) or 1.0) for p in (part[0], part[-1]))
-        across = first - (first @ last) * last
-        if np.linalg.norm(across) < 1e-6:  # any way round will do
-            across = np.eye(curve.dimension)[np.abs(last).argmin()]
-            across -= (across @ last) * last
-        across /= np.linalg.norm(across)
-        angle = np.arctan2(first @ across, first @ last) % (2 * np.pi)
-        # edges that turn by π/8 do not come near the curve; each component goes further out, so that none meet there
-        turns = np.linspace(0.0, angle, max(int(np.ceil(8.0 * angle / np.pi)), 1) + 1)[:, None]
-        way = np.cos(turns) * last + np.sin(turns) * across
-        parts.append(np.concatenate([part, center + (4.0 + k) * radius * way]))
-    return Curve(np.concatenate(parts), Mesh(tuple(map(len, parts))))
-
-
 def along(values: npt.NDArray[np.float32], size: int, closed: bool) -> FloatArray:
     """Values of a spline's control points, (k,), at the points drawn for it, which are spread evenly between them."""
     if closed:

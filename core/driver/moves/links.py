@@ -11,11 +11,12 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
 from ...base import COMPONENT, FloatArray, Message, MobiusFlowError
-from ...curve import STRAND_RATIO, Curve, Obstacle, arc_distance_of_pairs, near_by_octave
+from ...curve import STRAND_RATIO, Curve, Mesh, Obstacle, arc_distance_of_pairs, near_by_octave
 from ...descent import Step
 from ...energies.barrier import near_pairs
 from ...energies.hierarchy import moebius_energy
 from ...knots import Effort, knot_type
+from ...knots.closures import closed_far_away
 from ...knots.composite import Ball, is_searchable, knotted_ball
 from ...solve.constraints import Barycenters, Parts
 from ..move import Change, Move
@@ -190,15 +191,12 @@ def open_knots(curve: Curve) -> dict[int, str]:
     for k, (points, closed) in enumerate(zip(curve.components, curve.mesh.closed, strict=True)):
         if closed or curve.dimension != 3 or len(points) < 4:
             continue
-        # eight radii of the curve away, where nearly parallel lines lead
-        middle = points.mean(axis=0)
-        far = 8.0 * np.linalg.norm(points - middle, axis=1).max() * DIRECTIONS
-        names = Counter[str]()
-        for place in far:
+        arc, names = Curve(points, Mesh((len(points),), (False,))), Counter[str]()
+        for x, y, z in DIRECTIONS.tolist():
             with suppress(MobiusFlowError):  # an end points there: it is closed along itself
-                kind = knot_type(Curve(np.vstack([points, middle + place])), EFFORT)
+                kind = knot_type(closed_far_away(arc, (x, y, z)), EFFORT)
                 names[str(kind) if kind.names else "unknot"] += 1
         name, times = next(iter(names.most_common(1)), ("unknot", 0))
-        if 2 * times > len(far) and name != "unknot":
+        if 2 * times > len(DIRECTIONS) and name != "unknot":
             found[k] = name
     return found

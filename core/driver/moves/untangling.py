@@ -13,7 +13,7 @@ from ...collision import check_gap, walk
 from ...curve import Curve, arcs, holds
 from ...descent import Leg, Point, Step, attempt, on_target
 from ...io.trajectory import Iterate, StrandMoves
-from ...knots.closures import closed_towards
+from ...knots.closures import closed_far_away
 from ...knots.diagrams import QuickInvariants, quick_invariants
 from ...untangle import Legs, untangled, worth
 from ..move import Change, Move
@@ -222,7 +222,7 @@ def _closures(curve: Curve, ways: Iterable[Sequence[float]]) -> list[QuickInvari
 
     Ends are only points, over which a knot slips off: a knot that is there whichever way they go on is the arc's own.
     """
-    return [quick_invariants(closed_towards(curve, (x, y, z))) for x, y, z in ways]
+    return [quick_invariants(closed_far_away(curve, (x, y, z))) for x, y, z in ways]
 
 
 class _Lengths:

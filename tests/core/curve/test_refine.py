@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, Mesh, OptionError
 from mobius_flow.core.collision import check_embedded
-from mobius_flow.core.curve.refine import Resolution, closed_far_away, refine, subdivide
+from mobius_flow.core.curve.refine import Resolution, refine, subdivide
 from mobius_flow.core.knots import knot, knot_type
+from mobius_flow.core.knots.closures import closed_far_away
 from shapes import hopf_link, lattice_knot, regular_polygon
 
 

@@ -6,7 +6,7 @@ from mobius_flow.core import Curve, CurveError
 from mobius_flow.core.collision import check_embedded
 from mobius_flow.core.curve import Mesh
 from mobius_flow.core.knots import knot
-from mobius_flow.core.knots.closures import closed_towards, closures
+from mobius_flow.core.knots.closures import closed_far_away, closures
 
 
 def test_deep_knots_stay_and_shallow_ones_depend_on_the_direction():
@@ -29,12 +29,12 @@ def test_shares_are_those_of_the_sphere():
 def test_links_close_component_by_component():
     hopf = knot("hopf", 80)
     arc = Curve(hopf.vertices[:-1], Mesh((40, 39), (True, False)))
-    closed = closed_towards(arc, (0.0, 0.6, 0.8))
+    closed = closed_far_away(arc, (0.0, 0.6, 0.8))
     check_embedded(closed)
     assert closed.mesh.all_closed
     np.testing.assert_array_equal(closed.components[0], hopf.components[0])
     both = Curve(hopf.vertices[1:-1], Mesh((39, 39), (False, False)))
-    check_embedded(closed_towards(both, (0.0, 0.6, 0.8)))
+    check_embedded(closed_far_away(both, (0.0, 0.6, 0.8)))
 
 
 def test_closures_of_components_do_not_meet_far_out():
@@ -42,7 +42,7 @@ def test_closures_of_components_do_not_meet_far_out():
     arch = np.array([[-1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]])
     other = arch[:, [1, 0, 2]] * [1.0, 1.0, 0.5]
     both = Curve.from_components([arch, other], [False, False])
-    check_embedded(closed_towards(both, (0.0, 0.0, 1.0)))
+    check_embedded(closed_far_away(both, (0.0, 0.0, 1.0)))
 
 
 @pytest.mark.parametrize(

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError
 from mobius_flow.core.collision import thickness
-from mobius_flow.core.curve.refine import closed_far_away
 from mobius_flow.core.knots import knot, knot_type
+from mobius_flow.core.knots.closures import closed_far_away
 from mobius_flow.core.knots.ropes import ROPES
 
 TYPES = {"open-figure-eight": "4_1", "open-square": "3_1#m3_1", "open-granny": "m3_1#m3_1"}
