@@ -5,10 +5,10 @@ from types import MappingProxyType
 
 import numpy as np
 from mobius_flow.core import Curve, write_curve
-from mobius_flow.core.curve.fourier import FourierCurve
 from mobius_flow.lab.batch.folder import new_folder, write_report
 from mobius_flow.lab.batch.job import CURVE, TRAJECTORY, Job, folder_name
 from mobius_flow.lab.batch.table import Row
+from mobius_flow.lab.smooth.fourier import FourierCurve
 
 _ENDED = MappingProxyType({"status": "converged", "message": "", "options": "{}", "certified": True, "verified": True})
 

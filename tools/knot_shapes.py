@@ -18,11 +18,10 @@ from pathlib import Path
 import numpy as np
 from mobius_flow.core import Curve, Mesh, RelaxOptions, minimize
 from mobius_flow.core.base.types import FloatArray
-from mobius_flow.core.curve.fourier import FourierCurve
 from mobius_flow.core.knots import KNOTS, knot
 from mobius_flow.core.knots.diagrams import quick_invariants
 from mobius_flow.core.knots.inscribed import arc_steps, equal_steps, is_isotopic
-from mobius_flow.core.knots.shapes import FILE, QUANTUM, shapes, smooth_knot
+from mobius_flow.core.knots.shapes import FILE, QUANTUM, SmoothShape, shapes, smooth_knot
 from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
@@ -46,7 +45,7 @@ def main() -> int:
     return 0
 
 
-def store(given: Mapping[str, FourierCurve], path: Path = FILE) -> None:
+def store(given: Mapping[str, SmoothShape], path: Path = FILE) -> None:
     """Write shapes, rounded."""
     parts = [c for each in given.values() for c in each.coefficients]
     values = np.concatenate(parts)
@@ -109,7 +108,7 @@ def facing(curve: Curve) -> Curve:
     return curve.with_vertices((turned - 0.5 * (low + high)) / (0.5 * (high - low).max()))
 
 
-def shape(name: str) -> FourierCurve:
+def shape(name: str) -> SmoothShape:
     """Fit a knot's shape with the fewest modes that stay close to it and are proved to keep its type."""
     curve = facing(relaxed(name))
     for tolerance in (0.004, 0.002, 0.001):  # of the half-width, between relaxed and stored curve
@@ -126,7 +125,7 @@ def shape(name: str) -> FourierCurve:
                 if np.abs(np.fft.irfft(kept * 512, axis=0) - samples).max() < tolerance:
                     break
             coefficients.append(spectrum[: modes + 1])
-        fitted = FourierCurve(tuple(QUANTUM * np.round(c / QUANTUM) for c in coefficients))  # as it is stored
+        fitted = SmoothShape(tuple(QUANTUM * np.round(c / QUANTUM) for c in coefficients))  # as it is stored
         # the motion from the relaxed polygon to the one inscribed in the shape is free of contact
         polygon = fitted.polygon(fitted.sizes)
         if is_isotopic(curve, [arc_steps(part) for part in curve.components], polygon, equal_steps(polygon)):

@@ -14,7 +14,6 @@ from .distances import (
     points_at,
     vertex_positions,
 )
-from .fourier import FourierCurve
 from .measures import bending, bending_and_derivative, bending_radii, writhe_and_crossings
 from .mesh import Mesh, component_order, near_to_near
 from .obstacle import MAX_COORDINATE, Obstacle

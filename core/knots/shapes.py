@@ -5,7 +5,8 @@
 """
 
 import csv
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
@@ -13,12 +14,41 @@ from types import MappingProxyType
 import numpy as np
 
 from ..base.arguments import checked
-from ..curve import Curve, FourierCurve
+from ..base.types import ComplexArray
+from ..curve import Curve
 from .inscribed import equal_steps, is_isotopic, shares, too_few
 from .names import table_name
 
 FILE, TABLE = (Path(__file__).with_name(name) for name in ("shapes.npz", "least_energies.csv"))
 QUANTUM = 2.0**-13  # coefficients are stored as multiples of it, in 16 bits
+
+
+@dataclass(frozen=True, eq=False)
+class SmoothShape:
+    """A smooth knot or link.
+
+    For each component there are coefficients c, shape (modes + 1, 3): it is t ↦ Re Σₖ cₖ e^{2πikt}, 0 ≤ t < 1.
+    """
+
+    coefficients: tuple[ComplexArray, ...]
+
+    @property
+    def modes(self) -> list[int]:
+        """The highest frequency of each component."""
+        return [len(c) - 1 for c in self.coefficients]
+
+    @property
+    def sizes(self) -> list[int]:
+        """Numbers of vertices, for each component, that represent it as a polygon."""
+        return [max(64, 10 * modes) for modes in self.modes]
+
+    def polygon(self, sizes: Sequence[int]) -> Curve:
+        """Inscribe a polygon with so many vertices on each component, at equal steps of t."""
+        parts = []
+        for c, n in zip(self.coefficients, sizes, strict=True):
+            waves = np.exp(2j * np.pi * np.outer(np.arange(n) / n, np.arange(len(c))))
+            parts.append((waves @ c).real)
+        return Curve.from_components(parts)
 
 
 @checked
@@ -45,7 +75,7 @@ def smooth_knot(name: str, vertices: int | None = None) -> Curve:
 
 
 @cache
-def shapes() -> Mapping[str, FourierCurve]:
+def shapes() -> Mapping[str, SmoothShape]:
     """All stored shapes by their names in the table."""
     with np.load(FILE) as stored:
         names, counts, modes = stored["names"], stored["components"], stored["modes"]
@@ -54,7 +84,7 @@ def shapes() -> Mapping[str, FourierCurve]:
     parts = iter(rows)
     return MappingProxyType(
         {
-            str(name): FourierCurve(tuple(next(parts) for _ in range(count)))
+            str(name): SmoothShape(tuple(next(parts) for _ in range(count)))
             for name, count in zip(names, counts, strict=True)
         }
     )

@@ -20,7 +20,7 @@ from ...cli.terminal import one_line
 from ...core import CurveError, MobiusFlowError, read_curve
 from ...core.base.errors import counted
 from ...core.collision.gap import thickness
-from ...core.curve import FourierCurve, writhe_and_crossings
+from ...core.curve import writhe_and_crossings
 from ...core.curve.symmetry import standing, symmetries
 from ...core.knots import KNOTS, knot_type
 from ...core.knots.names import table_name
@@ -28,6 +28,7 @@ from ...core.proof import stages, verify
 from ..batch.folder import results
 from ..batch.job import CURVE, TIGHT, TRAJECTORY, folder_name
 from ..batch.table import Row
+from ..smooth.fourier import FourierCurve
 from ..smooth.least import lower_bound
 from ..smooth.minima import balanced, distinct
 from ..smooth.rest import RestingCurve, index_of, is_at_rest

@@ -18,8 +18,10 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from ...core.base.types import FloatArray, IntArray
-from ...core.curve import Curve, FourierCurve
+from ...core.curve import Curve
 from ...core.energies.moebius import moebius_by_length
+from ...core.knots.shapes import SmoothShape
+from .fourier import FourierCurve
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +53,7 @@ class Basis:
         component, weights = np.repeat(np.arange(len(counts)), counts), 1.0 / np.repeat(counts, counts)
         return cls(tuple(modes), np.concatenate(scales), block_diag(*values), block_diag(*slopes), component, weights)
 
-    def unknowns(self, curve: FourierCurve) -> FloatArray:
+    def unknowns(self, curve: SmoothShape) -> FloatArray:
         """The unknowns of a curve with these modes; shape (N, 3)."""
         parts = [part for c in curve.coefficients for part in (c.real, c.imag[1:])]
         return np.asarray(np.concatenate(parts) / self.scale[:, None])

@@ -8,7 +8,8 @@ from itertools import combinations_with_replacement
 import numpy as np
 
 from ...core.base import ComplexArray, CurveError, FloatArray, checked
-from ...core.curve import Curve, FourierCurve
+from ...core.curve import Curve
+from ...core.knots.shapes import SmoothShape
 from .covering import CurveArcs, PolygonEdges, cover, points, scaled
 
 _REFUSAL = "the curve meets itself or has a cusp, or nearly so: its type cannot be proved"
@@ -25,7 +26,7 @@ def inscribed(coefficients: Sequence[ComplexArray]) -> Curve:
     arcs = _apart(coefficients)
     for factor in 0.6 * 1.2 ** np.arange(30):  # times the vertices that curvature alone asks for
         sizes = [math.ceil(max(3.0, factor / one.height)) for one in arcs]
-        polygon = FourierCurve(tuple(coefficients)).polygon(sizes)
+        polygon = SmoothShape(tuple(coefficients)).polygon(sizes)
         polygon = polygon.with_vertices(np.ldexp(polygon.vertices, -power))
         if _follows(arcs, coefficients, polygon, power):
             return polygon

@@ -8,9 +8,10 @@ import numpy as np
 from scipy.linalg import eigh
 
 from ...core.base import FloatArray, checked
-from ...core.curve import FourierCurve, bending
+from ...core.curve import bending
 from ...core.driver.moves.balance import MoebiusImages, least_bending
 from .energy import Basis, SampledPairs
+from .fourier import FourierCurve
 from .rest import RestingCurve, energy_of
 
 SAME_ENERGY = 1e-6  # of the energy: ends at one curve differ by up to 4e-8

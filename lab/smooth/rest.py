@@ -10,10 +10,12 @@ import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve, eigh, orth
 
 from ...core.base import ENERGY_ROUNDING, CurveError, FloatArray, checked
-from ...core.curve import Curve, FourierCurve, check_closed
+from ...core.curve import Curve, check_closed
 from ...core.energies import MoebiusEnergy
 from ...core.knots.inscribed import equal_steps, is_isotopic
+from ...core.knots.shapes import SmoothShape
 from .energy import Basis, SampledPairs, parameters, sliding
+from .fourier import FourierCurve
 
 MODES = (24, 36, 54, 80, 120, 180, 270)  # of a component of average length
 ACCURACY = 1e-6  # of the energy: how much half as many modes again may change it
@@ -72,7 +74,7 @@ def at_rest(polygon: Curve) -> RestingCurve | None:
 
 
 @checked
-def energy_of(curve: FourierCurve, per_mode: int = 2 * _PER_MODE) -> float:
+def energy_of(curve: SmoothShape, per_mode: int = 2 * _PER_MODE) -> float:
     """The Möbius energy, by a trapezoidal rule with ``per_mode`` points for each mode."""
     basis = Basis.of(curve.modes, per_mode)
     return SampledPairs.of(basis, basis.unknowns(curve)).energy

@@ -11,11 +11,10 @@ from families import family
 from knot_type import knot_invariants
 from mobius_flow.core import Curve, knots
 from mobius_flow.core.collision import is_free
-from mobius_flow.core.curve.fourier import FourierCurve
 from mobius_flow.core.curve.refine import subdivide
 from mobius_flow.core.knots import ALIASES, KNOTS, UnknownKnotError, smooth_knot
 from mobius_flow.core.knots.inscribed import equal_steps, is_isotopic
-from mobius_flow.core.knots.shapes import FILE, QUANTUM, least_energies, shapes
+from mobius_flow.core.knots.shapes import FILE, QUANTUM, SmoothShape, least_energies, shapes
 from mobius_flow.lab.smooth.rest import energy_of
 
 
@@ -103,7 +102,7 @@ def test_what_is_stored_is_read_again(tmp_path: Path, monkeypatch: pytest.Monkey
     rng = np.random.default_rng(3)
     parts = [QUANTUM * rng.integers(-9000, 9000, size=(n, 3, 2)) for n in (4, 2, 7)]
     first, second, third = (part[..., 0] + 1j * part[..., 1] for part in parts)
-    tool.store({"a": FourierCurve((first, second)), "b": FourierCurve((third,))}, tmp_path / "shapes.npz")
+    tool.store({"a": SmoothShape((first, second)), "b": SmoothShape((third,))}, tmp_path / "shapes.npz")
     monkeypatch.setattr("mobius_flow.core.knots.shapes.FILE", tmp_path / "shapes.npz")
     found = shapes.__wrapped__()
     assert list(found) == ["a", "b"]

@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 from mobius_flow.core import MobiusFlowError, read_curve, write_curve
 from mobius_flow.core.collision.gap import thickness
-from mobius_flow.core.curve.fourier import FourierCurve
 from mobius_flow.core.curve.measures import writhe_and_crossings
 from mobius_flow.core.knots import knot
 from mobius_flow.core.proof import verify
 from mobius_flow.lab.batch import campaign, sandbox, single
 from mobius_flow.lab.batch.job import Job
 from mobius_flow.lab.batch.table import Row
+from mobius_flow.lab.smooth.fourier import FourierCurve
 from shapes import regular_polygon, torus_trefoil
 
 TINY = ("--vertices", 40, "--max-iterations", 3)

@@ -9,9 +9,9 @@ from fourier_curves import CIRCLE, CUSPS, DOUBLE_POINT, DUAL_CIRCLE, ELLIPSE, fi
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from mobius_flow.core import CurveError, OptionError, RelaxOptions, minimize
-from mobius_flow.core.curve.fourier import FourierCurve
 from mobius_flow.core.knots.shapes import shapes, smooth_knot
 from mobius_flow.lab.smooth.energy import Basis, SampledPairs
+from mobius_flow.lab.smooth.fourier import FourierCurve
 from mobius_flow.lab.smooth.least import lower_bound
 from smooth_curves import SMOOTH_CURVES
 from torus_energies import torus_knot_energy

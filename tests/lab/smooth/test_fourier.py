@@ -3,9 +3,9 @@
 import json
 
 import numpy as np
-from mobius_flow.core.curve.fourier import FourierCurve
 from mobius_flow.core.knots.inscribed import arc_steps
 from mobius_flow.lab.smooth.energy import Basis, parameters
+from mobius_flow.lab.smooth.fourier import FourierCurve
 from shapes import hopf_link, torus_trefoil
 
 

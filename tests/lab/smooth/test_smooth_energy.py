@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from mobius_flow.core.curve.fourier import FourierCurve
 from mobius_flow.core.energies import MoebiusEnergy
 from mobius_flow.lab.smooth.energy import Basis, SampledPairs, parameters, sliding
+from mobius_flow.lab.smooth.fourier import FourierCurve
 from mobius_flow.lab.smooth.rest import energy_of
 from shapes import torus_trefoil
 from taylor import taylor_slope

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from mobius_flow.core import RelaxOptions, minimize
-from mobius_flow.core.curve.fourier import FourierCurve
 from mobius_flow.core.curve.measures import bending
 from mobius_flow.core.driver.moves.balance import moebius_image
 from mobius_flow.core.knots import knot
+from mobius_flow.lab.smooth.fourier import FourierCurve
 from mobius_flow.lab.smooth.minima import balanced, distinct
 from mobius_flow.lab.smooth.rest import RestingCurve, at_rest, energy_of, index_of
 

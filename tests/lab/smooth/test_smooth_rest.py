@@ -6,11 +6,11 @@ from functools import cache
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError, RelaxOptions, minimize
-from mobius_flow.core.curve.fourier import FourierCurve
 from mobius_flow.core.knots import knot, knot_type, overhand, torus_knot
 from mobius_flow.core.knots.shapes import least_energies
 from mobius_flow.lab.extrapolation import extrapolated
 from mobius_flow.lab.smooth import rest
+from mobius_flow.lab.smooth.fourier import FourierCurve
 from mobius_flow.lab.smooth.rest import RestingCurve, at_rest, energy_of, index_of, is_at_rest
 from shapes import torus_trefoil
 from torus_energies import torus_knot_minimum, torus_knot_tube

@@ -1,4 +1,4 @@
-"""Closed curves in space as Fourier series."""
+"""Closed curves in space as Fourier series: fitted to polygons, stored, and with more or fewer modes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,32 +6,25 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from ..base.types import ComplexArray, FloatArray
-from .curve import Curve
+from ...core.base.types import ComplexArray, FloatArray
+from ...core.curve import Curve
+from ...core.knots.shapes import SmoothShape
 
 
 @dataclass(frozen=True, eq=False)
-class FourierCurve:
-    """A smooth knot or link.
-
-    For each component there are coefficients c, shape (modes + 1, 3): it is t ↦ Re Σₖ cₖ e^{2πikt}, 0 ≤ t < 1.
-    """
-
-    coefficients: tuple[ComplexArray, ...]
+class FourierCurve(SmoothShape):
+    """A smooth knot or link, from and to other forms."""
 
     @classmethod
     def of(cls, curve: Curve, at: Sequence[FloatArray], modes: Sequence[int]) -> "FourierCurve":
         """The first modes of the components' splines, which pass closed polygons' vertices at parameters ``at``."""
         parts = []
         for points, places, most in zip(curve.components, at, modes, strict=True):
+            closed = np.concatenate([points, points[:1]])
+            spline = CubicSpline(np.append(places, 1.0), closed, bc_type="periodic")
             count = 16 * max(most, len(points) // 2)
-            parts.append(_spectrum(periodic(places, points)(np.arange(count) / count), most))
+            parts.append(_spectrum(spline(np.arange(count) / count), most))
         return cls(tuple(parts))
-
-    @property
-    def modes(self) -> list[int]:
-        """The highest frequency of each component."""
-        return [len(c) - 1 for c in self.coefficients]
 
     @property
     def as_lists(self) -> list[list[list[list[float]]]]:
@@ -42,19 +35,6 @@ class FourierCurve:
     def of_lists(cls, lists: Sequence[Sequence[Sequence[Sequence[float]]]]) -> "FourierCurve":
         """The curve that `as_lists` describes."""
         return cls(tuple(np.array(part) @ [1.0, 1j] for part in lists))
-
-    @property
-    def sizes(self) -> list[int]:
-        """Numbers of vertices, for each component, that represent it as a polygon."""
-        return [max(64, 10 * modes) for modes in self.modes]
-
-    def polygon(self, sizes: Sequence[int]) -> Curve:
-        """Inscribe a polygon with so many vertices on each component, at equal steps of t."""
-        parts = []
-        for c, n in zip(self.coefficients, sizes, strict=True):
-            waves = np.exp(2j * np.pi * np.outer(np.arange(n) / n, np.arange(len(c))))
-            parts.append((waves @ c).real)
-        return Curve.from_components(parts)
 
     def with_modes(self, modes: Sequence[int]) -> "FourierCurve":
         """The same with higher frequencies, whose coefficients are 0, or without the highest ones."""
@@ -76,8 +56,3 @@ def _spectrum(samples: FloatArray, modes: int) -> ComplexArray:
     spectrum = np.fft.rfft(samples, axis=0)[: modes + 1] * (2.0 / len(samples))
     spectrum[0] /= 2.0
     return np.asarray(spectrum)
-
-
-def periodic(at: FloatArray, values: FloatArray) -> CubicSpline:
-    """The spline of period 1 with values at parameters that increase from 0 to below 1."""
-    return CubicSpline(np.append(at, 1.0), np.concatenate([values, values[:1]]), bc_type="periodic")
