@@ -6,8 +6,8 @@ import sys
 from ..core import CurveError, Iterate, RelaxOptions, Status, Task, read_obstacle
 from ..core.base.errors import counted
 from ..core.driver import finish
+from ..core.driver.morph import DifferentError, NoMotionError, compare, morphing, moving
 from ..core.io import FORMATS, CurveFile
-from ..core.morph import DifferentError, NoMotionError, compare, morphing, moving
 from . import curves
 from . import options as relax_options
 from .places import check_holds, check_output, check_places

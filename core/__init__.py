@@ -8,11 +8,11 @@ from .curve import Curve, Mesh, Obstacle
 from .descent import METHODS, Task
 from .driver import Hand, Outcome, RelaxOptions, Result, Status, WithOutcome, minimize, relax
 from .driver.audit import Audit, audit
+from .driver.morph import NoMotionError, morph
 from .energies import MoebiusEnergy, Objective
 from .io import knot_list, read_curve, write_curve
 from .io.obstacles import read_obstacle
 from .io.trajectory import Iterate, Trajectory
-from .morph import NoMotionError, morph
 from .ropes import separate, tighten
 
 __all__ = [

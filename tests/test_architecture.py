@@ -22,7 +22,7 @@ FLOORS = (
     {"core.descent", "core.io", "core.untangle"},
     {"core.keys"},
     {"core.driver"},
-    {"core.morph", "core.ropes"},
+    {"core.ropes"},
     {"core"},
     {"addon"},
     {"cli"},

@@ -12,14 +12,16 @@ from itertools import pairwise, product
 from ..base import BLAS, OF_GOAL, CurveError, Message, MobiusFlowError, OptionError, TimeLimit, checked, counted
 from ..curve import Alignment, Curve
 from ..descent.task import Task
-from ..driver import Outcome, Relaxation, RelaxOptions, Result, Status, WithOutcome, finish, relax
-from ..driver.relax import within
 from ..io.trajectory import Iterate
 from ..knots import knot_type
 from ..knots.diagrams import Diagram, alexander, jones, signature, unsigned_linking
 from ..knots.exterior import floer
 from ..knots.knot_type import bracket_key
 from .meeting import Radius, change_mesh, images, meeting, min_radius, rename, run_back
+from .options import RelaxOptions
+from .outcome import Outcome, Result, Status
+from .relax import WithOutcome, finish, relax, within
+from .run import Relaxation
 
 NAMES = ("the first curve", "the second curve")
 

@@ -21,9 +21,9 @@ from mobius_flow.core import (
     morph,
     relax,
 )
+from mobius_flow.core.driver.meeting import meeting, prove_legs, run_back
+from mobius_flow.core.driver.morph import morphing
 from mobius_flow.core.knots import knot, overhand, smooth_knot
-from mobius_flow.core.morph import morphing
-from mobius_flow.core.morph.meeting import meeting, prove_legs, run_back
 from tasks import check
 
 QUICK = RelaxOptions(tolerance=1e-3, mesh="fixed", untangle="never")
@@ -123,7 +123,7 @@ def test_shapes_that_do_not_meet_are_told_with_their_energies():
 
 @pytest.mark.parametrize("misses", family([4, 1, 2, 3]))  # the most misses come after all fewer ones
 def test_where_shapes_do_not_meet_both_go_on_with_equal_meshes_and_then_hop(misses, monkeypatch):
-    module, asked = sys.modules["mobius_flow.core.morph.morph"], []
+    module, asked = sys.modules["mobius_flow.core.driver.morph"], []
 
     def met(*shapes):
         asked.append([len(found[0].end.curve) for found in shapes[:2]])
@@ -173,7 +173,7 @@ def test_where_no_way_is_found_for_the_rope_it_gives_way(share, said, monkeypatc
         asked.append(radius)
         return None if radius > 1.01 * share * max(asked) else prove_legs(rope, *given)
 
-    monkeypatch.setattr(sys.modules["mobius_flow.core.morph.meeting"], "prove_legs", refused)
+    monkeypatch.setattr(sys.modules["mobius_flow.core.driver.meeting"], "prove_legs", refused)
     result, _, _ = proved(Curve(SQUARE), LARGER, COARSE)
     assert said in result.message
     assert (result.last.radius is None) is (share == 0.0)

@@ -15,8 +15,8 @@ import numpy as np
 from ..base.types import FloatArray
 from ..collision import is_rope, survives_rounding, walk
 from ..curve import Alignment, Curve, Freedom, Mesh, Obstacle, alignments, bending, refined_alike
-from ..driver.moves.balance import MoebiusImages, least_bending, turn
 from ..io.trajectory import Iterate
+from .moves.balance import MoebiusImages, least_bending, turn
 
 Radius = tuple[float, ...] | None  # of each component as a rope; None if the curve is none
 

@@ -1,3 +1,0 @@
-"""Morphs: proved motions from one curve to another."""
-
-from .morph import DifferentError, NoMotionError, compare, morph, morphing, moving
