@@ -24,7 +24,6 @@ _PROPERTIES = {bool: BoolProperty, int: IntProperty, float: FloatProperty, str: 
 _AUTOMATIC = "AUTO"  # stands for None among names, as 0 does among numbers
 _OUTPUTS = {
     Output.SHAPE_KEYS: "Absolute shape keys and one F-curve on their evaluation time: small, fast, renders anywhere",
-    Output.FCURVES: "An F-curve for every coordinate of every point, for exporters that know no shape keys",
     Output.RESULT: "Move the points to the relaxed curves, without animation",
 }
 _MEASURES = {

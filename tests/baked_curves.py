@@ -7,7 +7,6 @@ import numpy as np
 from blender_scenes import add_curve, add_hopf_link, fcurves, stored
 
 SHORT = {"max_iterations": 5, "fit_bevel": False}
-KEYED = ["SHAPE_KEYS", "FCURVES"]
 
 
 def again(**options: object) -> None:
@@ -36,8 +35,7 @@ def blocks() -> list[list[str]]:
 
 
 def last_frame(obj: bpy.types.Object) -> float:
-    owner = obj.data.shape_keys or obj.data
-    return max(curve.keyframe_points[-1].co[0] for curve in fcurves(owner))
+    return float(curve_of(obj).keyframe_points[-1].co[0])
 
 
 def curve_of(obj: bpy.types.Object) -> bpy.types.FCurve:

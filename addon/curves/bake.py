@@ -33,36 +33,38 @@ def remember(
     ``before``: None if the keys follow others, the last of which is the first of them; ``rope``: see `rope`.
     """
     if before is not None:
-        if not animated(data):
+        if data.shape_keys is None:
             return
         slots = len(before.materials), len(data.materials)  # those between are goals'
         data[_RECORD] = {"original": before, "holds": [timing.hold_start, 0], "loop": timing.loop, "slots": slots}
-    elif count := key_count(data):
-        course = Course(*np.array(data[_RECORD]["course"]).reshape(-1, count)).then(course)
-        frames, shown = np.append(data[_RECORD]["frames"], frames[1:]), [*_noted(data), *shown[1:]]
+        data[_RECORD]["rope"] = rope
+    else:
+        course = _course(data).then(course)
+        frames, shown = np.append(data[_RECORD]["frames"], frames[1:]), [*_sizes(data), *shown[1:]]
+        data[_RECORD]["rope"] = min(data[_RECORD].get("rope", 0.0), rope)
     record = data[_RECORD]
-    record["rope"] = rope if before is not None else min(record.get("rope", 0.0), rope)
-    if before is not None or count:  # versions that did not note them wrote shape keys as they are
-        record["frames"], record["course"] = frames.tolist(), np.concatenate(course).tolist()
-    elif data.shape_keys:
-        shown = [Similarity()] * (len(data.shape_keys.key_blocks) - len(shown) + 1) + [*shown[1:]]
+    record["frames"], record["course"] = frames.tolist(), np.concatenate(course).tolist()
     record["sizes"] = [float(value) for size in shown for value in (size.factor, *size.shift)]
     update(data, timing)
 
 
 def key_count(data: bpy.types.Curve) -> int:
-    """The number of keys that curve data was given here; 0 in files of versions that did not note it."""
+    """The number of keys that curve data was given here."""
     return len(data[_RECORD].get("frames", ())) if _RECORD in data else 0
+
+
+def _course(data: bpy.types.Curve) -> Course:
+    return Course(*np.array(data[_RECORD]["course"]).reshape(len(Course._fields), -1))
 
 
 def sizes(data: bpy.types.Curve) -> list[Similarity]:
     """How a curve is shown, in its object's coordinates, at each of its keys; one as it is where that is at all."""
-    blocks = data.shape_keys.key_blocks if data.shape_keys else ()
-    noted = _noted(data) if _RECORD in data else []
-    return noted if len(noted) == len(blocks) > 0 else [Similarity()] * max(len(blocks), 1)
+    count = len(data.shape_keys.key_blocks) if data.shape_keys else 0
+    noted = _sizes(data) if _RECORD in data else []
+    return noted if len(noted) == count > 0 else [Similarity()] * max(count, 1)
 
 
-def _noted(data: bpy.types.Curve) -> list[Similarity]:
+def _sizes(data: bpy.types.Curve) -> list[Similarity]:
     noted = np.array(data[_RECORD].get("sizes", ())).reshape(-1, 4)
     return [Similarity(float(factor), shift) for factor, shift in zip(noted[:, 0], noted[:, 1:], strict=True)]
 
@@ -79,12 +81,11 @@ def retime(data: bpy.types.Curve, timing: Timing) -> bool:
     Raises OptionError if they would not all be passed.
     """
     record = data[_RECORD]
-    old = np.array(record.get("frames", ()))
-    there = keyframes.frames_of(data)
-    if not len(old) or len(there) < len(old) or np.abs(there[: len(old)] - old).max() > 0.02:
+    old, there = np.array(record["frames"]), keyframes.frames_of(data)
+    if len(there) < len(old) or np.abs(there[: len(old)] - old).max() > 0.02:
         return False
     timing.check_keys(len(old))
-    new = timing.frames(Course(*np.array(record["course"]).reshape(-1, len(old))))
+    new = timing.frames(_course(data))
     for curve in [curve for owner in animated(data) for curve in fcurves_of(owner)]:
         keyframes.retime(curve, old, new, timing)
     record["frames"], record["loop"] = new.tolist(), timing.loop
@@ -131,19 +132,11 @@ def contacts(data: bpy.types.Curve) -> tuple[FloatArray, FloatArray]:
     return np.array(known.get("forces", ())), np.column_stack([ends, struts[:, 6]])
 
 
-def scale_bevel(data: bpy.types.Curve, factor: float) -> None:
-    """Scale the bevel and the rope; if it is the baked bevel, it still counts as baked."""
-    record, ours = data[_RECORD], data.bevel_depth == data[_RECORD]["bevel_depth"]
-    record["rope"] = factor * record.get("rope", 0.0)
-    data.bevel_depth *= factor
-    if ours:
-        record["bevel_depth"] = data.bevel_depth
-
-
 def is_baked(data: bpy.types.Curve) -> bool:
-    """Whether a curve has the keys that were written here, and no other keys or points."""
-    record = data.get(_RECORD)
-    return record is not None and record["original"] is not None and list(record["fingerprint"]) == _fingerprint(data)
+    """Whether a curve has the shape keys that were written here, and no other keys or points."""
+    record = data.get(_RECORD, {}) if data.shape_keys else {}
+    whole = record.get("original") is not None and "course" in record  # early versions noted less
+    return whole and list(record["fingerprint"]) == _fingerprint(data)
 
 
 def was_baked(data: bpy.types.Curve) -> bool:
@@ -175,7 +168,7 @@ def continued(objects: Sequence[bpy.types.Object], options: KeyOptions) -> KeyOp
         raise MobiusFlowError(Message("'{name}' ends where it begins; switch Loop off first", name=looping))
     # the first of the new frames is the last of the old ones
     timing = replace(options.timing, start_frame=float(played[1]), length=options.timing.length + 1, loop=False)
-    return replace(options, output=Output.SHAPE_KEYS if not options.animated else options.output, timing=timing)
+    return replace(options, output=Output.SHAPE_KEYS, timing=timing)
 
 
 def clear(obj: bpy.types.Object) -> None:
@@ -211,16 +204,13 @@ def forget(obj: bpy.types.Object) -> None:
 
 
 def _fingerprint(data: bpy.types.Curve) -> list[int]:
-    """Counts of keys, F-curves and points, and which splines are open; -1 for animation that is not ours."""
+    """Counts of shape keys, F-curves and points, and which splines are open; -1 for animation that is not ours."""
     keys, moved, splines = data.shape_keys, data.animation_data, shape(data)
-    owner = keys or data
-    blocks = 0 if keys is None else -1 if keys.use_relative else len(keys.key_blocks)
-    driven = owner.animation_data.drivers if owner.animation_data is not None else ()
-    moving = "splines", "eval_time", "key_blocks"  # beginnings of paths of drivers that move points
-    other = any(driver.data_path.startswith(moving) for driver in driven)
-    if keys is not None and moved is not None:
-        other = other or bool(moved.nla_tracks or (moved.action and count_own(data) is None))
-    own = None if other else count_own(owner)
+    driven = keys.animation_data.drivers if keys.animation_data is not None else ()
+    other = any(driver.data_path.startswith(("eval_time", "key_blocks")) for driver in driven)  # which move points
+    other = other or bool(moved and (moved.nla_tracks or (moved.action and count_own(data) is None)))
+    own = None if other else count_own(keys)
+    blocks = -1 if keys.use_relative else len(keys.key_blocks)
     open_ones = [k for k, (*_, closed) in enumerate(splines) if not closed]
     return [blocks, -1 if own is None else own, sum(count for count, *_ in splines), *open_ones]
 

@@ -1,4 +1,4 @@
-"""Motion written into curve data: absolute shape keys with one F-curve, or an F-curve for every coordinate.
+"""Motion written into curve data: absolute shape keys, and one F-curve that runs through them.
 
 Data that already has such keys gets the new ones after the last.
 """
@@ -10,66 +10,51 @@ from typing import Any
 import bpy
 import numpy as np
 
-from ...core import MobiusFlowError
-from ...core.base import FloatArray, Message
-from ...core.keys.key_options import Output, Timing
+from ...core.base import FloatArray
+from ...core.keys.key_options import Timing
 from ...core.keys.motion import Keys
 from ...core.keys.placement import Frame
 from .fcurves import LINEAR, collections, draw_line, new_action
-from .splines import key_points, read, write_points
+from .splines import key_points, read
 from .splines import radii as spline_radii
 
 ONCE = Timing()
 _MARK = "mobius_flow"  # custom property of the actions made here
 
 
-def writing(
-    obj: bpy.types.Object,
-    keys: Keys,
-    frames: FloatArray,
-    output: Output,
-    radii: FloatArray | None = None,
-    timing: Timing = ONCE,
-) -> Iterator[None]:
-    """Write keys in short pieces to a curve object with as many points; the curve itself keeps the last key.
+def write(
+    obj: bpy.types.Object, keys: Keys, frames: FloatArray, radii: FloatArray | None = None, timing: Timing = ONCE
+) -> None:
+    """Write keys to a curve object with as many points, which are those of the last key.
 
     It has no animation, or keys of an earlier call, the last of which is the first of the new ones. ``frames``: scene
     frame of each key, ascending; ``radii``: factors of the points' own radii at each key, (keys,), or for each point,
     (keys, n); ``timing``: whether keys are passed again on the way back.
     """
     data = obj.data
-    write_points(data, keys.keys[-1].points)
-    if output is Output.SHAPE_KEYS:  # absolute ones, and an F-curve that runs through them
-        own = np.concatenate([spline_radii(spline) for spline in data.splines])
-        there = len(data.shape_keys.key_blocks) if data.shape_keys else 0
-        skipped = min(there, 1)  # the first of the additional keys is there already
-        for k, key in enumerate(keys.keys[skipped:], skipped):
-            place = there - skipped + k
-            if place:
-                # An absolute key is put where the evaluation time is. In steps of 1 it is read back exactly; Blender's
-                # own steps of 10 add up rounding errors, and the animation would miss its keys.
-                data.shape_keys.use_relative = False
-                data.shape_keys.eval_time = place
-            block = obj.shape_key_add(name=f"{key.kind.value} {key.time:g}", from_mix=False)
-            block.interpolation = "KEY_LINEAR"
-            block.data.foreach_set("co", key.points.ravel())
-            if radii is not None:
-                block.data.foreach_set("radius", (own * radii[k]).astype(np.float32))
-            yield
-        data.shape_keys.use_relative = False
-        data.shape_keys.eval_time = 0
-        values = there - skipped + np.arange(float(len(frames)))
-        add_keys(data.shape_keys, f"{obj.name} Relaxation", "eval_time", 0, *there_and_back(frames, values, timing))
-    elif output is Output.FCURVES:  # one for every coordinate of every point
-        places = np.stack([key.points for key in keys.keys], axis=-1).astype(np.float64)
-        for path, point in zip(point_paths(data), range(len(places)), strict=True):
-            for axis in range(3):
-                add_keys(data, f"{obj.name} Relaxation", path, axis, frames, places[point, axis])
-            yield
+    own = np.concatenate([spline_radii(spline) for spline in data.splines])
+    there = len(data.shape_keys.key_blocks) if data.shape_keys else 0
+    skipped = min(there, 1)  # the first of the additional keys is there already
+    for k, key in enumerate(keys.keys[skipped:], skipped):
+        place = there - skipped + k
+        if place:
+            # An absolute key is put where the evaluation time is. In steps of 1 it is read back exactly; Blender's
+            # own steps of 10 add up rounding errors, and the animation would miss its keys.
+            data.shape_keys.use_relative = False
+            data.shape_keys.eval_time = place
+        block = obj.shape_key_add(name=f"{key.kind.value} {key.time:g}", from_mix=False)
+        block.interpolation = "KEY_LINEAR"
+        block.data.foreach_set("co", key.points.ravel())
+        if radii is not None:
+            block.data.foreach_set("radius", (own * radii[k]).astype(np.float32))
+    data.shape_keys.use_relative = False
+    data.shape_keys.eval_time = 0
+    values = there - skipped + np.arange(float(len(frames)))
+    add_keys(data.shape_keys, f"{obj.name} Relaxation", "eval_time", 0, *there_and_back(frames, values, timing))
 
 
 def erase(obj: bpy.types.Object) -> None:
-    """Remove all that `writing` has written except the positions of the points.
+    """Remove all that `write` has written except the positions of the points.
 
     Actions and slots that nothing else uses are deleted.
     """
@@ -108,12 +93,7 @@ def blocks(data: bpy.types.Curve) -> dict[str, bpy.types.ID]:
 
 def keyed_points(data: bpy.types.Curve) -> list[Frame]:
     """Points of a curve at each of its keys, (n, 3)."""
-    if data.shape_keys:
-        return [key_points(block) for block in data.shape_keys.key_blocks]
-    columns = [read(curve.keyframe_points, "co", 2)[:, 1] for curve in coordinate_curves(data)]
-    if len({len(column) for column in columns}) > 1:
-        raise MobiusFlowError(Message("Keys of '{name}' were edited; undo that, or Bake Again", name=data.name))
-    return list(np.stack(columns, axis=1).reshape(len(columns[0]), -1, 3))
+    return [key_points(block) for block in data.shape_keys.key_blocks]
 
 
 def there_and_back(frames: FloatArray, values: FloatArray, timing: Timing) -> tuple[FloatArray, FloatArray]:
@@ -124,7 +104,7 @@ def there_and_back(frames: FloatArray, values: FloatArray, timing: Timing) -> tu
 
 def frames_of(data: bpy.types.Curve) -> FloatArray:
     """The frames at which the keys of curve data are passed, on the way back too, (k,)."""
-    curve = next(fcurves_of(data.shape_keys or data))
+    curve = next(fcurves_of(data.shape_keys))
     return read(curve.keyframe_points, "co", 2)[:, 0].astype(np.float64)
 
 
@@ -134,18 +114,6 @@ def retime(curve: bpy.types.FCurve, old: FloatArray, new: FloatArray, timing: Ti
     there = places[: np.searchsorted(places[:, 0], old[-1] + 1e-3)]  # frames nearer than that are one
     frames, values = there_and_back(np.interp(there[:, 0], old, new), there[:, 1], timing)
     draw_line(curve, frames, values, int(read(curve.keyframe_points, "interpolation", dtype=np.int32)[0]))
-
-
-def point_paths(data: bpy.types.Curve) -> Iterator[str]:
-    """Where the coordinates of each point are found."""
-    for s, spline in enumerate(data.splines):
-        yield from (f"splines[{s}].points[{p}].co" for p in range(len(spline.points)))
-
-
-def coordinate_curves(data: bpy.types.Curve) -> list[bpy.types.FCurve]:
-    """The F-curves of all coordinates of a curve that is keyed by them, point by point."""
-    found = {(curve.data_path, curve.array_index): curve for curve in fcurves_of(data)}
-    return [found[path, axis] for path in point_paths(data) for axis in range(3)]
 
 
 def all_fcurves() -> Iterator[bpy.types.FCurve]:

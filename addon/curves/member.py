@@ -5,14 +5,12 @@ The stand-in refers to it in a custom property, so that it is neither purged nor
 save. When such a file is opened, or undo returns to such a step, `show_originals` shows it again.
 """
 
-from collections.abc import Iterator
-
 import bpy
 import numpy as np
 
 from ...core import Curve
 from ...core.base import FloatArray, Message
-from ...core.keys.key_options import Course, KeyOptions, Output
+from ...core.keys.key_options import Course, KeyOptions
 from ...core.keys.motion import Keys
 from ...core.keys.placement import Frame
 from . import bake, bevel, doors, keyframes, sizes
@@ -29,10 +27,10 @@ class Member:
 
     def __init__(self, obj: bpy.types.Object, continues: bool = False) -> None:
         self.name = obj.name
-        self.keyed = False  # whether keys are being written, or are written
         self._continues, self._baked = continues, bake.is_baked(obj.data)
         self._object, self._original = Reference(obj), Reference(obj.data)
         self._stand_in: Reference | None = None
+        self._keyed = False  # whether keys were being written when something failed
         mark = obj.data.get(SOURCE)
         self.drawn = mark["object"].name if mark and mark["object"] else obj.name  # what somebody has drawn
         self._source = Reference(mark["object"]) if mark and mark["object"] and not self._baked else None
@@ -55,7 +53,6 @@ class Member:
         self._splines = Splines.of(obj.data)
         carries = SOURCE in obj.data and not self._continues
         self._strands = doors.strands_of(obj) if carries else None
-        self.shape_keys = original.shape_keys is not None
         self._plain, self._fitted = bevel.can_fit(obj.data), bevel.is_fitted(obj.data)
 
     def _show(self, data: bpy.types.Curve) -> None:
@@ -116,21 +113,21 @@ class Member:
             counts = [count for count, *_ in shape(data)] != [count for count, *_ in self._shape]
             changed = "Points of '{name}' were added or removed" if counts else "Splines of '{name}' were changed"
             return Message(changed, name=self.name)
-        if data.shape_keys is not None and not self.keyed:  # they fit the points it has now
+        if data.shape_keys is not None:  # they fit the points it has now
             return Message("'{name}' was given shape keys", name=self.name)
         deformer = what_deforms(obj)
         return Message("{deformer} moves its points", deformer=deformer) if deformer else None
 
-    def writing(self, keys: Keys, frames: FloatArray, options: KeyOptions, radii: FloatArray | None) -> Iterator[None]:
-        """Write keys in short pieces; ``radii``: of the tube in the object's units, (keys,)."""
+    def write(self, keys: Keys, frames: FloatArray, options: KeyOptions, radii: FloatArray | None) -> None:
+        """Write keys; ``radii``: of the tube in the object's units, (keys,)."""
         obj = self.object
         assert obj is not None, "whoever writes looks for it first"
-        self.keyed = True
+        self._keyed = True
         if self._baked and self._continues:  # show a copy of the original with its keys, to be added to
             preview = self.data
             _name_original(preview)
             data = self._original.get().copy()
-            own_action(data.shape_keys or data)
+            own_action(data.shape_keys)
             self._show(data)
             keyframes.remove(preview)
         relative = np.array([1.0 / key.size.factor for key in keys.keys])  # what is drawn is not to be scaled
@@ -140,10 +137,9 @@ class Member:
             for block in obj.data.shape_keys.key_blocks if obj.data.shape_keys else ():  # radii are relative to it
                 block.data.foreach_set("radius", read(block.data, "radius") * np.float32(depth / obj.data.bevel_depth))
             relative = radii / radii[-1]
-        output = options.output
-        if keyframes.animated(obj.data):  # more of the keys that are there already
-            output = Output.SHAPE_KEYS if obj.data.shape_keys else Output.FCURVES
-        yield from keyframes.writing(obj, keys, frames, output, relative, options.timing)
+        write_points(obj.data, keys.keys[-1].points)
+        if options.animated:
+            keyframes.write(obj, keys, frames, relative, options.timing)
 
     def keep(self, keys: Keys, frames: FloatArray, options: KeyOptions, course: Course, rope: float) -> None:
         """Make what was written final: the stand-in takes over the names and the users of the original.
@@ -176,7 +172,7 @@ class Member:
         Return whether the object is as it was.
         """
         obj, data, original = self.object, self.data, self._original.get()
-        if data is not None and (shape(data) != self._shape or (data.shape_keys is not None and not self.keyed)):
+        if data is not None and (shape(data) != self._shape or (data.shape_keys is not None and not self._keyed)):
             del data[_MARK]
             original.use_fake_user = True  # whoever changed it may want that too
             if self._fitted:
@@ -193,7 +189,7 @@ class Member:
 
     def hide(self) -> None:
         """Show the original for a moment, because the file is being saved or something is undone."""
-        if not self.keyed and not self.lost():
+        if not self.lost():
             _name_original(self.data)
             obj, data = self._object.get(), self.data
             obj.data = self._original.get()

@@ -15,7 +15,7 @@ from ...core.curve import Mesh, along, interpolated
 from ...core.driver.words import in_blenders_words, named, spline_names
 from ...core.keys.placement import Frame, Link, Measure, Similarity, Turn, orthonormal
 from . import bake, pins
-from .keyframes import coordinate_curves, fcurves_of, keyed_points
+from .keyframes import fcurves_of, keyed_points
 from .moving import what_moves
 from .sizes import placement, resume, suspend
 from .splines import depth, key_points, mesh_of, radii, read, stretch, write_points
@@ -30,8 +30,7 @@ class Recorded:
     frames: FloatArray  # scene frames of the shapes, (keys,); a curve that was not baked here has one shape at frame 0
     points: FloatArray  # vertices, (keys, n, 3)
     radii: FloatArray  # their radii relative to the bevel depth, (keys, n)
-    # vertices at shape keys, which may be at other frames, or at the last frame where there are none; (shapes, n, 3)
-    keys: FloatArray
+    keys: FloatArray  # vertices at shape keys, which may be at other frames; (shapes, n, 3)
 
     @classmethod
     def of(cls, obj: bpy.types.Object) -> "Recorded":
@@ -41,18 +40,16 @@ class Recorded:
             mesh, points = (each := Strands.of(obj)).mesh, np.concatenate(each.components)[None]
             return cls(mesh, np.zeros(1), points, _radii(data, mesh)[None], points)
         mesh = mesh_of(data)
-        if data.shape_keys:
-            (curve,) = fcurves_of(data.shape_keys)
-            frames = _frames([curve])
-            keyed = list(zip(bake.sizes(data), data.shape_keys.key_blocks, strict=True))
-            points = np.stack([size.of(key_points(block).astype(np.float64)) for size, block in keyed])
-            thickness = np.stack([size.factor * read(block.data, "radius").astype(np.float64) for size, block in keyed])
-            place = np.array([curve.evaluate(frame) for frame in frames]).clip(0, len(points) - 1)
-            return cls(mesh, frames, interpolated(points, place), interpolated(thickness, place), points)
-        frames = _frames(curves := coordinate_curves(data))
-        values = np.array([[curve.evaluate(frame) for curve in curves] for frame in frames])
-        points = values.reshape(len(frames), -1, 3)
-        return cls(mesh, frames, points, np.tile(_radii(data, mesh), (len(frames), 1)), points[-1:])
+        (curve,) = fcurves_of(data.shape_keys)
+        # frames between which it runs straight: those of its keys, or all where somebody has bent it
+        frames = np.unique(read(curve.keyframe_points, "co", 2)[:, 0]).astype(np.float64)
+        if any(point.interpolation != "LINEAR" for point in curve.keyframe_points):
+            frames = np.union1d(frames[[0, -1]], np.arange(np.ceil(frames[0]), np.floor(frames[-1]) + 1))
+        keyed = list(zip(bake.sizes(data), data.shape_keys.key_blocks, strict=True))
+        points = np.stack([size.of(key_points(block).astype(np.float64)) for size, block in keyed])
+        thickness = np.stack([size.factor * read(block.data, "radius").astype(np.float64) for size, block in keyed])
+        place = np.array([curve.evaluate(frame) for frame in frames]).clip(0, len(points) - 1)
+        return cls(mesh, frames, interpolated(points, place), interpolated(thickness, place), points)
 
     def at(self, places: FloatArray) -> "Recorded":
         """The shapes at places among the keys, see `interpolated`."""
@@ -75,15 +72,6 @@ def in_world(objects: Sequence[bpy.types.Object], recorded: Sequence[Recorded], 
         said = in_blenders_words(str(error), spline_names([obj.name for obj in objects], counts))
         raise CurveError(said) from error
     return link
-
-
-def _frames(curves: Sequence[bpy.types.FCurve]) -> FloatArray:
-    """Frames between which F-curves run straight: those of their keys, or all where somebody has bent them."""
-    keys = [point for curve in curves for point in curve.keyframe_points]
-    frames = np.unique([point.co[0] for point in keys])
-    if any(point.interpolation != "LINEAR" for point in keys):
-        frames = np.union1d(frames[[0, -1]], np.arange(np.ceil(frames[0]), np.floor(frames[-1]) + 1))
-    return np.asarray(frames, dtype=np.float64)
 
 
 def _radii(data: bpy.types.Curve, mesh: Mesh) -> FloatArray:
@@ -152,7 +140,7 @@ class BakedKeys:
         """The link at each key as it is shown, in the world."""
         pieces = list(zip(self.link.placements, self.link.slices(self.mesh), self.sizes, strict=True))
         stored = enumerate(frame.astype(np.float64) for frame in self.frames)
-        shown = ([place.to_world(sizes[k % len(sizes)].of(p[s])) for place, s, sizes in pieces] for k, p in stored)
+        shown = ([place.to_world(sizes[k].of(p[s])) for place, s, sizes in pieces] for k, p in stored)
         return [Curve(np.concatenate(world), self.mesh) for world in shown]
 
     @property
@@ -165,41 +153,18 @@ class BakedKeys:
 def keep_size(objects: Sequence[bpy.types.Object], measure: Measure, reference: int) -> BakedKeys:
     """Show all keys scaled about their barycenters to the size of one of them, and the tubes drawn around them alike.
 
-    `core.keys.placement` says why that makes no contact; keyed points that are scaled have to be proved again. Raises
-    MobiusFlowError if the objects were not baked together, or points of them are pinned.
+    Points stay as stored, and `core.keys.placement` says why that makes no contact. Raises MobiusFlowError if the
+    objects were not baked together, or points of them are pinned.
     """
     if any(pins.count(obj.data) for obj in objects):
         raise MobiusFlowError(Message("Scaling would move pinned points; unpin them first"))
     keys = BakedKeys(objects)
     curves = keys.curves
     changes = [Similarity.giving(measure, measure.of(curves[reference]), curve) for curve in curves]
-    for obj, place, s, shown in zip(
-        objects, keys.link.placements, keys.link.slices(keys.mesh), keys.sizes, strict=True
-    ):
+    for obj, place, shown in zip(objects, keys.link.placements, keys.sizes, strict=True):
         local = [place.similarity(change) for change in changes]
-        if obj.data.shape_keys:
-            bake.resize(obj, [more.after(size) for more, size in zip(local, shown, strict=True)])
-        else:  # only points are keyed
-            frames = [more.of(frame[s].astype(np.float64)) for more, frame in zip(local, keys.frames, strict=True)]
-            _move_keys(obj.data, [frame.astype(np.float32) for frame in frames])
-            bake.scale_bevel(obj.data, changes[-1].factor)
-            bake.update(obj.data)
-    return BakedKeys(objects)
-
-
-def _move_keys(data: bpy.types.Curve, frames: Sequence[Frame]) -> None:
-    """Move the points at each key, (n, 3), but not the key in time; the curve itself gets the last key's points."""
-    if data.shape_keys:
-        for block, frame in zip(data.shape_keys.key_blocks, frames, strict=True):
-            block.data.foreach_set("co", frame.ravel())
-    else:
-        values = np.stack(frames).reshape(len(frames), -1)
-        for curve, column in zip(coordinate_curves(data), values.T, strict=True):
-            places = read(curve.keyframe_points, "co", 2)  # frames and values
-            places[:, 1] = column
-            curve.keyframe_points.foreach_set("co", places.ravel())
-            curve.update()
-    write_points(data, frames[-1])
+        bake.resize(obj, [more.after(size) for more, size in zip(local, shown, strict=True)])
+    return keys
 
 
 def lay_flat(objects: Sequence[bpy.types.Object]) -> int:
@@ -244,13 +209,14 @@ def _turn(objects: Sequence[bpy.types.Object], wanted: FloatArray) -> int:
         # the keyed points themselves are turned, and the places where they are shown in other sizes
         (obj,), keys = objects, BakedKeys(objects)
         (place,), (shown,) = keys.link.placements, keys.sizes
-        local = [place.to_local(turn.of(place.to_world(frame.astype(np.float64)))) for frame in keys.frames]
-        _move_keys(obj.data, [points.astype(np.float32) for points in local])
-        if obj.data.shape_keys:
-            world = [place.in_world(size) for size in shown]
-            about = [turn.of(each.shift / (1.0 - each.factor)) if each.factor != 1.0 else each.shift for each in world]
-            turned = [Similarity.about(c, each.factor) for c, each in zip(about, world, strict=True)]
-            bake.resize(obj, [place.similarity(each) for each in turned])
+        for block, frame in zip(obj.data.shape_keys.key_blocks, keys.frames, strict=True):
+            points = place.to_local(turn.of(place.to_world(frame.astype(np.float64)))).astype(np.float32)
+            block.data.foreach_set("co", points.ravel())
+        write_points(obj.data, points)
+        world = [place.in_world(size) for size in shown]
+        about = [turn.of(each.shift / (1.0 - each.factor)) if each.factor != 1.0 else each.shift for each in world]
+        turned = [Similarity.about(c, each.factor) for c, each in zip(about, world, strict=True)]
+        bake.resize(obj, [place.similarity(each) for each in turned])
         bake.update(obj.data)
         return BakedKeys(objects).unproved
     for obj in objects:

@@ -34,13 +34,6 @@ def _after_undo(run: LiveRun, count: int) -> None:
         run.take_back()
 
 
-def _before_saving(run: LiveRun) -> None:
-    """A file holds curves as they were or with all their keys, and nothing in between."""
-    run.complete()
-    if not run.state.over:
-        run.session.hide()
-
-
 def _handler(handle: Callable[[LiveRun], None], otherwise: Callable[[], None] = lambda: None) -> Any:
     def handler(*_: Any) -> None:
         run = registry.current()
@@ -60,7 +53,7 @@ HANDLERS = {
     "undo_post": _handler(lambda run: _after_undo(run, 1), show_originals),
     "redo_post": _handler(lambda run: _after_undo(run, -1), show_originals),
     "frame_change_post": _handler(lambda run: run.look()),
-    "save_pre": _handler(_before_saving),
+    "save_pre": _handler(lambda run: run.session.hide()),  # a file holds curves as they were
     "save_post": _handler(lambda run: run.session.resume()),
     "save_post_fail": _handler(lambda run: run.session.resume()),
 }

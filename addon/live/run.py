@@ -4,10 +4,9 @@ The objects show what has been reached; their originals come back unless the run
 """
 
 import contextlib
-import math
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from enum import Enum
 from functools import cached_property
 from typing import Any
@@ -67,40 +66,33 @@ class _AbandonedError(Exception):
     """The keys are no longer wanted."""
 
 
-class KeyWriter:
-    """Chooses, proves and writes the keys of a session without ever blocking for long; the proof runs in a thread."""
-
-    slice = 0.02  # seconds of writing at a time
+class KeyChoice:
+    """Chooses and proves the keys of a session in a thread, while Blender stays usable."""
 
     def __init__(self, session: Session, proof: Proof) -> None:
-        self._session, self._proof = session, proof
         self.abandoned = False  # which ends the thread at its next proof
         self._prepared: Prepared | None = None
-        self.pieces: Iterator[Report | None] | None = None  # once some keys have been written, though perhaps not all
-        self._thread = threading.Thread(target=self._prepare, name="Möbius Flow keys", daemon=True)
+
+        def prove(*motion: Any) -> bool:
+            if self.abandoned:
+                raise _AbandonedError
+            return proof(*motion)
+
+        def prepare() -> None:
+            with contextlib.suppress(_AbandonedError):
+                self._prepared = session.prepare(prove)
+
+        self._thread = threading.Thread(target=prepare, name="Möbius Flow keys", daemon=True)
         self._thread.start()
 
-    def advance(self, seconds: float | None = None) -> Report | None:
-        """Write for a time, by default a moment, if the keys are ready, and report once all are written."""
+    @property
+    def made(self) -> Prepared | None:
+        """What is to be written, once that is known; raises MobiusFlowError if it never will be."""
         if self._thread.is_alive():
             return None
         if self._prepared is None:
             raise MobiusFlowError("The keys could not be prepared; all is as it was")
-        self.pieces = self.pieces or self._session.bake(self._prepared)
-        until = time.perf_counter() + (self.slice if seconds is None else seconds)
-        for report in self.pieces:
-            if report is not None or time.perf_counter() >= until:
-                return report
-        return None
-
-    def _prepare(self) -> None:
-        def prove(*motion: Any) -> bool:
-            if self.abandoned:
-                raise _AbandonedError
-            return self._proof(*motion)
-
-        with contextlib.suppress(_AbandonedError):
-            self._prepared = self._session.prepare(prove)
+        return self._prepared
 
 
 class RunState(Enum):
@@ -142,7 +134,7 @@ class LiveRun:
         except BaseException:
             self.session.discard()
             raise
-        self._keys: KeyWriter | None = None
+        self._keys: KeyChoice | None = None
 
     @property
     def objects(self) -> list[bpy.types.Object]:
@@ -239,7 +231,7 @@ class LiveRun:
             self.session.outcome = Outcome(Status.INTERRUPTED, (reason,))
         self.state = RunState.FINISHING
         self._worker.close()
-        self._keys = KeyWriter(self.session, self._worker.is_rope)
+        self._keys = KeyChoice(self.session, self._worker.is_rope)
 
     def cancel(self, message: str = Message("Cancelled; all is as it was")) -> None:
         if not self.state.over:
@@ -258,18 +250,10 @@ class LiveRun:
         self.keep()
 
     def tick(self) -> None:
-        """Do a little: take in some iterates, or write some keys. Nothing moves while Blender renders."""
-        if not (self.state.over or self.waits):
-            self.look()
-            self._advance()
-
-    def complete(self) -> None:
-        """Finish writing keys once begun: a saved file must not hold half of them."""
-        if self._keys is not None and self._keys.pieces is not None and self.state is RunState.FINISHING:
-            self._advance(math.inf)
-
-    def _advance(self, seconds: float | None = None) -> None:
-        """Take in some iterates, or write keys for so long, by default a moment; end the run if that fails."""
+        """Take in some iterates, or write the keys; end the run if that fails. Nothing moves while Blender renders."""
+        if self.state.over or self.waits:
+            return
+        self.look()
         try:
             if reason := self.session.lost():
                 # an object was changed from outside; the others are put back
@@ -280,11 +264,10 @@ class LiveRun:
                     self.message = Message("{ended}, {more}", ended=ended, more=more)
             elif self.state is RunState.RUNNING:
                 self._take()
-            elif self._keys is not None:
-                self.report = self._keys.advance(seconds)
-                if self.report is not None and self.last is not None:
-                    self.trouble = self.session.spots(self.report.outcome.place, self.last.curve)
-                    self._close(RunState.DONE, self.report.sentence, discard=False)
+            elif self._keys is not None and self.last is not None and (made := self._keys.made) is not None:
+                self.report = self.session.bake(made)
+                self.trouble = self.session.spots(self.report.outcome.place, self.last.curve)
+                self._close(RunState.DONE, self.report.sentence, discard=False)
         except MobiusFlowError as error:
             self._fail(str(error), error.place if isinstance(error, CurveError) else None)
         except MemoryError:

@@ -16,7 +16,6 @@ import numpy as np
 from ...core import Curve, Iterate, Mesh, MobiusFlowError
 from ...core.base import FloatArray, OutputError, atomic_write, termination_raises
 from ...core.collision import is_rope
-from ...core.keys.key_options import Output
 from ...core.keys.motion import Key, Keys, Playing, check_dimension, recorded
 from ...core.keys.placement import Measure, Origin
 from ...core.keys.tube import rope_radii, rounded, tube_radii
@@ -132,7 +131,7 @@ def compose(
 
     from ..curves import keyframes
     from ..curves.assets import bundled
-    from ..curves.splines import new_curve_data
+    from ..curves.splines import new_curve_data, write_points
     from . import stage
     from .materials import colour_components
 
@@ -146,9 +145,9 @@ def compose(
     obj = stage.add(scene.collection, "Curve", data)
     obj.select_set(True)
     bpy.context.view_layer.objects.active = obj
-    output = Output.SHAPE_KEYS if len(points) > 1 else Output.RESULT
-    for _ in keyframes.writing(obj, keys, frames, output, radii / radii.max(), playing.timing):
-        pass
+    write_points(data, points[-1])
+    if len(points) > 1:
+        keyframes.write(obj, keys, frames, radii / radii.max(), playing.timing)
     along = None
     if len(mesh.component_sizes) == 1:
         # the share of the length at each vertex, and at its end; the mean of all keys

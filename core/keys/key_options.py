@@ -194,7 +194,6 @@ class Output(Enum):
     """What is left on the object in the end; the values are labels."""
 
     SHAPE_KEYS = "Shape Keys"
-    FCURVES = "F-Curves"
     RESULT = "Result Only"
 
 
@@ -213,10 +212,6 @@ class KeyOptions:
     # what is kept as at the first key; where it is not the length, which the flow keeps, keys are scaled; None: the
     # radius, or the length where something is pinned or avoided, or grows
     keep_size: Measure | None = None
-
-    def __post_init__(self) -> None:
-        if self.timing.loop and self.output is Output.FCURVES:
-            raise OptionError(Message("Loop goes with keyframes='SHAPE_KEYS' only; give that, or switch Loop off"))
 
     @property
     def animated(self) -> bool:

@@ -172,7 +172,6 @@ VERBS = {
         bpy.ops.curve.mobius_flow_relax(**FEW) and bpy.ops.curve.mobius_flow_bake_again(max_iterations=2)
     ),
     "still": lambda _: bpy.ops.curve.mobius_flow_relax(keyframes="RESULT", **FEW),
-    "F-curves": lambda _: bpy.ops.curve.mobius_flow_relax(keyframes="FCURVES", **FEW),
 }
 
 

@@ -51,7 +51,7 @@ def test_settings_come_from_the_scene_and_the_operators_own_win():
     assert bpy.context.scene.mobius_flow.method == "flow-l2"
 
 
-@pytest.mark.parametrize("keyframes", ["SHAPE_KEYS", "FCURVES", "RESULT"])
+@pytest.mark.parametrize("keyframes", ["SHAPE_KEYS", "RESULT"])
 def test_any_transform(keyframes):
     obj = add_trefoil()
     obj.parent = parent = bpy.data.objects.new("Parent", None)

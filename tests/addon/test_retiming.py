@@ -20,10 +20,10 @@ def settings():
     return bpy.context.scene.mobius_flow
 
 
-@pytest.fixture(params=["SHAPE_KEYS", "FCURVES"])
-def film(request):
+@pytest.fixture
+def film():
     add_trefoil()
-    return relax(keyframes=request.param, **EVEN)
+    return relax(**EVEN)
 
 
 def ends(obj):

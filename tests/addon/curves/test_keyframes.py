@@ -1,4 +1,4 @@
-"""Blender shows at every key frame exactly what was keyed, whichever way it is keyed; other animation is left alone."""
+"""Blender shows at every key frame exactly what was keyed; other animation is left alone."""
 
 from itertools import pairwise
 
@@ -8,13 +8,12 @@ import pytest
 from blender_scenes import add_curve, add_hopf_link, add_trefoil, evaluated, fcurves, relax, stored
 from hard_curves import hard_unknot
 from mobius_flow.addon.curves import bake
-from mobius_flow.addon.curves.keyframes import writing
+from mobius_flow.addon.curves.keyframes import write
 from mobius_flow.addon.curves.moving import what_moves
 from mobius_flow.addon.curves.splines import key_points
 from mobius_flow.core import Curve, RelaxOptions
 from mobius_flow.core import relax as iterates_of
 from mobius_flow.core.collision import is_free
-from mobius_flow.core.keys.key_options import Output
 from mobius_flow.core.keys.motion import Key, Keys
 
 
@@ -26,17 +25,16 @@ def library_frames(obj, **options):
     return [iterate.curve.vertices.astype(np.float32) for iterate in iterates]
 
 
-@pytest.mark.parametrize("keyframes", ["SHAPE_KEYS", "FCURVES"])
 @pytest.mark.parametrize("add", [add_trefoil, add_hopf_link])
-def test_iterates_are_exact_at_their_frames_and_straight_in_between(keyframes, add):
+def test_iterates_are_exact_at_their_frames_and_straight_in_between(add):
     obj = add()
     expected = library_frames(obj, max_iterations=8)
-    relax(keyframes=keyframes, max_iterations=8, start_frame=11, frames_per_iterate=2.5)
+    relax(max_iterations=8, start_frame=11, frames_per_iterate=2.5)
     for k, points in enumerate(expected):
         np.testing.assert_array_equal(evaluated(obj, 11 + 2.5 * k), points)
     for frame, points in ((-5, expected[0]), (100, expected[-1])):
         np.testing.assert_array_equal(evaluated(obj, frame), points)
-    frames = [point.co[0] for point in fcurves(obj.data.shape_keys or obj.data)[0].keyframe_points]
+    frames = [point.co[0] for point in fcurves(obj.data.shape_keys)[0].keyframe_points]
     for start, end in pairwise(frames[2:5]):
         ends = evaluated(obj, start).astype(np.float64), evaluated(obj, end).astype(np.float64)
         for share in (0.25, 0.75):
@@ -44,12 +42,11 @@ def test_iterates_are_exact_at_their_frames_and_straight_in_between(keyframes, a
             np.testing.assert_allclose(evaluated(obj, start + (end - start) * share), straight, atol=2e-6)
 
 
-@pytest.mark.parametrize("output", [Output.SHAPE_KEYS, Output.FCURVES])
-def test_many_keys_stay_exact(output):
+def test_many_keys_stay_exact():
     obj = add_trefoil(12)
     points = np.random.default_rng(1).standard_normal((600, 12, 3)).astype(np.float32)
     keys = Keys(tuple(Key(0.37 * k, p) for k, p in enumerate(points)), 0)
-    list(writing(obj, keys, np.arange(-20.0, 580.0), output))
+    write(obj, keys, np.arange(-20.0, 580.0))
     for k in (0, 1, 2, 299, 500, 598, 599):
         np.testing.assert_allclose(evaluated(obj, k - 20), points[k], atol=2e-4 if 0 < k < 599 else 0)
 
@@ -60,7 +57,7 @@ def relax_trefoil(**options):
 
 
 def test_shape_keys_are_absolute_with_one_fcurve():
-    obj = relax_trefoil(keyframes="SHAPE_KEYS")
+    obj = relax_trefoil()
     keys = obj.data.shape_keys
     assert not keys.use_relative
     assert obj.data.animation_data is None
@@ -76,15 +73,7 @@ def test_shape_keys_are_absolute_with_one_fcurve():
     np.testing.assert_array_equal(stored(obj.data), last)
 
 
-def test_fcurves_are_one_for_each_coordinate_and_the_result_has_none():
-    obj = relax_trefoil(keyframes="FCURVES")
-    assert obj.data.shape_keys is None
-    curves = fcurves(obj.data)
-    wanted = {(f"splines[0].points[{p}].co", axis) for p in range(len(stored(obj.data))) for axis in range(3)}
-    assert len(curves) == len(wanted)
-    assert {(curve.data_path, curve.array_index) for curve in curves} == wanted
-    assert all(curve.keyframe_points[0].interpolation == "LINEAR" for curve in curves)
-    bpy.data.batch_remove([obj, *bpy.data.actions])
+def test_the_result_alone_has_no_keys():
     obj = relax_trefoil(keyframes="RESULT")
     assert obj.data.shape_keys is obj.data.animation_data is None
     assert not bpy.data.actions
@@ -123,11 +112,11 @@ def test_keys_near_the_last_frame_are_all_there():
 # -- since 4.4 Blender puts keys of an object into the action of its curve ---------------------------------------------
 
 
-@pytest.fixture(params=["SHAPE_KEYS", "FCURVES"])
-def turning(request):
+@pytest.fixture
+def turning():
     """A baked curve on an object that turns."""
     add_trefoil()
-    obj = relax(max_iterations=3, keyframes=request.param)
+    obj = relax(max_iterations=3)
     for frame, turn in ((1, 0.0), (100, 2.0)):
         obj.rotation_euler.z = turn
         obj.keyframe_insert("rotation_euler", frame=frame)

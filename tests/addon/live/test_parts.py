@@ -8,7 +8,7 @@ import pytest
 pytest.importorskip("bpy")
 
 from mobius_flow.addon.live import registry
-from mobius_flow.addon.live.run import KeyWriter, Refresh
+from mobius_flow.addon.live.run import KeyChoice, Refresh
 from mobius_flow.core import MobiusFlowError
 from processes import PATIENCE
 
@@ -45,27 +45,10 @@ def test_what_is_shown_at_once():
 
 
 def started(session, proof):
-    """A writer whose thread is at its end."""
-    writer = KeyWriter(session, proof)
-    writer._thread.join(PATIENCE)
-    return writer
-
-
-def test_keys_are_written_a_piece_at_a_time(monkeypatch):
-    monkeypatch.setattr(KeyWriter, "slice", 0.0)
-    written = []
-
-    def bake(prepared):
-        for k in range(3):
-            yield written.append((prepared, k))
-        yield f"{prepared} is done"
-
-    session = SimpleNamespace(prepare=lambda proof: proof("mesh", "start", "end"), bake=bake)
-    writer = started(session, lambda *motion: " ".join(motion))
-    for k in range(3):
-        assert writer.advance() is None
-        assert written == [("mesh start end", piece) for piece in range(k + 1)]
-    assert writer.advance() == "mesh start end is done"
+    """A choice whose thread is at its end."""
+    choice = KeyChoice(session, proof)
+    choice._thread.join(PATIENCE)
+    return choice
 
 
 def test_an_abandoned_thread_ends_at_its_next_proof():
@@ -76,20 +59,20 @@ def test_an_abandoned_thread_ends_at_its_next_proof():
         proof(None, None, None)
         went_on.append(True)
 
-    writer = KeyWriter(SimpleNamespace(prepare=prepare), lambda *_: proved.append(True))
-    writer.abandoned = True
+    choice = KeyChoice(SimpleNamespace(prepare=prepare), lambda *_: proved.append(True))
+    choice.abandoned = True
     gate.set()
-    writer._thread.join(PATIENCE)
-    assert not writer._thread.is_alive()
+    choice._thread.join(PATIENCE)
+    assert not choice._thread.is_alive()
     assert not proved
     assert not went_on
 
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
 def test_a_thread_that_fails_is_an_error():
-    writer = started(SimpleNamespace(prepare=lambda proof: proof(0)), lambda number: 1 // number)
+    choice = started(SimpleNamespace(prepare=lambda proof: proof(0)), lambda number: 1 // number)
     with pytest.raises(MobiusFlowError, match="could not be prepared"):
-        writer.advance()
+        _ = choice.made
 
 
 @pytest.fixture

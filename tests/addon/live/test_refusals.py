@@ -89,7 +89,6 @@ CASES = [
     (lambda: relaxed().data.shape_keys.driver_add("eval_time"), OTHER_KEYS),
     (another_action, OTHER_KEYS),
     (lambda: relaxed().data.splines[0].points.add(1), OTHER_KEYS),
-    (lambda: relaxed(keyframes="FCURVES").data.keyframe_insert("bevel_depth", frame=1), OTHER_KEYS),
     (animated, "is animated"),
     (lambda: add_trefoil().data.driver_add("splines[0].points[3].co", 1), "are driven"),
     (lambda: add_curve([TREFOIL, [[9, 9, 9]]], kind="BEZIER"), "Spline 2 of 'Knot' has fewer than 2 points"),

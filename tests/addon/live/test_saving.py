@@ -1,18 +1,12 @@
-"""A file that is saved during a run has the curves as they were, or with all their keys: never with half of them."""
+"""A file that is saved during a run has the curves as they were."""
 
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_trefoil, evaluated, relax, stored
-from mobius_flow.addon.curves import bake, keyframes
-from mobius_flow.addon.live.run import KeyWriter, RunState
-from modal_operator import everything, keys, rings, splines_of
-
-
-@pytest.fixture(autouse=True)
-def slowly(monkeypatch):
-    """Let a key be written at a tick."""
-    monkeypatch.setattr(KeyWriter, "slice", 0.0)
+from blender_scenes import add_trefoil, relax, stored
+from mobius_flow.addon.curves import bake
+from mobius_flow.addon.live.run import RunState
+from modal_operator import everything, rings, splines_of
 
 
 @pytest.fixture
@@ -55,36 +49,6 @@ def test_in_mid_run_the_file_has_everything_as_it_was(operator, path, scene):
     assert everything() == before
 
 
-def test_keys_whose_writing_has_begun_are_all_in_the_file(operator, path):
-    before = {obj.name: stored(obj.data) for obj in rings()}
-    operator.given["fit_bevel"] = False
-    operator.start()
-    operator.until(lambda: bpy.data.objects["A"].data.shape_keys is not None)
-    assert bpy.data.objects["B"].data.shape_keys is None, "saved in the middle"
-    save(path)
-    assert operator.run.state is RunState.DONE
-    assert operator.event() == {"FINISHED"}, "the operator ends, and with it comes one undo step"
-    assert operator.reports[-1][0] == {"INFO"}
-    frames = 1, operator.run.report.last_frame
-    written = {name: keys(bpy.data.objects[name]) for name in before}
-    assert len(written["A"]) == len(written["B"]) == operator.run.report.keys
-    played = {name: [evaluated(bpy.data.objects[name], frame) for frame in frames] for name in before}
-
-    reopen(path)
-    for name in before:
-        obj = bpy.data.objects[name]
-        np.testing.assert_array_equal(keys(obj), written[name])
-        for frame, points in zip(frames, played[name], strict=True):
-            np.testing.assert_array_equal(evaluated(obj, frame), points)
-        assert bake.is_baked(obj.data)
-        assert not bake.is_edited(obj.data)
-        obj.select_set(True)
-        bpy.context.view_layer.objects.active = obj
-    assert bpy.ops.curve.mobius_flow_clear() == {"FINISHED"}
-    for name, points in before.items():
-        np.testing.assert_array_equal(stored(bpy.data.objects[name].data), points)
-
-
 def test_keys_that_are_still_being_proved_are_not_in_the_file(operator, path, monkeypatch):
     obj = add_trefoil()
     before = everything()
@@ -98,41 +62,6 @@ def test_keys_that_are_still_being_proved_are_not_in_the_file(operator, path, mo
     np.testing.assert_array_equal(stored(obj.data), shown)
     monkeypatch.undo()
     operator.run.cancel()
-    reopen(path)
-    assert everything() == before
-
-
-def test_baked_again_the_file_has_the_old_keys_or_the_new_ones(operator, path):
-    film()
-    old = keys(bpy.context.object)
-    operator.start()
-    operator.until(lambda: len(bpy.data.shape_keys) == 2)
-    save(path)
-    assert operator.event() == {"FINISHED"}
-    new = keys(bpy.context.object)
-    assert len(new) != len(old)
-    reopen(path)
-    (obj,) = bpy.data.objects
-    np.testing.assert_array_equal(keys(obj), new)
-    assert bake.is_baked(obj.data)
-    assert len(bpy.data.shape_keys) == len(bpy.data.actions) == 1
-
-
-def test_a_failure_while_saving_puts_everything_back(operator, path, monkeypatch):
-    obj = add_trefoil()
-    before, written = everything(), keyframes.writing
-
-    def failing(*arguments):
-        yield from written(*arguments)
-        raise MemoryError
-
-    monkeypatch.setattr(keyframes, "writing", failing)
-    operator.start()
-    operator.until(lambda: obj.data.shape_keys is not None)
-    save(path)
-    assert operator.run.state is RunState.CANCELLED
-    assert operator.event() == {"CANCELLED"}
-    assert operator.reports[-1] == ({"ERROR"}, "Memory ran out; all is as it was")
     reopen(path)
     assert everything() == before
 

@@ -118,9 +118,9 @@ def scene():
     return bpy.context.scene
 
 
-@pytest.mark.parametrize(("keyframes", "size"), [*zip(["SHAPE_KEYS", "FCURVES"], SIZES, strict=True)])
-def test_the_whole_animation_is_in_sight(scene, keyframes, size):
-    obj = baked(keyframes=keyframes)
+@pytest.mark.parametrize("size", SIZES)
+def test_the_whole_animation_is_in_sight(scene, size):
+    obj = baked()
     obj.location, obj.rotation_euler, obj.scale = (30, -20, 5), (0.3, 0.2, 0.1), (2, 1, 0.5)
     bpy.context.view_layer.update()
     scene.render.resolution_x, scene.render.resolution_y = size

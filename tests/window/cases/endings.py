@@ -5,7 +5,7 @@ import os
 import bpy
 import numpy as np
 from case import Steps, picture, until
-from hands import addon, here, key, open_sidebar, window
+from hands import here, key, open_sidebar, window
 from interruption import handlers, is_whole, listening, over, relax, undo, workers
 from scene import is_, iterate, knot, latest, obj, points, reaches, ready, run, undone
 
@@ -203,27 +203,6 @@ def names_and_files() -> Steps:
     yield from picture("names-2-new")
 
 
-def saving() -> Steps:
-    """Where a file is saved while keys are written, the run is one undo step all the same."""
-    writer = addon("live.run").KeyWriter
-    usual, writer.slice = writer.slice, 0.0  # a key at a tick
-    yield from ready()
-    before = points()
-    yield from relax()
-    yield from key("RETURN")
-    yield from until(lambda: obj().data.shape_keys is not None, "keys to be written")
-    some = len(obj().data.shape_keys.key_blocks)
-    with here():
-        bpy.ops.wm.save_as_mainfile(filepath=FILE, copy=True)
-    yield from over("saving", "done")
-    writer.slice = usual
-    every = len(obj().data.shape_keys.key_blocks)
-    assert some < every, "saved in the middle"
-    yield from undone(lambda: len(points()) == len(before), "the run")
-    assert np.array_equal(points(), before)
-    assert obj().data.shape_keys is None
-
-
 def disabling() -> Steps:
     """Disabling the extension ends the run and leaves nothing behind; enabled again it works."""
     yield from ready()
@@ -249,4 +228,4 @@ def disabling() -> Steps:
     is_whole(before)
 
 
-PARTS = (undo_and_redo, undo_of_something_else, on_a_film, deletion, editing, names_and_files, saving, disabling)
+PARTS = (undo_and_redo, undo_of_something_else, on_a_film, deletion, editing, names_and_files, disabling)
