@@ -35,7 +35,7 @@ def relaxed(curve: Curve, **options: object) -> list[Iterate]:
 @pytest.mark.usefixtures("everywhere")
 @pytest.mark.parametrize(
     "curve",
-    [bent(torus_trefoil(200)), pytest.param(hard_unknot(20, seed=3), marks=pytest.mark.slow), bent(knot("L2a1", 400))],
+    family([bent(torus_trefoil(200)), hard_unknot(20, seed=3), bent(knot("L2a1", 400))]),
     ids=["trefoil", "hard unknot", "Hopf link"],
 )
 def test_fewer_vertices_at_first_and_all_in_the_end(curve: Curve) -> None:

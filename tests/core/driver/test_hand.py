@@ -132,7 +132,7 @@ def place_outside(curve: Curve) -> np.ndarray:
     return middle + 1.5 * (Pull.at(curve, 0, 0.25, 1.0).target - middle)
 
 
-@pytest.mark.parametrize("settings", [{}, {"mesh": "adaptive"}, {"solver": "hierarchical"}], ids=str)
+@pytest.mark.parametrize("settings", family([{"mesh": "adaptive"}, {}, {"solver": "hierarchical"}]), ids=str)
 def test_the_curve_follows_rests_and_relaxes_on(settings: dict[str, object]) -> None:
     moves = {2: held, 3: pulled_out}
     rested, outcome = drag(knot("3_1"), Hand(), dict(moves), **settings)
