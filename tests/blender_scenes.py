@@ -8,8 +8,6 @@ import bpy
 import numpy as np
 from shapes import hopf_link, torus_trefoil
 
-VALUES = ("radius", "tilt", "weight_softbody")
-
 
 def add_curve(
     components: Sequence[np.ndarray], name: str = "Knot", kind: str = "POLY", cyclic: bool = True

@@ -1,16 +1,12 @@
 """Baked curves are baked again, go on and are cleared, at once and in a file that was opened again."""
 
-from itertools import pairwise
-
 import bpy
 import numpy as np
 import pytest
 from baked_curves import SHORT, again, blocks, clear, curve_of, go_on, last_frame, two_rings
-from blender_scenes import add_curve, add_trefoil, contents, evaluated, relax, stored
+from blender_scenes import add_curve, add_trefoil, contents, evaluated, relax
 from mobius_flow.addon.curves import bake, keyframes
 from mobius_flow.addon.curves.recorded import BakedKeys
-from mobius_flow.core.collision import is_free
-from mobius_flow.core.curve import Mesh
 from mobius_flow.core.keys import key_options
 from mobius_flow.core.knots import knot
 
@@ -38,21 +34,6 @@ def test_frames_per_iterate_alone_means_by_iterate():
     assert curve_of(obj).keyframe_points[-1].co[0] == 250
 
 
-def test_there_and_back():
-    obj = add_trefoil()
-    relax(max_iterations=5, timing="EVEN", length=60, hold_end=4, hold_start=3, loop=True)
-    assert bake.scene_range([obj]) == (1, 60)
-    assert (
-        obj.data.eval_time == pytest.approx(obj.data.shape_keys.eval_time) if hasattr(obj.data, "eval_time") else True
-    )
-    shapes = [evaluated(obj, frame) for frame in range(1, 62)]
-    for k in range(31):
-        np.testing.assert_allclose(shapes[k], shapes[60 - k], atol=1e-5)
-    np.testing.assert_array_equal(shapes[0], shapes[60])
-    np.testing.assert_array_equal(shapes[26], shapes[34])
-    assert not np.array_equal(shapes[0], shapes[30])
-
-
 def test_constant_thickness_is_the_least():
     obj = add_curve([knot("5_2", 60).vertices])
     relax(max_iterations=8, fit_bevel=True, radius="none")
@@ -65,21 +46,6 @@ def test_constant_thickness_is_the_least():
     further = [block.data[0].radius for block in obj.data.shape_keys.key_blocks[len(constant) :]]
     assert len(further) == 8
     assert np.ptp(further) < 1e-6
-
-
-def test_continuing_by_length_goes_on_after_the_rest(monkeypatch):
-    monkeypatch.setattr(key_options, "_SLOWEST", 1e9)
-    obj = add_trefoil()
-    relax(max_iterations=3, timing="DISTANCE", length=50, hold_end=10)
-    go_on(timing="DISTANCE", length=100, hold_start=5, hold_end=2)
-    curve = curve_of(obj)
-    frames = [point.co[0] for point in curve.keyframe_points]
-    rest = frames.index(40)
-    assert frames[rest + 1] - 55 < np.diff(frames[rest + 1 :]).max() + 1e-3
-    assert frames[-1] == 148
-    np.testing.assert_array_equal(evaluated(obj, 55), evaluated(obj, 40))
-    clear()
-    assert len(obj.data.splines[0].points) == 30
 
 
 def test_no_motion_takes_no_length_but_the_rest_at_the_beginning_is_played(monkeypatch):
@@ -148,16 +114,6 @@ def test_an_animation_without_motion_goes_on():
     go_on(max_iterations=400, tolerance=0.01)  # there is nothing left to do
     assert last_frame(obj) == end
     np.testing.assert_array_equal(keyframes.keyed_points(obj.data)[-1], shown)
-
-
-def test_what_was_thinned_goes_on_thinned():
-    obj = add_trefoil()
-    relax(max_iterations=6, max_keys=3)
-    go_on(max_iterations=2, max_keys=2)
-    assert 4 <= len(obj.data.shape_keys.key_blocks) < 9
-    mesh = Mesh((len(stored(obj.data)),))
-    points = [np.array([p.co[:] for p in block.data]) for block in obj.data.shape_keys.key_blocks]
-    assert all(is_free(mesh, a, b) for a, b in pairwise(points))
 
 
 @pytest.mark.parametrize("call", [bpy.ops.curve.mobius_flow_bake_again, bpy.ops.curve.mobius_flow_continue])

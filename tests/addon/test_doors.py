@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_trefoil, contents, sentence, stored
+from families import crossed
 from mobius_flow.addon.curves.doors import copy_of
 from mobius_flow.addon.curves.recorded import BakedKeys
 from mobius_flow.addon.curves.strands import Strands
@@ -175,8 +176,10 @@ VERBS = {
 }
 
 
-@pytest.mark.parametrize("verb", VERBS)
-@pytest.mark.parametrize("kind", ["poly", "edges", *(["strokes"] if STROKES else [])])
+SEVERAL = ["poly", "edges", *(["strokes"] if STROKES else [])]
+
+
+@pytest.mark.parametrize(("kind", "verb"), crossed(SEVERAL, VERBS))
 def test_every_verb_takes_it(kind, verb):
     source = KINDS[kind]()
     assert VERBS[verb](source) == {"FINISHED"}
@@ -372,8 +375,7 @@ def ended(way, operator, path):
     operator.run.cancel()
 
 
-@pytest.mark.parametrize("kind", ["poly", "edges", *(["strokes"] if STROKES else [])])
-@pytest.mark.parametrize("way", ["cancelled", "saved", "dragged", "deleted"])
+@pytest.mark.parametrize(("kind", "way"), crossed(SEVERAL, ["cancelled", "saved", "dragged", "deleted"]))
 def test_a_run_that_ends_without_a_result_leaves_no_trace(operator, tmp_path, kind, way):
     source = KINDS[kind]()
     before, operator.given["vertices"] = contents(), 0

@@ -68,6 +68,8 @@ def test_there_and_back_at_once(capfd):
     np.testing.assert_allclose(evaluated(obj, 1), evaluated(obj, 80), atol=1e-6)
     with pytest.raises(RuntimeError, match="switch Loop off first"):
         bpy.ops.curve.mobius_flow_continue(max_iterations=1)
+    with pytest.raises(RuntimeError, match="Loop goes with keyframes='SHAPE_KEYS' only"):
+        relax(**EVEN, keyframes="FCURVES", loop=True)
     settings.loop, settings.length = False, 40
     assert len(frames_of(obj.data)) == count
     np.testing.assert_allclose(evaluated(obj, 15.0), shown, atol=1e-6)
@@ -200,12 +202,3 @@ def test_smooth_splines_are_offered_as_polygons_by_the_button_that_was_pressed(m
     assert "become polygons, of 48 points in all" in told[0]
     assert (layout.sample_splines, layout.again) == (True, True)
     assert not asked("pack", monkeypatch, sample_splines=True)
-
-
-def test_a_bevel_that_was_changed_since_still_counts_as_the_artists_own(settings):
-    obj = add_trefoil()
-    relax(**EVEN)
-    obj.data.bevel_depth = 0.07
-    settings.length = 90
-    assert bpy.ops.curve.mobius_flow_clear() == {"FINISHED"}
-    assert obj.data.bevel_depth == pytest.approx(0.07)

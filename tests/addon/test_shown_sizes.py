@@ -13,7 +13,6 @@ from mobius_flow.core import Curve, RelaxOptions
 from mobius_flow.core import relax as iterates_of
 from mobius_flow.core.keys.placement import Measure
 from mobius_flow.core.knots import smooth_knot
-from modal_operator import rings
 from shapes import hopf_link, lattice_knot
 
 FILM = {"timing": "EVEN", "length": 24, "keep_size": "AUTO", "max_iterations": 12, "vertices": 90, "mesh": "fixed"}
@@ -69,28 +68,6 @@ def test_the_size_stays_at_every_frame_and_the_place_too(lattice, parented):
     np.testing.assert_allclose(sizes, sizes[0], rtol=0.02)
     centers = [curve.edge_lengths @ curve.midpoints / curve.length for curve in curves]
     assert np.ptp(centers, axis=0).max() < 0.1 * sizes[0]
-
-
-def test_objects_are_scaled_as_one():
-    objects = rings()
-    relax(**FILM | {"max_iterations": 6, "vertices": 0})
-    for frame in (1, 7.5, 24):
-        seen = Curve.from_components([shown(obj, frame).vertices for obj in objects])
-        places = np.interp(frame, *np.array([point.co[:] for point in curve_of(objects[0]).keyframe_points]).T)
-        before, after = (BakedKeys(objects).curves[int(k)] for k in (np.floor(places), np.ceil(places)))
-        expected = (1.0 - places % 1.0) * before.vertices + places % 1.0 * after.vertices
-        np.testing.assert_allclose(seen.vertices, expected, atol=2e-3)
-
-
-def test_a_taper_that_overrides_radii_keeps_its_look_and_lengths_stay(lattice):
-    lattice.data.taper_object = add_curve([np.array([[0.0, 1.0, 0.0], [1.0, 1.0, 0.0]])], "Taper", cyclic=False)
-    lattice.data.bevel_depth = 0.05
-    bpy.context.object.select_set(False)
-    lattice.select_set(True)
-    bpy.context.view_layer.objects.active = lattice
-    relax(**FILM)
-    assert not lattice.animation_data
-    assert Measure.RADIUS.of(shown(lattice, 24)) != pytest.approx(Measure.RADIUS.of(shown(lattice, 1)), rel=0.1)
 
 
 def test_an_object_can_still_be_moved_and_gives_all_back(lattice):

@@ -118,18 +118,6 @@ def test_compare_takes_pins_and_avoids_obstacles(run):
     assert len(Path("table.csv").read_text().splitlines()) == 7
 
 
-def test_a_knot_grows_in_the_ball_of_the_examples(run):
-    write_curve("small.obj", knot("3_1", vertices=60))
-    words = ["packed.obj", *BOTH, "--vertices", 60, "--max-iterations", 15, "--avoid", BALL, "--grow", 1.3]
-    status, _, said = run("relax", "small.obj", *words)
-    assert status == 0
-    assert "grew to 1.3 of 1.3 times its length" in said
-    assert report()["grown"] == pytest.approx(1.3, rel=1e-12)
-    assert report()["certified"]
-    assert read_curve("packed.obj").length == pytest.approx(1.3 * read_curve("small.obj").length, rel=1e-6)
-    assert run("verify", "t.npz")[0] == 0
-
-
 @pytest.mark.parametrize("suffix", [".txt", ".obj", ".json"])
 def test_overhand_arcs_stay_open_and_files_of_closed_curves_say_nothing_of_it(suffix, run):
     arc, out = f"arc{suffix}", f"out{suffix}"

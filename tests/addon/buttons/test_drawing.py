@@ -107,8 +107,9 @@ def test_the_mirror_image(capfd):
     assert hands[0] == -hands[1] != 0
 
 
-@pytest.mark.parametrize("place", [(0, 0, 5), (40, -3, 2)])
-@pytest.mark.parametrize("turn", [(0, 0, 0), (1.2, 0.4, 0.3), (np.pi, 0, 0)])
+@pytest.mark.parametrize(
+    ("place", "turn"), [((0, 0, 5), (0, 0, 0)), ((40, -3, 2), (1.2, 0.4, 0.3)), ((0, 0, 5), (np.pi, 0, 0))]
+)
 def test_it_lies_over_the_drawing_wherever_that_is(place, turn):
     drawn = add_curve([scribble()])
     drawn.location, drawn.rotation_euler, drawn.scale = place, turn, (2, 2, 2)

@@ -203,15 +203,6 @@ def test_smooth_curves_have_the_bevels_and_the_materials():
     assert bevel.is_fitted(smooth().data)
 
 
-@pytest.mark.parametrize("radius", [float("nan"), float("inf")])
-def test_a_radius_is_a_number(radius):
-    add_trefoil()
-    before = contents()
-    with pytest.raises(RuntimeError, match=r"Radius is .*; it must be a number up to 1e"):
-        bpy.ops.curve.mobius_flow_tube_mesh(radius=radius)
-    assert contents() == before
-
-
 def test_a_tubes_mesh_is_filmed_as_its_curve_is():
     scene, obj = bpy.context.scene, add_hopf_link()
     relax(keyframes="SHAPE_KEYS", max_iterations=3)

@@ -25,7 +25,6 @@ from mobius_flow.core import Curve
 from mobius_flow.core.collision import is_free
 from mobius_flow.core.keys.colours import PALETTE
 from mobius_flow.core.keys.placement import Measure
-from modal_operator import rings
 from shapes import hopf_link, lattice_knot, torus_trefoil
 
 OPS = bpy.ops.curve
@@ -94,20 +93,6 @@ def test_motions_that_cannot_be_proved_are_told_of(monkeypatch):
     ]
 
 
-def test_scaled_curves_are_still_baked_and_can_be_cleared():
-    obj = add_trefoil()
-    before = stored(obj.data)
-    obj.data.bevel_depth = 0.1
-    relax(max_iterations=4, fit_bevel=True)
-    assert OPS.mobius_flow_keep_size(measure="BOX") == {"FINISHED"}
-    assert bake.is_baked(obj.data)
-    assert not bake.is_edited(obj.data)
-    assert OPS.mobius_flow_continue(max_iterations=2, fit_bevel=False) == {"FINISHED"}
-    assert OPS.mobius_flow_clear() == {"FINISHED"}
-    np.testing.assert_array_equal(stored(obj.data), before)
-    assert obj.data.bevel_depth == pytest.approx(0.1)
-
-
 def test_the_tube_is_scaled_with_the_curve():
     obj = baked(fit_bevel=True)
     radii, lengths = Recorded.of(obj).radii[:, 0], [curve.length for curve in BakedKeys([obj]).curves]
@@ -142,15 +127,6 @@ def test_by_itself_a_curve_stays_in_view_and_its_length_is_what_the_flow_keeps()
         bpy.context.object.select_set(False)
         points.append(BakedKeys([baked(**options)]).frames)
     np.testing.assert_array_equal(*points)
-
-
-def test_links_are_scaled_together():
-    objects = rings()
-    relax(max_iterations=5)
-    size = of_keys(objects, "RADIUS")[0]
-    assert OPS.mobius_flow_keep_size(measure="RADIUS") == {"FINISHED"}
-    np.testing.assert_allclose(of_keys(objects, "RADIUS"), size, rtol=1e-5)
-    assert BakedKeys(objects).unproved == 0
 
 
 @pytest.mark.parametrize("is_baked", [False, True])
@@ -235,24 +211,6 @@ def test_edited_keys_are_not_turned_but_their_object_is():
         OPS.mobius_flow_lay_flat()
     np.testing.assert_array_equal(BakedKeys([obj]).frames, before)
     assert bake.is_edited(obj.data)
-
-
-def test_a_scale_that_turns_along_changes_no_length():
-    """Of a parent that mirrors and stretches evenly, and of a curve that carries its child along."""
-    obj = add_trefoil()
-    parent = uneven_parent(obj)
-    parent.scale, obj.scale = (-2.0, -2.0, -2.0), (1.0, 3.0, 0.5)
-    other, child = add_curve([FLAT], "Other"), add_curve([FLAT + 9.0])
-    other.scale, child.parent, child.rotation_euler = (2.0, 0.5, 1.0), other, (0.4, 0.5, 0.2)
-    for selected in ([obj], [other, child]):
-        bpy.ops.object.select_all(action="DESELECT")
-        for each in selected:
-            each.select_set(True)
-        bpy.context.view_layer.update()
-        lengths = [Curve(in_world(each, evaluated(each))).edge_lengths for each in selected]
-        assert OPS.mobius_flow_lay_flat() == {"FINISHED"}
-        for each, before in zip(selected, lengths, strict=True):
-            np.testing.assert_allclose(Curve(in_world(each, evaluated(each))).edge_lengths, before, rtol=1e-4)
 
 
 def test_a_single_point_has_no_flat_side():

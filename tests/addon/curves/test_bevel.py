@@ -4,6 +4,7 @@ import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_curve, add_hopf_link, add_trefoil, in_world, stored
+from families import crossed
 from mobius_flow.addon.curves import bevel
 from mobius_flow.addon.curves.recorded import BakedKeys
 from mobius_flow.addon.curves.splines import key_points
@@ -49,11 +50,10 @@ BEVELS = {
 }
 
 
-@pytest.mark.parametrize("bevelled", BEVELS.values(), ids=BEVELS)
-@pytest.mark.parametrize("keyframes", ["SHAPE_KEYS", "RESULT"])
-def test_ones_own_is_not_changed(bevelled, keyframes):
+@pytest.mark.parametrize(("bevel", "keyframes"), crossed(BEVELS, ["SHAPE_KEYS", "RESULT"]))
+def test_ones_own_is_not_changed(bevel, keyframes):
     obj = add_trefoil()
-    bevelled(obj.data)
+    BEVELS[bevel](obj.data)
     before = drawn(obj.data)
     relax(keyframes=keyframes)
     assert drawn(obj.data) == before

@@ -5,15 +5,12 @@ from itertools import pairwise
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_curve, add_hopf_link, add_trefoil, evaluated, fcurves, relax, stored
-from hard_curves import hard_unknot
+from blender_scenes import add_hopf_link, add_trefoil, evaluated, fcurves, relax, stored
 from mobius_flow.addon.curves import bake
 from mobius_flow.addon.curves.keyframes import write
 from mobius_flow.addon.curves.moving import what_moves
-from mobius_flow.addon.curves.splines import key_points
 from mobius_flow.core import Curve, RelaxOptions
 from mobius_flow.core import relax as iterates_of
-from mobius_flow.core.collision import is_free
 from mobius_flow.core.keys.motion import Key, Keys
 
 
@@ -91,14 +88,6 @@ def test_thinning_keeps_first_and_last():
         assert any(np.array_equal(shown, frame) for frame in expected)
 
 
-def test_thinned_keys_are_proved(capfd):
-    obj = add_curve([hard_unknot(8, seed=3, vertices=80).vertices])
-    relax(max_keys=3)
-    assert "proved free of contact" in capfd.readouterr().out
-    frames = [key_points(block).astype(np.float64) for block in obj.data.shape_keys.key_blocks]
-    assert all(is_free(Curve(frames[0]).mesh, a, b) for a, b in pairwise(frames))
-
-
 def test_keys_near_the_last_frame_are_all_there():
     obj = add_trefoil()
     expected = library_frames(obj, max_iterations=8)
@@ -145,14 +134,3 @@ def test_a_turning_object_goes_on_turning_whatever_happens_to_its_curve(turning,
     before = stored(turning.data)
     bpy.context.scene.frame_set(1)
     np.testing.assert_array_equal(stored(turning.data), before)
-
-
-def test_an_object_next_to_a_turning_one_does_not_move(turning):
-    """Their actions are one where somebody has chosen so."""
-    still = bpy.data.objects.new("Still", None)
-    bpy.context.scene.collection.objects.link(still)
-    still.animation_data_create().action = turning.animation_data.action
-    if hasattr(turning.animation_data.action, "slots"):
-        slots = still.animation_data.action.slots
-        still.animation_data.action_slot = slots.new(id_type="OBJECT", name="Still")
-        assert what_moves(still) is None

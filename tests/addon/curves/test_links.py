@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from blender_scenes import (
     add_curve,
-    add_trefoil,
     contents,
     evaluated,
     fcurves,
@@ -126,33 +125,6 @@ def test_objects_move_as_splines_of_one_object_would_wherever_they_are(keyframes
         assert all(np.ptp(evaluated(obj, 13), axis=0).max() > 0 for obj in objects)
 
 
-def test_fitted_tubes_of_different_objects_do_not_touch():
-    first, second = tangled()
-    objects = ring(first, "A"), ring(second, "B", Matrix.Diagonal((3, 3, 3, 1)))
-    for obj in objects:
-        for point in obj.data.splines[0].points:
-            point.radius = 1.0
-    relax(fit_bevel=True, keyframes="RESULT", vertices=200)
-    a, b = (in_world(obj, stored(obj.data)) for obj in objects)
-    depths = [obj.data.bevel_depth for obj in objects]
-    assert depths[0] == pytest.approx(3 * depths[1])
-    assert 0 < 2 * depths[0] < np.linalg.norm(a[:, None] - b[None], axis=2).min()
-
-
-def test_modifiers_are_not_part_of_the_proof(capfd):
-    objects = rings()
-    objects[1].modifiers.new("Array", "ARRAY")
-    relax(keyframes="RESULT", **SHORT)
-    assert "proved free of contact with themselves and each other, before modifiers" in capfd.readouterr().out
-
-
-def test_objects_that_touch_each_other_are_refused():
-    points = hopf_link(24).vertices[:24].astype(np.float32)
-    ring(points, "A")
-    ring(points, "B", Matrix.Diagonal((2, 2, 2, 1)))
-    assert "touch" in refused()
-
-
 def driven(obj):
     obj.driver_add("rotation_euler", 0)
 
@@ -199,23 +171,6 @@ def test_only_a_single_curve_may_be_moved(move, mover):
     assert refused().startswith(f"'B' is moved by {mover}, and curves relaxed together must keep their places")
     first.select_set(False)
     assert bpy.ops.curve.mobius_flow_relax(**SHORT) == {"FINISHED"}
-
-
-def test_other_animation_stays():
-    _, second = rings()
-    second.keyframe_insert("color", frame=1)
-    second.keyframe_insert("hide_render", frame=1)
-    relax(**SHORT)
-    assert {curve.data_path for curve in fcurves(second)} == {"color", "hide_render"}
-    bpy.ops.object.select_all(action="DESELECT")
-    obj = add_trefoil()
-    for frame, x in ((1, 0.0), (20, 3.0)):
-        obj.location.x = x
-        obj.keyframe_insert("location", frame=frame)
-    bpy.context.scene.frame_set(1)
-    relax(max_iterations=3)
-    bpy.context.scene.frame_set(20)
-    assert obj.location.x == pytest.approx(3.0)
 
 
 @pytest.mark.parametrize("kind", ["POLY", "BEZIER", "NURBS"])

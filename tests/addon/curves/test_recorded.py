@@ -4,6 +4,7 @@ import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_curve, add_hopf_link, add_trefoil, contents, evaluated, fcurves, relax, stored, values
+from families import crossed
 from mobius_flow.addon.curves import splines
 from mobius_flow.addon.curves.recorded import Recorded
 from shapes import hopf_link, torus_trefoil
@@ -69,8 +70,7 @@ def smooth_link(kind, resolution):
     return obj
 
 
-@pytest.mark.parametrize("resolution", [1, 2, 3, 12])
-@pytest.mark.parametrize("kind", ["BEZIER", "NURBS"])
+@pytest.mark.parametrize(("kind", "resolution"), crossed(["BEZIER", "NURBS"], [1, 12, 2, 3]))
 def test_the_polygon_is_the_one_drawn_with_values_between_those_of_control_points(kind, resolution):
     obj = smooth_link(kind, resolution)
     for name in ("Red", "Blue"):

@@ -17,7 +17,7 @@ from mobius_flow.addon.live.modal import Listening
 from mobius_flow.addon.live.run import RunState
 from mobius_flow.addon.properties import SETTINGS
 from mobius_flow.core.keys.motion import Kind
-from modal_operator import Operator, keys, restored, ring_and_torus, rings, splines_of
+from modal_operator import keys, ring_and_torus, rings
 
 
 def one():
@@ -185,19 +185,6 @@ def test_keys_meant_for_something_else_pass_through(operator, key):
     screen.is_animation_playing = False
     assert operator.event(**key, mouse=(50, 50)) != {"PASS_THROUGH"}
     assert operator.run.state in (RunState.CANCELLED, RunState.FINISHING)
-
-
-def test_another_object_has_to_wait(operator):
-    obj = add_trefoil()
-    operator.start()
-    operator.reach(1)
-    other = add_hopf_link()
-    untouched = splines_of(other.data)
-    second = Operator()
-    assert second.start() == {"CANCELLED"}
-    assert second.reports == [({"ERROR"}, f"'{obj.name}' is being relaxed; stop that first")]
-    operator.event("ESC")
-    restored(other, untouched)
 
 
 def test_operators_can_keep_what_they_need_in_a_window():

@@ -5,11 +5,10 @@ import os
 import bpy
 import numpy as np
 from case import Steps, picture, until
-from hands import here, key, open_sidebar, window
-from interruption import handlers, is_whole, listening, over, relax, undo, workers
+from hands import here, key, window
+from interruption import is_whole, over, relax, undo
 from scene import is_, iterate, knot, latest, obj, points, reaches, ready, run, undone
 
-MODULE = "bl_ext.user_default.mobius_flow"
 FILE = os.path.join(os.environ["ROOM"], "saved.blend")
 
 
@@ -138,34 +137,6 @@ def deletion() -> Steps:
     yield from picture("deletion-2-whole")
 
 
-def editing() -> Steps:
-    """Opening the curve for editing puts it back first; points added by somebody else can be undone."""
-    yield from ready()
-    before = points()
-    yield from relax()
-    yield from key("TAB")
-    yield from over("Tab", "lost")
-    assert bpy.context.mode == "EDIT_CURVE"
-    yield from picture("editing-1-edit-mode")
-    yield from key("TAB")
-    yield from until(lambda: bpy.context.mode == "OBJECT", "object mode")
-    is_whole(before)
-    yield from key("Z", ctrl=True)
-    yield
-    with here():
-        bpy.ops.object.mode_set(mode="OBJECT")
-    is_whole(before)
-
-    yield from relax()
-    count = len(points())
-    obj().data.splines[0].points.add(1)
-    yield from over("a new point", "lost")
-    assert len(points()) == count + 1, "what somebody made is left alone"
-    undo()
-    yield
-    is_whole(before)
-
-
 def names_and_files() -> Steps:
     """New names, another frame, another run that is refused and saving do not disturb a run; loading ends it."""
     yield from ready()
@@ -201,31 +172,6 @@ def names_and_files() -> Steps:
             is_whole(before)
     assert obj().name == "Cube"
     yield from picture("names-2-new")
-
-
-def disabling() -> Steps:
-    """Disabling the extension ends the run and leaves nothing behind; enabled again it works."""
-    yield from ready()
-    before = points()
-    yield from relax()
-    ended = run()
-    bpy.ops.preferences.addon_disable(module=MODULE)
-    assert ended.state.name == "CANCELLED"
-    yield
-    assert not workers()
-    assert not listening()
-    assert not handlers()
-    assert not hasattr(bpy.types.Scene, "mobius_flow")
-    is_whole(before)
-    yield from picture("disabling-1-disabled")
-    bpy.ops.preferences.addon_enable(module=MODULE)
-    assert latest() is None
-    yield from open_sidebar()
-    yield from relax()
-    yield from picture("disabling-2-enabled-again")
-    yield from key("ESC")
-    yield from over("Esc in the extension enabled again")
-    is_whole(before)
 
 
 PARTS = (undo_and_redo, undo_of_something_else, on_a_film, deletion, editing, names_and_files, disabling)

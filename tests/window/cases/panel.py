@@ -1,13 +1,12 @@
-"""The panels by mouse clicks: presets, the report, a tube, what is refused and mended, and all of it in German."""
+"""The panels by mouse clicks: presets, the report, a tube, what is refused, and all of it in German."""
 
 from pathlib import Path
 
 import bpy
-import numpy as np
 from case import Steps, picture, until
 from hands import addon, button, here, key, move, open_panels, open_sidebar, region, view, window
 from interruption import undo
-from scene import add, clear, is_, keys, knot, latest, look, obj, points, reaches, ready, run, undone
+from scene import add, clear, is_, keys, knot, latest, look, obj, reaches, ready, run, undone
 
 LIGHT = Path(bpy.utils.system_resource("SCRIPTS")) / "presets/interface_theme/Blender_Light.xml"
 
@@ -138,45 +137,6 @@ def rest() -> Steps:
     yield from move(main.x + main.width // 2, main.y + 40)
 
 
-def mending() -> Steps:
-    """What is refused is mended by the button below the sentence, step by step, and each step is undone by Ctrl-Z."""
-    open_panels()
-    yield from ready()
-    bent, other = obj(), bpy.data.objects.new("Other", obj().data)
-    bpy.context.scene.collection.objects.link(other)
-    twist = bent.modifiers.new("Bend", "SIMPLE_DEFORM")
-    twist.deform_method, twist.angle = "TWIST", 0.5
-    before = points()
-    with here():
-        bpy.ops.ed.undo_push(message="Hindered")
-        bpy.ops.object.mode_set(mode="EDIT")
-        bpy.ops.ed.undo_push(message="Edited")
-    for name, wanted in (("object_mode", "shares its curve data"), ("single_user", "moves its points"), ("copy", "")):
-        yield from picture(f"mending-{name}")
-        hindered = refusal()
-        for again in (False, True):
-            yield from button("curve.mobius_flow_mend")
-            yield from until(lambda hindered=hindered: refusal() != hindered, f"{name} to help")
-            if not again:
-                yield from undone(lambda hindered=hindered: refusal() == hindered, name)
-        assert wanted in refusal(), refusal()
-        assert name == "copy" or np.array_equal(points(), before)
-    assert np.abs(points() - before).max() > 1e-3, "the copy has the shape that was shown"
-    assert not obj().modifiers
-    yield from picture("mending-done")
-    yield from button("curve.mobius_flow_relax")
-    yield from is_("running")
-    yield from key("ESC")
-    yield from is_("cancelled")
-
-
-def refusal() -> str:
-    """What is refused now."""
-    with here():
-        refused = addon("live.requirements").RELAXABLE(bpy.context)
-    return refused.sentence if refused else ""
-
-
 def german() -> Steps:
     """The panel, the reasons for refusals, the status bar and reports are in German, and change back at once."""
     open_panels("film")
@@ -216,4 +176,4 @@ def translated(text: str) -> str:
     return str(bpy.app.translations.pgettext_iface(text, addon("translations").CONTEXT))
 
 
-PARTS = (report, trouble, tube, mending, german)
+PARTS = (report, trouble, tube, german)
