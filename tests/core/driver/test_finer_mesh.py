@@ -92,6 +92,12 @@ def test_a_mesh_is_left_when_what_is_still_to_gain_is_small_against_its_error(op
     assert still_to_gain(before, options) < 2 * FinerMesh.share * abs(after.energy - before.energy)
 
 
+def test_the_share_is_one_of_the_error(monkeypatch):
+    change(monkeypatch, FinerMesh, share=0.5)
+    before, after = left(lattice_knot("3_1"), vertices=40, mesh="finer")
+    assert still_to_gain(before) < 0.5 * (after.energy - before.energy)
+
+
 def still_to_gain(iterate: Iterate, options: Mapping[str, str] = MappingProxyType({})) -> float:
     """How far above the end of a run on its mesh it is."""
     resting = RelaxOptions(energy=options.get("energy", "moebius"), tolerance=1e-6).at_rest(iterate.curve)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve
 from mobius_flow.core.keys.colours import PALETTE, contrast, flatly_lit, legible, linear, on_screen, strand_distances
-from shapes import hopf_link, regular_polygon, torus_trefoil
+from shapes import hopf_link, regular_polygon
 
 BLACK, WHITE, ORANGE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0), (1.0, 0.63, 0.16)
 DARK_MENU = (0.1, 0.1, 0.1)  # on light ones the rims of thumbnails set them off
@@ -62,13 +62,6 @@ def test_edges_count_and_not_their_ends_only():
     curve = Curve.from_components([RING, regular_polygon(20).vertices + np.array([0.0, 0.0, 0.1])])
     sagitta = 1 - np.cos(np.pi / 20)
     assert strand_distances(curve)[:200].max() <= np.hypot(0.1, sagitta) + 1e-12
-
-
-def test_distances_converge_on_a_smooth_knot():
-    """The torus trefoil is symmetric under turns by 120°."""
-    distances = [strand_distances(torus_trefoil(n)) for n in (300, 600, 1200)]
-    assert abs(distances[2][0] - distances[1][0]) < 0.5 * abs(distances[1][0] - distances[0][0]) + 1e-6
-    np.testing.assert_allclose(distances[0], np.roll(distances[0], 100), atol=1e-9)
 
 
 @pytest.mark.parametrize("pairs", [1, 1000])

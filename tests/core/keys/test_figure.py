@@ -12,8 +12,7 @@ from mobius_flow.core import Curve, CurveError, OptionError
 from mobius_flow.core.keys.arcs import seen, widest
 from mobius_flow.core.keys.figure import INKS, Pen, figure
 from mobius_flow.core.keys.paper import PAPERS
-from mobius_flow.core.knots import HARD_UNKNOTS, KNOTS, knot, smooth_knot
-from mobius_flow.core.knots.diagrams import diagram_of
+from mobius_flow.core.knots import KNOTS, knot, smooth_knot
 from mobius_flow.core.knots.drawings import Drawing
 from mobius_flow.core.knots.layout import laid_out
 from mobius_flow.core.knots.names import named_diagram
@@ -104,12 +103,6 @@ def test_colours_arrows_and_numbers():
     assert min(ink.query(label.place)[0] for label in sheet.labels) > 2.5
     assert {stroke.colour for stroke in figure([link], pen=Pen(colours="black")).strokes} == {INKS[0]}
     assert len({stroke.colour for stroke in figure([link], pen=Pen(colours="along")).strokes}) > 40
-
-
-def test_dense_diagrams_have_thin_strands():
-    sheet = figure([laid_out(diagram_of(HARD_UNKNOTS["thistlethwaite"]))], pen=Pen(size=30.0))
-    assert 0.05 < sheet.strokes[0].width < 1.5
-    assert least_gap(sheet) > 0.7 * Pen().gap
 
 
 def ellipses(*axes):

@@ -10,7 +10,6 @@ from mobius_flow.core.io.trajectory import StrandMoves
 from mobius_flow.core.keys.key_options import Pace, Timing
 from mobius_flow.core.keys.motion import Kind, Recording
 from mobius_flow.core.keys.placement import Link, Placement
-from mobius_flow.core.knots import torus_knot
 from recorded_motions import around, assert_proved, at_rest, collected, followed, iterate
 from shapes import regular_polygon, torus_trefoil
 
@@ -141,15 +140,6 @@ def test_chords_of_different_objects_are_proved_against_each_other(placements):
     for k, s in enumerate(mesh.slices):
         alone = collected([Curve(curve.vertices[s]) for curve in curves], link=Link((placements[k],), (1,)))
         assert len(alone.keys(is_rope, limit=2).keys) == 2
-
-
-def test_a_hop_is_keyed_like_a_step():
-    iterates = list(relax(torus_knot(3, 4, 90), RelaxOptions(vertices=90, hops=1, seed=1)))
-    motion = followed(iterates)
-    assert max(len(each.path) for each in iterates) > 20
-    keys = motion.keys(is_rope)
-    assert len(keys.keys) < 2 * len(iterates)
-    assert_proved(keys, iterates[-1].curve.mesh)
 
 
 ZIGZAG = Timing(pace=Pace.ITERATE, frames_per_iterate=12.0)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError, RelaxOptions, relax
 from mobius_flow.core.base.errors import Place
-from mobius_flow.core.collision import free_motion, is_free, is_rope
+from mobius_flow.core.collision import is_rope
 from mobius_flow.core.curve import refine
 from mobius_flow.core.keys.key_options import Timing
 from mobius_flow.core.keys.motion import Kind, Recording
@@ -17,7 +17,6 @@ from mobius_flow.core.keys.placement import (
     Turn,
     at,
     barycenter,
-    orthonormal,
     spots,
 )
 from recorded_motions import around, assert_proved, at_rest, followed, iterate
@@ -104,13 +103,6 @@ def test_a_curve_is_turned_and_never_mirrored():
         assert np.linalg.det(turn.rotation) == pytest.approx(1.0)
 
 
-def test_axes_made_orthonormal():
-    axes = orthonormal(np.array([[2.0, 0.3, 0.4], [0.0, 1.0, 0.0], [0.1, 0.0, 3.0]]))
-    np.testing.assert_allclose(axes @ axes.T, np.eye(3), atol=1e-12)
-    assert np.linalg.det(axes) == pytest.approx(1.0)
-    assert axes[2] @ np.array([0.1, 0.0, 3.0]) == pytest.approx(np.hypot(0.1, 3.0))
-
-
 @pytest.mark.parametrize("seed", range(4))
 def test_drawings_are_flattened_and_raised_again_and_level_ones_keep_their_coordinates(seed):
     level = regular_polygon(30).with_vertices(regular_polygon(30).vertices + np.array([3, 4, 5]))
@@ -169,20 +161,6 @@ def test_the_motion_between_scaled_keys_is_the_old_one_at_another_pace():
         u = t * factors[1] / scale
         away = middle - scale * ((1 - u) * a.vertices + u * b.vertices)
         np.testing.assert_allclose(away, np.broadcast_to(away[0], away.shape), atol=1e-9)
-
-
-@pytest.mark.parametrize("sizes", [(1.0, 1.0), (1e-3, 1.0), (1.0, 700.0)])
-def test_contact_is_neither_made_nor_undone_and_its_time_is_passed_at_the_other_pace(sizes):
-    """Two linked rings; the second one goes a little way, or out of the first one."""
-    start = hopf_link(30)
-    for x, free in ((0.4, True), (3.0, False)):
-        end = start.with_vertices(start.vertices + np.where(np.arange(60) < 30, 0, 1)[:, None] * [x, 0.1, 0.0])
-        scaled = [given(s * start.length, c) for s, c in zip(sizes, (start, end), strict=True)]
-        assert is_free(start.mesh, *(each.vertices for each in scaled)) is free
-        if not free and sizes[0] == sizes[1]:
-            t = free_motion(start.mesh, start.vertices, end.vertices).time
-            u = free_motion(start.mesh, start.vertices, given(10 * end.length, end).vertices).time
-            assert u == pytest.approx(t / (t + 10.0 * (1 - t)), rel=0.05)
 
 
 @pytest.mark.parametrize("in_points", [False, True])

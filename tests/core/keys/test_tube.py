@@ -77,14 +77,6 @@ def test_some_of_the_vertices_tell_gaps_as_all_do(name, flat):
     assert min(strand_gap(knot, widest), widest) == pytest.approx(min(nearest, widest), rel=0.01)
 
 
-def test_open_ends_count_however_few_vertices_do():
-    x = np.linspace(0.0, 1.0, 1999)
-    strand = np.stack([x, 0 * x, 0 * x], axis=1)
-    crossing = np.stack([1.0 + 0 * x, x - 0.5, 0 * x + 0.01], axis=1)
-    gap = strand_gap(Curve.from_components([strand, crossing], (False, False)), 0.4)
-    assert gap == pytest.approx(0.01, rel=0.01)
-
-
 def sharpest(vertices):
     """Largest angle by which a closed polygon turns at a vertex, in degrees."""
     edges = np.roll(vertices, -1, axis=0) - vertices
@@ -161,14 +153,6 @@ def test_tubes_become_thin_before_and_thick_after_a_narrow_place_at_the_same_pac
 def test_tubes_are_never_too_thin_to_see():
     curve = Curve.from_components([RING, RING + np.array([0.0, 0.0, 1e-6])])
     assert radii_of([curve], [0]).max() == pytest.approx(4e-3 * np.ptp(RING, axis=0).max(), rel=1e-5)
-
-
-def test_tubes_are_not_much_thicker_elsewhere_where_many_strands_are_close():
-    """A long ring, and a stack of rings inside that are close to each other."""
-    stack = [0.2 * RING + np.array([0.0, 0.0, 0.02 * k]) for k in range(4)]
-    curve = Curve.from_components([3.0 * RING, *stack])
-    (radii,) = radii_of([curve], [0])
-    assert radii[:60].max() <= 2.2 * np.quantile(radii[60:], 0.5) < thickest_radius(curve)
 
 
 def crowding(vertices, radius):

@@ -3,9 +3,7 @@
 import io
 import json
 import re
-import shutil
 import struct
-import subprocess
 import sys
 from itertools import pairwise
 from types import SimpleNamespace
@@ -16,7 +14,7 @@ from mobius_flow.core import Curve, CurveError, MobiusFlowError, RelaxOptions, T
 from mobius_flow.core.collision.gap import thickness
 from mobius_flow.core.curve.measures import writhe_and_crossings
 from mobius_flow.core.keys.solids import animation, solid, wire
-from mobius_flow.core.keys.view import drawing, figure, motion, page, still
+from mobius_flow.core.keys.view import drawing, figure, motion, still
 from mobius_flow.core.knots import knot
 
 
@@ -111,24 +109,6 @@ def test_what_cannot_be_shown_is_refused(tmp_path):
     np.savez(tmp_path / "point.npz", stage_000=frame, component_sizes_000=[4])
     with pytest.raises(MobiusFlowError, match="point"):
         motion(tmp_path / "point.npz")
-
-
-BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(BROWSER is None, reason="no browser is installed")
-def test_a_browser_draws_the_page_without_a_network(recorded, tmp_path):
-    pytest.importorskip("plotly")
-    (tmp_path / "a.html").write_text(page(motion(recorded, 6), title="two rings"), encoding="utf-8")
-    flags = ["--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-    flags += ["--host-resolver-rules=MAP * ~NOTFOUND", "--virtual-time-budget=8000", "--window-size=900,600"]
-    picture = tmp_path / "a.png"
-    command = [BROWSER, *flags, f"--screenshot={picture}", (tmp_path / "a.html").as_uri()]
-    subprocess.run(command, check=True, capture_output=True, timeout=300)
-    image = pytest.importorskip("matplotlib.image").imread(picture)[:, :, :3]
-    coloured = np.ptp(image[:, :600], axis=2) > 0.25
-    assert 0.005 < coloured.mean() < 0.5
 
 
 @pytest.mark.parametrize("mirror", [1.0, -1.0])

@@ -1,7 +1,6 @@
-"""Several objects: a mesh that is avoided, pinned ends, a container, a goal to morph into."""
+"""Pinned ends, and a goal to morph into."""
 
 import os
-from contextlib import suppress
 
 import bpy
 import numpy as np
@@ -13,15 +12,9 @@ from scene import (
     in_world,
     is_,
     keys,
-    knot,
     latest,
-    linking_number,
-    look,
     obj,
     points,
-    reaches,
-    run,
-    said,
     undone,
 )
 
@@ -29,48 +22,6 @@ CIRCLE = np.stack([np.cos(t := 2 * np.pi * np.arange(24) / 24), np.sin(t), 0 * t
 FILE = os.path.join(os.environ["ROOM"], "morphed.blend")
 MODULE = "bl_ext.user_default.mobius_flow"
 LENGTH = 40  # of the way of a morph there and back
-
-
-def around_a_mesh() -> Steps:
-    """A ring stays around a mesh that is avoided; undo gives all back; what moves is refused."""
-    open_panels("surroundings")
-    clear()
-    with here():
-        bpy.ops.mesh.primitive_torus_add(major_radius=1, minor_radius=0.25)
-        obj("Torus").select_set(False)
-        add("Ring", CIRCLE[:, [0, 2, 1]] * [1, 1, 4] + [1, 0, 0], bevel=0.04)  # it would slip off if nothing were there
-        bpy.ops.ed.undo_push(message="Ring and torus")
-    before, settings = points("Ring"), window().scene.mobius_flow_surroundings
-    yield from open_sidebar()
-    yield from all_in_view()
-    yield from picture("avoid-1-may-be-crossed")
-    yield from button("curve.mobius_flow_avoid")
-    yield from until(lambda: settings.avoid is not None, "the collection")
-    assert [each.name for each in settings.avoid.objects] == ["Torus"]
-    yield from button("curve.mobius_flow_relax")
-    yield from is_("done")
-    assert said().endswith("free of contact with itself, and with 'Torus'"), said()
-    assert len(keys("Ring")) > 5
-    assert {abs(linking_number(CIRCLE, each.astype(float))) for each in keys("Ring")} == {1}, "its middle is the circle"
-    yield from all_in_view()
-    yield from picture("avoid-2-relaxed", differs_from="avoid-1-may-be-crossed")
-    yield from undone(lambda: not keys("Ring"), "Relax")
-    assert np.array_equal(points("Ring"), before)
-    assert window().scene.mobius_flow_surroundings.avoid is not None
-
-    with here():
-        obj("Torus").keyframe_insert("location", frame=1)
-        bpy.ops.ed.undo_push(message="Key")
-    yield from picture("avoid-3-moves")
-    with here(), suppress(RuntimeError):
-        assert bpy.ops.curve.mobius_flow_relax("INVOKE_DEFAULT") == {"CANCELLED"}
-    assert run() is None
-
-
-def all_in_view() -> Steps:
-    with here():
-        bpy.ops.view3d.view_all()
-    yield
 
 
 def pinned_ends() -> Steps:
@@ -126,41 +77,6 @@ def look_down() -> Steps:
 
 def pinned() -> int:
     return int(addon("curves.pins").count(obj().data))
-
-
-def packed() -> Steps:
-    """The knot grows inside its container until it is kept, and its tube is as thick as there is room."""
-    open_panels("surroundings")
-    clear()
-    knot("3_1", 0)
-    trefoil = obj()
-    with here():
-        bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=3, radius=1.6, location=trefoil.location)
-        bpy.context.object.display_type = "WIRE"
-        bpy.context.object.select_set(False)
-        window().scene.mobius_flow_surroundings.container = bpy.context.object
-        window().view_layer.objects.active = trefoil
-        trefoil.select_set(True)
-    window().scene.mobius_flow.view_every = 1
-    yield from open_sidebar()
-    yield from look()
-    before, depth = length(), obj().data.bevel_depth
-    yield from picture("pack-1-ready")
-    yield from button("curve.mobius_flow_pack")
-    yield from reaches(25)
-    yield from picture("pack-2-grows", differs_from="pack-1-ready")
-    assert length() > 1.3 * before
-    assert obj().data.bevel_depth != depth, "the tube follows"
-    yield from button("curve.mobius_flow_stop")
-    yield from is_("done")
-    yield from picture("pack-3-kept", differs_from="pack-1-ready")
-    assert latest().report.certified
-    assert latest().report.avoided == ("Icosphere",)
-
-
-def length() -> float:
-    there = points().astype(float)
-    return float(np.linalg.norm(np.roll(there, -1, axis=0) - there, axis=1).sum())
 
 
 def morphed() -> Steps:
@@ -250,4 +166,4 @@ def chosen() -> Steps:
     yield from until(lambda: latest() is not last, "the run")
 
 
-PARTS = (around_a_mesh, pinned_ends, packed, morphed)
+PARTS = (pinned_ends, morphed)

@@ -1,9 +1,7 @@
 """What else Blender does meanwhile: playback, renders, other windows; and how long it is blocked."""
 
-import gc
 import time
 from collections.abc import Callable
-from pathlib import Path
 
 import bpy
 import numpy as np
@@ -201,22 +199,6 @@ def start() -> None:
         assert bpy.ops.curve.mobius_flow_relax("INVOKE_DEFAULT", again=True) == {"RUNNING_MODAL"}
 
 
-def memory() -> Steps:
-    """Twenty runs take no more memory than three, but for a few undo steps."""
-    yield from ready()
-    used = []
-    for _ in range(20):
-        start()
-        yield from reaches(3)
-        run().cancel()
-        assert state() == "cancelled"
-        yield
-        gc.collect()
-        used.append(int(Path("/proc/self/statm").read_text(encoding="utf-8").split()[1]) * 4096 / 1e6)
-    print(f"MEASURED memory: {used[2]:.0f} MB after 3 runs, {used[-1]:.0f} MB after {len(used)}", flush=True)
-    assert used[-1] - used[2] < 60  # MB
-
-
 def took(act: Callable[[], object]) -> float:
     """For how long something blocks."""
     started = time.perf_counter()
@@ -224,4 +206,4 @@ def took(act: Callable[[], object]) -> float:
     return time.perf_counter() - started
 
 
-PARTS = (playback, rendering, windows, timing, memory)
+PARTS = (playback, rendering, windows, timing)

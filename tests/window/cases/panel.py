@@ -1,12 +1,12 @@
-"""The panels by mouse clicks: presets, the report, a tube, what is refused, and all of it in German."""
+"""The panels by mouse clicks: presets, the report, what is refused, and all of it in German."""
 
 from pathlib import Path
 
 import bpy
 from case import Steps, picture, until
-from hands import addon, button, here, key, move, open_panels, open_sidebar, region, view, window
+from hands import addon, button, here, key, move, open_panels, open_sidebar, window
 from interruption import undo
-from scene import add, clear, is_, keys, knot, latest, look, obj, reaches, ready, run, undone
+from scene import add, clear, is_, keys, knot, latest, look, obj, reaches, ready, run
 
 LIGHT = Path(bpy.utils.system_resource("SCRIPTS")) / "presets/interface_theme/Blender_Light.xml"
 
@@ -90,53 +90,6 @@ def trouble() -> Steps:
     yield from until(lambda: obj().mode == "OBJECT", "Show to be undone")
 
 
-def tube() -> Steps:
-    """An artist's bevel stays, Fit Tube fits it, and meshes and smooth curves are made and undone."""
-    open_panels("shape")
-    yield from ready("L2a1", vertices=0)
-    obj().data.bevel_depth = 0.0625
-    settings = window().scene.mobius_flow
-    settings.max_iterations, settings.length = 12, 40
-    yield from button("curve.mobius_flow_relax")
-    yield from is_("done")
-    assert obj().data.bevel_depth == 0.0625
-    yield from picture("tube-1-ones-own")
-    yield from button("curve.mobius_flow_fit_tube")
-    yield from until(lambda: obj().data.bevel_depth != 0.0625, "the tube to fit")
-    fitted = obj().data.bevel_depth
-    yield from button("curve.mobius_flow_color_components")
-    yield from until(lambda: len(obj().data.materials) == 2, "two materials")
-    view().spaces.active.shading.color_type = "MATERIAL"  # rendered previews take minutes without a graphics card
-    yield from look()
-    yield from rest()
-    yield from picture("tube-2-fitted-and-colored")
-    curve = obj().name
-    yield from button("curve.mobius_flow_tube_mesh")
-    yield from until(lambda: obj().type == "MESH", "the mesh")
-    assert bpy.data.objects[curve].hide_get()
-    yield from picture("tube-3-mesh")
-    yield from undone(lambda: obj() and obj().type == "CURVE", "Tube Mesh")
-    assert obj().data.bevel_depth == fitted
-    with here():
-        bpy.ops.curve.mobius_flow_tube_mesh("INVOKE_DEFAULT", True, color="strand_distance")
-    view().spaces.active.shading.color_type = "VERTEX"
-    yield from look()
-    yield from rest()
-    yield from picture("tube-4-distance", differs_from="tube-3-mesh")
-    yield from undone(lambda: obj() and obj().type == "CURVE", "Tube Mesh with colors")
-    yield from button("curve.mobius_flow_smooth_curve")
-    yield from until(lambda: obj().name == f"{curve} Smooth", "the smooth curve")
-    assert {spline.type for spline in obj().data.splines} == {"BEZIER"}
-    yield from rest()
-    yield from picture("tube-5-smooth")
-
-
-def rest() -> Steps:
-    """Take the mouse away from the buttons, whose tooltips cover others."""
-    main = region("WINDOW")
-    yield from move(main.x + main.width // 2, main.y + 40)
-
-
 def german() -> Steps:
     """The panel, the reasons for refusals, the status bar and reports are in German, and change back at once."""
     open_panels("film")
@@ -176,4 +129,4 @@ def translated(text: str) -> str:
     return str(bpy.app.translations.pgettext_iface(text, addon("translations").CONTEXT))
 
 
-PARTS = (report, trouble, tube, german)
+PARTS = (report, trouble, german)
