@@ -13,7 +13,7 @@ from mobius_flow.core.curve.measures import writhe_and_crossings
 from mobius_flow.core.driver.run import Run
 from mobius_flow.lab.compare.command import WRITERS, usual
 from mobius_flow.lab.compare.comparison import History, compare, least_energy
-from mobius_flow.lab.compare.figures import draw_curve, figure_class, write_strip
+from mobius_flow.lab.compare.figures import draw_curve, figure_class
 from shapes import torus_trefoil
 
 HELPED = History("flow-l2", "stalled", (0.0, 0.1, 0.2, 0.3), (9.0, 8.0, 7.0, 6.5), (1.0, 0.9, 0.8, 0.7), (2, 3), "l2")
@@ -104,13 +104,6 @@ def test_a_strip_has_a_row_for_each_method_and_ends_with_its_last_stage(run):
     assert [line.split()[1:4] for line in shown.splitlines()[1:]] == 2 * [["iteration", "limit", "3"]]
     shown = run(*["compare", "trefoil.txt", "-o", "s.png", "--methods", "cg", "--strip", "2,0"])[1]
     assert " iteration limit           2 " in shown
-
-
-def test_a_strip_shows_the_end_where_a_stage_was_not_reached(tmp_path):
-    pytest.importorskip("matplotlib")
-    curve = torus_trefoil(20)
-    write_strip([0, 50], tmp_path / "s.svg", [replace(HELPED, stages={0: curve, 3: curve})])
-    assert (tmp_path / "s.svg").stat().st_size > 5000
 
 
 @pytest.mark.usefixtures("room")

@@ -54,13 +54,6 @@ def test_known_energies_are_within_the_error(name, vertices, smooth):
     assert abs(found.energy - smooth) < 0.1 * abs(found.energies[2] - smooth)
 
 
-def test_loose_runs_are_tightened():
-    options = RelaxOptions(vertices=90, tolerance=0.1)
-    found = extrapolated(minimize(knot("3_1", 90), options).curve, options)
-    assert found is not None
-    assert abs(found.energy - torus_knot_minimum(2, 3)) <= found.error
-
-
 def test_runs_that_do_not_converge_have_none():
     bent = regular_polygon(24).vertices * [1.0, 0.5, 1.0]
     assert extrapolated(Curve(bent), RelaxOptions(max_iterations=0)) is None

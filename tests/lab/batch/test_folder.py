@@ -40,13 +40,6 @@ def test_a_failure_leaves_nothing(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-def test_new_results_replace_old_ones(tmp_path):
-    fill(tmp_path / "a", "old")
-    fill(tmp_path / "a", "new")
-    assert contents(tmp_path / "a") == ["new", "new"]
-    assert len(list(tmp_path.iterdir())) == 1
-
-
 def test_two_at_once_make_one(tmp_path):
     with ThreadPoolExecutor(2) as pool, new_folder(tmp_path / "a") as room:
         write(room, "late")
@@ -70,8 +63,3 @@ def test_sweeping_leaves_what_another_batch_may_be_filling(tmp_path):
     sweep(tmp_path)
     assert {*tmp_path.iterdir()} == left
     assert [path.name for path in visited.iterdir()] == ["thesis.tex"]
-
-
-def test_the_longest_names_have_results(tmp_path):
-    fill(tmp_path / ("n" * 255), "done")
-    assert contents(tmp_path / ("n" * 255)) == ["done", "done"]

@@ -8,8 +8,8 @@ import pytest
 from fourier_curves import CIRCLE, CUSPS, DOUBLE_POINT, DUAL_CIRCLE, ELLIPSE, fitted, torus_knot, values
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from mobius_flow.core import CurveError, OptionError, RelaxOptions, minimize
-from mobius_flow.core.knots.shapes import shapes, smooth_knot
+from mobius_flow.core import CurveError, OptionError
+from mobius_flow.core.knots.shapes import shapes
 from mobius_flow.lab.smooth.energy import Basis, SampledPairs
 from mobius_flow.lab.smooth.fourier import FourierCurve
 from mobius_flow.lab.smooth.least import lower_bound
@@ -60,13 +60,6 @@ def test_torus_knots_by_their_integrals(q, a, energy):
     lower, upper = bounds.energy_bounds([fitted(torus_knot(2, q, a, 512), 60)])
     assert lower - 1e-7 <= (energy or torus_knot_energy(2, q, a)) <= upper + 1e-7
     assert lower_bound(f"{q}_1") < lower
-
-
-def test_a_fit_to_a_polygon_at_rest_is_above_the_minimum_by_little():
-    rest = minimize(smooth_knot("4_1", 160), RelaxOptions(vertices=160)).curve.vertices
-    lower, upper = bounds.energy_bounds([fitted(rest, 24)], 1e-6)
-    assert upper > 108.8237248
-    assert lower < 108.8237248 * (1 + 1e-4)
 
 
 def test_strands_far_nearer_than_the_curve_is_long():

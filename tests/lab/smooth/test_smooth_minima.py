@@ -10,7 +10,7 @@ from mobius_flow.core.driver.moves.balance import moebius_image
 from mobius_flow.core.knots import knot
 from mobius_flow.lab.smooth.fourier import FourierCurve
 from mobius_flow.lab.smooth.minima import balanced, distinct
-from mobius_flow.lab.smooth.rest import RestingCurve, at_rest, energy_of, index_of
+from mobius_flow.lab.smooth.rest import RestingCurve, at_rest, energy_of
 
 
 @pytest.fixture(scope="module")
@@ -76,7 +76,3 @@ def test_round_circles_are_the_same():
 def test_other_shapes_of_equal_energy_are_others(trefoil, width, groups):
     wide = tuple(c * [1.0, width, 1.0] for c in trefoil.curve.coefficients)
     assert sorted(distinct([trefoil, replace(trefoil, curve=FourierCurve(wide))])) == groups
-
-
-def test_the_index_of_a_minimum(trefoil):
-    assert index_of(trefoil.curve) == 0

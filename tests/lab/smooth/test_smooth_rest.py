@@ -8,7 +8,6 @@ import pytest
 from mobius_flow.core import Curve, CurveError, RelaxOptions, minimize
 from mobius_flow.core.knots import knot, knot_type, overhand, torus_knot
 from mobius_flow.core.knots.shapes import least_energies
-from mobius_flow.lab.extrapolation import extrapolated
 from mobius_flow.lab.smooth import rest
 from mobius_flow.lab.smooth.fourier import FourierCurve
 from mobius_flow.lab.smooth.rest import RestingCurve, at_rest, energy_of, index_of, is_at_rest
@@ -117,21 +116,6 @@ def test_it_does_not_depend_on_the_start():
     assert abs(one.energy - other.energy) <= one.error + other.error
     assert one.energy == pytest.approx(108.8237248, abs=2e-6)
     assert max(np.linalg.norm(one.curve.polygon([200]).vertices, axis=1)) == pytest.approx(1.0, abs=0.05)
-
-
-def test_it_agrees_with_what_meshes_are_extrapolated_to():
-    curve = relaxed("5_2", 120)
-    meshes, smooth = extrapolated(curve, RelaxOptions(vertices=120)), found(curve)
-    assert meshes is not None
-    assert abs(meshes.energy - smooth.energy) <= meshes.error + smooth.error
-
-
-def test_more_modes_and_points_do_not_change_the_energy_by_more_than_the_error(monkeypatch):
-    curve = relaxed("4_1", 100)
-    coarse = found(curve)
-    monkeypatch.setattr(rest, "MODES", (54, 80))
-    monkeypatch.setattr(rest, "_PER_MODE", 6)
-    assert abs(found(curve).energy - coarse.energy) <= coarse.error + 1e-9 * coarse.energy
 
 
 def test_a_fit_that_does_not_follow_the_polygon_is_not_taken(monkeypatch):
