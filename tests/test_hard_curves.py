@@ -58,11 +58,6 @@ def test_lattice_polygons_turn_at_every_vertex_and_have_the_type_of_the_smooth_c
     assert np.all(np.einsum("ij,ij->i", curve.edge_vectors, curve.edge_vectors[curve.mesh.previous]) == 0)
 
 
-def test_lattice_links_have_the_sign_of_their_braids():
-    assert quick_invariants(lattice_closure([1, 1])).linking == (1,)
-    assert quick_invariants(lattice_closure([-1, -1])).linking == (-1,)
-
-
 def test_the_bent_trefoil_is_one():
     curve = bent_trefoil(60)
     check_embedded(curve)

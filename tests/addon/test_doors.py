@@ -389,13 +389,3 @@ def test_a_run_that_ends_without_a_result_leaves_no_trace(operator, tmp_path, ki
     if way == "saved":
         bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "saved.blend"))
         assert contents() == before
-
-
-def test_it_can_be_recovered(operator):
-    add_hair()
-    operator.given["vertices"] = 0
-    operator.start()
-    operator.reach(2)
-    operator.run.cancel()
-    assert bpy.ops.curve.mobius_flow_recover() == {"FINISHED"}
-    assert copy_of(bpy.context.object) is not None

@@ -49,16 +49,6 @@ def test_a_segment_is_a_curve():
     np.testing.assert_allclose(points[[0, -1]], [[0, 0, 0], [1, 2, 3]], atol=1e-6)
 
 
-def test_new_points_have_values_in_between():
-    obj = add_arc()
-    obj.data.splines[0].points.foreach_set("radius", np.linspace(1, 2, 60))
-    relax(**SHORT)
-    radii = np.array([point.radius for point in obj.data.splines[0].points])
-    assert len(radii) > 60
-    assert (np.diff(radii) >= 0).all()
-    assert radii[[0, -1]] == pytest.approx([1, 2])
-
-
 @pytest.mark.parametrize("kind", ["BEZIER", "NURBS"])
 def test_a_smooth_open_spline_becomes_a_polygon_from_end_to_end(kind):
     obj = add_arc(kind=kind)
@@ -111,13 +101,3 @@ def test_its_smooth_curve_runs_from_end_to_end(kind, capfd):
     made = bpy.context.object
     assert cyclic(made) == [True, False]
     np.testing.assert_allclose(evaluated(made)[-1], end, atol=1e-5)
-
-
-def test_the_worker_knows_ends(operator):
-    obj = add_arc()
-    operator.start()
-    operator.until(lambda: operator.run.last is not None)
-    assert operator.run.last.curve.mesh.closed == (False,)
-    assert operator.run.target.label == "straight = 0"
-    operator.run.cancel()
-    np.testing.assert_array_equal(stored(obj.data), ARC.astype(np.float32))

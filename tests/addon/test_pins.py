@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 import pytest
 from baked_curves import SHORT, go_on, reopen
-from blender_scenes import add_curve, add_trefoil, contents, place, relax, stored
+from blender_scenes import add_curve, add_trefoil, contents, place, relax
 from mobius_flow import Relaxation
 from mobius_flow.addon.curves import pins
 from mobius_flow.addon.curves.recorded import BakedKeys
@@ -156,14 +156,3 @@ def test_no_size_but_the_length_can_be_kept_and_scripts_may_name_them():
     still(obj, ARC[[0, 59]])
     with pytest.raises(MobiusFlowError, match="pins asks for"):
         Relaxation(obj).relax(pins=(60,), **SHORT)
-
-
-def test_the_worker_holds_them_too(operator):
-    obj = add_arc()
-    pin(obj, 0, 59)
-    operator.start()
-    operator.reach(3)
-    assert operator.run.last.pins == (0, len(operator.run.last.curve) - 1)
-    np.testing.assert_array_equal(stored(obj.data)[[0, -1]], ARC[[0, -1]])
-    operator.run.cancel()
-    assert held(obj) == [0, 59]

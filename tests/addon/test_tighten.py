@@ -6,7 +6,6 @@ import pytest
 from blender_scenes import add_curve
 from mobius_flow import Relaxation
 from mobius_flow.addon.curves import bake
-from mobius_flow.addon.scripting import begin
 from mobius_flow.core.collision import thickness
 from mobius_flow.core.knots import knot
 
@@ -48,12 +47,3 @@ def check_contacts(obj, curve):
         bpy.data.objects.remove(each)
     obj.select_set(True)
     obj.hide_set(False)
-
-
-def test_a_live_run_tells_the_ropelength(operator):
-    obj = trefoil()
-    operator.session = lambda _, values: begin([obj], values | {"vertices": 100}, False, False, starts=1)
-    operator.start()
-    operator.until(lambda: operator.run.state.over)
-    assert "ropelength 32.8" in operator.run.message
-    assert operator.run.report.certified

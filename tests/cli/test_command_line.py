@@ -66,14 +66,6 @@ def test_energies_have_the_digits_that_the_mesh_leaves_them(run):
     assert [first, last] == pytest.approx([values["energy"][0], values["energy"][-1]], rel=0.1 * share / 100)
 
 
-def test_compare_prints_objectives(run):
-    _, told, _ = run(*["compare", "trefoil.txt", "--methods", "cg", "--max-iterations", "1", "-o", "c.json"])
-    last = json.loads(Path("c.json").read_text())[0]["energy"][-1]
-    head, row, *_ = told.splitlines()
-    assert head.split() == ["method", "status", "iterations", "rises", "fallback", "s", "objective", "gradient"]
-    assert f"{last:.6g}" in row.split()
-
-
 def test_energy(run):
     write_curve("circle.xyz", regular_polygon(50))
     assert float(run("energy", "circle.xyz")[1]) == pytest.approx(4)
@@ -117,14 +109,6 @@ def test_knots_are_listed_written_smooth_and_in_directories(run, refused):
     Path("list.txt").write_text("3_1\n4_1\n")
     assert run("knot", "list.txt", "new/knots") == (0, "", "✓ 2 knots     new/knots\n")
     assert sorted(os.listdir("new/knots")) == ["3_1.txt", "4_1.txt"]
-
-
-@pytest.mark.slow
-def test_knots_that_no_command_reads_are_not_written(run, refused):
-    assert "give --vertices 200000" in refused("knot", "T(300,301)", "k.txt")
-    assert not Path("k.txt").exists()
-    assert run("knot", "T(300,301)", "k.txt", "--vertices", 200_000)[0] == 0
-    assert len(read_curve("k.txt")) == 200_000
 
 
 def test_version(run):

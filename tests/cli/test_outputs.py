@@ -3,9 +3,7 @@
 import json
 import os
 import re
-import subprocess
 import sys
-from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -159,54 +157,6 @@ def test_formats_that_are_only_read_are_no_outputs(command, run, refused):
 def test_compare_looks_for_matplotlib_first(monkeypatch, refused):
     monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
     assert "need matplotlib" in refused("compare", "trefoil.txt", "-o", "c.png")
-
-
-@pytest.fixture
-def mounted():
-    """A function that mounts something, where the test may."""
-    done = []
-
-    def mount(*options, at):
-        if sys.platform != "linux" or os.geteuid() != 0:
-            pytest.skip("only the superuser mounts")
-        if subprocess.run(["mount", *options, at], capture_output=True, check=False).returncode:
-            pytest.skip("nothing can be mounted here")
-        done.append(at)
-
-    yield mount
-    for at in done:
-        subprocess.run(["umount", at], check=True)
-
-
-def test_a_disk_that_is_full_or_read_only_keeps_the_old_files(mounted, refused):
-    os.mkdir("place")
-    mounted("-t", "tmpfs", "-o", "size=32k", "tmpfs", at="place")
-    for name in NAMES:
-        Path("place", name).write_text("old")
-    with suppress(OSError), open("place/full", "wb", buffering=0) as stream:
-        while stream.write(b"x" * 512):
-            pass
-    said = refused(*ALL)
-    for name in NAMES:
-        assert f"place/{name}: cannot be written: No space left on device (the result is kept as " in said
-    subprocess.run(["mount", "-o", "remount,ro", "place"], check=True)
-    for output, name in zip(FILES, NAMES, strict=False):
-        assert "is write-protected" in refused(*words(output, f"place/{name}"))
-    assert sorted(os.listdir("place")) == sorted([*NAMES, "full"])
-    assert {Path("place", name).read_text() for name in NAMES} == {"old"}
-
-
-def test_files_that_are_mounts(mounted, run):
-    os.mkdir("place")
-    for name in NAMES:
-        Path(f"source-{name}").write_text("old")
-        Path("place", name).touch()
-        mounted("--bind", f"source-{name}", at=f"place/{name}")
-    assert run(*ALL) == (0, "", "")
-    assert len(read_curve("place/o.txt")) == 60
-    assert json.loads(Path("source-r.json").read_text())["vertices"] == 60
-    assert verify("place/t.npz").accepted
-    assert sorted(os.listdir("place")) == NAMES
 
 
 def test_a_file_in_a_directory_where_none_can_be_made(room, scratch, monkeypatch, run):

@@ -13,10 +13,8 @@ import pytest
 from commands import PROGRAM, SHORT
 from curve_formats import OF_VERTICES
 from families import crossed, family
-from mobius_flow.core import read_curve, write_curve
-from mobius_flow.core.io.source import Source
 from mobius_flow.core.proof import verify
-from shapes import regular_polygon, torus_trefoil
+from shapes import torus_trefoil
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="devices and descriptors of Linux")
 pytestmark = pytest.mark.usefixtures("room")
@@ -87,15 +85,6 @@ def test_report_and_trajectory_go_through_a_pipe(target):
     assert json.loads(shell(f"{relax} --report {target} | cat").stdout)["iterations"] == 2
     verdict = json.loads(shell(f"{relax} --trajectory {target} | flow verify - --json").stdout)
     assert (verdict["accepted"], verdict["legs"]) == (True, 2)
-
-
-@linux
-def test_a_report_is_added_to_what_standard_output_is_sent_to():
-    Path("log").write_text("before\n")
-    done = shell("flow relax trefoil.txt o.txt --quiet --max-iterations 1 --report /dev/stdout >> log")
-    assert done.returncode == 0
-    first, rest = Path("log").read_text().split("\n", 1)
-    assert (first, json.loads(rest)["iterations"]) == ("before", 1)
 
 
 def test_a_verdict_as_json(trajectory, run, give):
@@ -197,11 +186,3 @@ def test_results_do_not_go_to_a_closed_stream(outputs):
 @linux
 def test_a_reader_who_leaves():
     assert shell("flow knot 3_1 - --vertices 20000 | head -c 1").stderr == ""
-
-
-def test_written_curves_can_be_read():
-    """The longest file that a relaxation can write is below the limit of files that are read."""
-    curve = regular_polygon(2000)
-    write_curve("o.json", curve.with_vertices(np.pi * 1e-100 * curve.vertices))
-    assert len(read_curve("o.json")) == 2000
-    assert os.stat("o.json").st_size * 200_000 / 2000 < Source.max_bytes

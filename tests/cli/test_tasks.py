@@ -63,20 +63,6 @@ def test_a_verdict_names_the_obstacle_counted_from_one(run):
     assert verdict["reason"] == f"edge {verdict['edges'][0]} meets obstacle 1 (counted from 1)"
 
 
-@pytest.mark.skipif(os.name != "posix", reason="links")
-def test_an_obstacle_that_is_named_twice_counts_once(run):
-    os.link("ceiling.obj", "hard.obj")
-    os.symlink("ceiling.obj", "soft.obj")
-    again = [word for name in ("ceiling", "./ceiling", "hard", "soft") for word in ("--avoid", f"{name}.obj")]
-    found = []
-    for words in (again[:2], again):
-        assert run("relax", "trefoil.txt", "out.txt", "--report", "r.json", "--max-iterations=1", *words)[0] == 0
-        found.append(report())
-    once, often = found
-    assert once["obstacles"] == often["obstacles"] == 1
-    assert once["energy"] == often["energy"]
-
-
 @pytest.mark.parametrize("words", [["--pin", "12,40"], ["--pin=12", "--pin", " 40 "]])
 def test_pinned_vertices_are_in_the_result_and_in_the_report(words, run):
     assert run("relax", "bent.obj", "out.obj", *BOTH, *words, *SHORT)[0] == 0
@@ -109,13 +95,6 @@ def test_vertices_are_counted_as_the_file_does(run):
     Path("closed.obj").write_text("\n".join(lines))
     assert run("relax", "closed.obj", "out.obj", "--pin", "61", *SHORT)[0] == 0
     assert tuple(BENT.vertices[0]) in vertices_of("out.obj")
-
-
-def test_compare_takes_pins_and_avoids_obstacles(run):
-    words = ["--methods", "lbfgs,cg", "--pin", "12,40", "--avoid", BALL, "--max-iterations", "2", "-o", "table.csv"]
-    write_curve("small.obj", BENT.with_vertices(0.1 * BENT.vertices))
-    assert run("compare", "small.obj", *words)[0] == 0
-    assert len(Path("table.csv").read_text().splitlines()) == 7
 
 
 @pytest.mark.parametrize("suffix", [".txt", ".obj", ".json"])

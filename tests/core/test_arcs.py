@@ -3,14 +3,13 @@
 import numpy as np
 import pytest
 from changed_moves import change
-from mobius_flow.core import Curve, CurveError, Mesh, OptionError, RelaxOptions, Status, minimize
+from mobius_flow.core import Curve, CurveError, Mesh, RelaxOptions, Status, minimize
 from mobius_flow.core.descent.task import Units
 from mobius_flow.core.driver.moves import CoarseStart
-from mobius_flow.core.driver.moves.links import split
 from mobius_flow.core.knots import knot_type, overhand
 from mobius_flow.core.knots.composite import knotted_ball
 from mobius_flow.core.knots.diagrams import linking_numbers, quick_invariants
-from shapes import half_circle, opened, regular_polygon, straight_arc, torus_trefoil
+from shapes import half_circle, opened, regular_polygon, torus_trefoil
 from tasks import proved
 
 
@@ -73,14 +72,6 @@ def test_an_arc_leaves_a_ring_that_it_is_not_linked_with() -> None:
     assert np.linalg.norm(middles[1] - middles[0]) > sum(radii)  # balls around them do not meet
 
 
-def test_parts_far_from_each_other_are_held() -> None:
-    arc = straight_arc(4).vertices
-    result, _ = proved(Curve.from_components([arc, arc + np.array([9.0, 0.0, 0.0])], [False, False]), vertices=40)
-    assert "their own energies add up to" in result.message
-    parts = split(Curve.from_components([arc, np.eye(3), arc + 9], [False, True, False]), (0, 1, 0))
-    assert [part.mesh.closed for part in parts] == [(False, False), (True,)]
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(8))
 def test_random_mixtures(seed: int) -> None:
@@ -101,14 +92,6 @@ def test_what_only_closed_components_have() -> None:
     assert knotted_ball(arc) is None
     with pytest.raises(CurveError, match=r"component 1 is open; Möbius images of equal energy"):
         minimize(arc, RelaxOptions(balance=True))
-
-
-def test_lengths_are_one_for_each_edge() -> None:
-    arc = half_circle(5)
-    result, _ = proved(arc, edge_lengths=(1.0, 2.0, 1.0, 2.0, 1.0), vertices=6, max_iterations=200)
-    np.testing.assert_allclose(result.curve.edge_lengths, [1, 2, 1, 2, 1], rtol=1e-4)
-    with pytest.raises(OptionError, match=r"has 6 numbers, but the refined curve has 5 edges; .* vertices=7$"):
-        minimize(arc, RelaxOptions(edge_lengths=(1.0,) * 6, vertices=6))
 
 
 def test_units_of_arcs() -> None:

@@ -110,15 +110,6 @@ def test_what_pierces_or_is_too_large_for_its_repulsion_is_refused(curve, wall, 
         relax(*wanted(curve, avoid=(wall,), vertices=30))
 
 
-def test_the_repulsion_of_large_obstacles_is_right():
-    """Beyond some size the objective sees no difference any more, up to the largest that is not refused."""
-    tasks = [
-        wanted(torus_trefoil(30), avoid=(plate(-2.0, size),), vertices=30, max_iterations=0) for size in (1e7, 1e11)
-    ]
-    energies = [minimize(*each).energies[0] for each in tasks]
-    assert energies[1] == pytest.approx(energies[0], rel=1e-6)
-
-
 def test_obstacles_are_a_tuple_or_a_list():
     wall = plate(1.0)
     for value in (wall, "wall.obj", [[0.0, 0.0]], 3, None):

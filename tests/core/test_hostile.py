@@ -132,18 +132,6 @@ def text(vertices: Array) -> str:
     return "".join(" ".join(map(repr, point)) + "\n" for point in vertices.tolist())
 
 
-@pytest.mark.slow
-def test_thousands_of_components(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    shifts = [np.array([3.0 * (k % 80), 3.0 * (k // 80), 0.0]) for k in range(4001)]
-    (tmp_path / "in.txt").write_text("\n".join(text(np.eye(3) + shift) for shift in shifts))
-    words = ["relax", str(tmp_path / "in.txt"), str(tmp_path / "out.txt")]
-    assert main([*words, "--solver", "dense"]) == 2
-    error = capsys.readouterr().err
-    assert "room and time for 12000" in error
-    assert error.count("\n") == 1
-    assert main([*words, "--max-iterations", "0", "--quiet"]) == 0
-
-
 ANYTHING = st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8)
 ANYTHING |= st.just(10**400) | st.just(3.0) | st.just([])
 VALUES: dict[str, st.SearchStrategy[object]] = {

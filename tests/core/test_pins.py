@@ -13,7 +13,7 @@ from mobius_flow.core.curve.refine import smoothed, subdivide, superfluous
 from mobius_flow.core.descent.hessian import lagrangian_hessian, lagrangian_matrix
 from mobius_flow.core.descent.methods import Constrained
 from mobius_flow.core.driver.moves.rest import stability
-from mobius_flow.core.knots import knot, torus_knot
+from mobius_flow.core.knots import knot
 from shapes import regular_polygon, torus_trefoil
 from solids import plate
 from tasks import proved, wanted
@@ -101,19 +101,6 @@ def test_pins_survive_every_mesh(mesh: str) -> None:
     assert all(len(iterate.pins) == 3 for iterate in iterates)
     assert mesh in ("fixed", "finer", "auto") or len({len(iterate.curve) for iterate in iterates}) > 1
     assert iterates[-1].energy < 0.5 * iterates[0].energy, message
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("count", "pins"), [(1500, (0, 7, 1000, 1499)), (3000, (0, 1250, 2999))])
-def test_pins_survive_a_coarse_start(count: int, pins: tuple[int, ...]) -> None:
-    """By the dense solver and, in the end, by the hierarchical one."""
-    curve = torus_knot(2, 3, count)
-    curve = curve.with_vertices(curve.vertices * [1.0, 1.4, 1.2])
-    iterates, message = checked(curve, pins=pins, max_iterations=120)
-    assert min(len(iterate.curve) for iterate in iterates) < 900
-    assert message.startswith("converged")
-    assert iterates[-1].pins == pins
-    assert iterates[-1].energy < 74.42  # 74.412 without pins
 
 
 def test_arcs_keep_their_lengths_spread_evenly() -> None:
@@ -266,14 +253,3 @@ def test_the_lagrangians_hessian_knows_pins() -> None:
     slope = float(np.sum(point.derivative * v)) / np.abs(v).max()
     curvature = float(v.ravel() @ matrix @ v.ravel()) / np.abs(v).max() ** 2
     assert taylor_slope(second_order, [point.energy, slope, curvature], largest=0.02, halvings=9) > 2.8
-
-
-def test_a_component_without_pins_is_held_once_it_is_far_away() -> None:
-    oval = regular_polygon(20).vertices * [1.0, 1.6, 1.0]
-    link = Curve.from_components([oval, oval + 9.0])
-    iterates, message = checked(link, pins=(0, 7), tolerance=1e-5, vertices=40)
-    assert message.startswith("converged")
-    assert "unlinked parts" in message
-    assert iterates[-1].certified
-    away = [iterate.curve.components[1].mean(axis=0) for iterate in iterates]
-    assert np.abs(away[-1] - 9.0).max() < 1.0

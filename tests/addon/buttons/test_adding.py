@@ -130,13 +130,6 @@ def test_what_is_none_is_refused(add, options):
     assert contents() == before
 
 
-def test_a_misspelt_name_gets_no_advice_for_the_command_line():
-    with pytest.raises(RuntimeError, match="did you mean trefoil") as error:
-        added(knot="trefol")
-    assert "--" not in sentence(error.value)
-    assert "mobius-flow" not in sentence(error.value)
-
-
 def test_components_of_links_have_their_own_materials():
     one, two = picked(knot="L6a4"), picked(knot="hopf")
     assert [spline.material_index for spline in one.data.splines] == [0, 1, 2]

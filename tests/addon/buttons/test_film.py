@@ -56,18 +56,6 @@ def test_a_film_in_a_look_shows_its_stage_and_gives_the_scene_back(scene, tmp_pa
     assert curve.materials[0].name == worn
 
 
-def test_a_stage_that_cannot_be_set_up_anew_is_filmed_as_it_stands(scene, tmp_path):
-    OPS.mobius_flow_set_up_stage()
-    for point in bpy.context.object.data.splines[0].points:
-        point.co = (0, 0, 0, 1)
-    before = contents()
-    film = Filming(scene, str(tmp_path / "film.mp4"), "PAPER")
-    (copy,) = [each for each in bpy.data.scenes if each != scene]
-    assert set(copy.objects) == set(scene.objects)
-    film.finish()
-    assert contents() == before
-
-
 def test_other_objects_are_left_out_until_the_stage_goes(scene, capfd):
     for name in ("Cube", "Hidden", "Post"):
         obj = bpy.data.objects.new(name, bpy.data.meshes.new(name))

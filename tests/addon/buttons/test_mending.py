@@ -70,15 +70,6 @@ def test_shared_data_becomes_ones_own():
     assert other.data.shape_keys is None
 
 
-def test_of_two_that_share_one_keeps_what_they_shared():
-    first, second = two()
-    data = second.data = first.data
-    mend(Remedy.SINGLE_USER)
-    assert first.data != data == second.data
-    second.location.x = 9
-    may_be_relaxed()
-
-
 def test_baked_curves_keep_their_keys_when_they_are_parted():
     first = relax_once()
     other = show(bpy.data.objects.new("Other", first.data))
@@ -290,14 +281,3 @@ def test_still_copies_stand_where_their_originals_are():
     assert first.animation_data is not None
     assert len(second.constraints) == 1
     may_be_relaxed()
-
-
-def test_only_what_needs_it_is_copied():
-    plain, keyed = two()
-    keyed.shape_key_add(name="Mine")
-    mend(Remedy.COPY)
-    assert plain.select_get()
-    assert not keyed.select_get()
-    assert len(bpy.context.selected_objects) == 2
-    may_be_relaxed()
-    assert [block.name for block in keyed.data.shape_keys.key_blocks] == ["Mine"]

@@ -53,14 +53,6 @@ def test_a_preset_of_the_extension_can_be_relaxed_with(path):
     assert not METHODS[options.method].comparison
 
 
-def test_what_the_two_are_for():
-    assert set(SHIPPED) == {"Animation", "Gradient Flow of the Paper"}
-    assert "Reiter and Schumacher" in METHODS[use(SHIPPED["Gradient Flow of the Paper"]).method].label
-    assert bpy.context.scene.mobius_flow.timing == "FLOW_TIME"
-    assert use(SHIPPED["Animation"]).length == 120
-    assert bpy.context.scene.mobius_flow.options == "tolerance=0.001"
-
-
 def test_options_that_a_preset_does_not_name_get_their_defaults():
     settings = bpy.context.scene.mobius_flow
     settings.energy, settings.stability, settings.start_frame = "edge", True, 33

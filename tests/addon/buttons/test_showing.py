@@ -49,14 +49,6 @@ def test_a_crossing(operator):
     assert not bpy.ops.curve.mobius_flow_show.poll(), "it was mended"
 
 
-def test_a_doubled_point(operator):
-    points = torus_trefoil(30).vertices
-    obj = add_curve([np.insert(points, 7, points[7], axis=0)])
-    assert fails(operator).startswith("Point 8 of spline 1 of 'Knot' and point 9 of spline 1 of 'Knot' are the same")
-    bpy.ops.curve.mobius_flow_show()
-    assert selected(obj) == [[7, 8]]
-
-
 def test_two_objects(operator):
     first, second = add_curve([AWAY], "Away"), add_curve([[[8.0, 1, 0], [10, 1, 0], [9, 1, -3]]], "Near")
     assert "of spline 1 of 'Near' touch or cross" in fails(operator)

@@ -130,14 +130,3 @@ def test_a_copy_has_the_deformed_shape_and_may_be_relaxed():
     assert not obj.modifiers["Bend"].use_apply_on_spline
     np.testing.assert_array_equal(evaluated(obj), shown)
     assert bpy.ops.curve.mobius_flow_relax(max_iterations=1) == {"FINISHED"}
-
-
-def test_a_curve_that_was_deformed_after_it_was_baked_is_refused_but_cleared():
-    obj = add_trefoil()
-    before = stored(obj.data)
-    bpy.ops.curve.mobius_flow_relax(max_iterations=2)
-    obj.modifiers.new("Wave", "WAVE")
-    bpy.context.view_layer.update()
-    assert "'Wave'" in refused()
-    assert bpy.ops.curve.mobius_flow_clear() == {"FINISHED"}
-    np.testing.assert_array_equal(stored(obj.data), before)

@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_curve, add_hopf_link, add_trefoil, contents, evaluated, fcurves, relax, stored, values
+from blender_scenes import add_curve, add_hopf_link, add_trefoil, evaluated, fcurves, relax, stored, values
 from families import crossed
 from mobius_flow.addon.curves import splines
 from mobius_flow.addon.curves.recorded import Recorded
@@ -91,30 +91,6 @@ def test_the_polygon_is_the_one_drawn_with_values_between_those_of_control_point
         assert (found.min(), found.max()) == (0.5, pytest.approx(1.5))
         if resolution == 12:
             np.testing.assert_allclose(found[::12], radii, atol=1e-6)
-
-
-def test_smooth_and_straight_splines_keep_their_order():
-    obj = smooth_link("BEZIER", 2)
-    polygon = obj.data.splines.new("POLY")
-    polygon.points.add(3)
-    square = np.array([[9, 0, 0, 1], [10, 0, 0, 1], [10, 1, 0, 1], [9, 1, 0, 1]], dtype=np.float32)
-    polygon.points.foreach_set("co", square.ravel())
-    polygon.use_cyclic_u = True
-    relax(**SAMPLED)
-    last = stored(obj.data)[-len(obj.data.splines[2].points) :]
-    assert np.abs(last[:, :3] - square[0, :3]).max() <= 1
-
-
-def test_a_segment_is_no_polygon():
-    obj = smooth_link("BEZIER", 12)
-    spline = obj.data.splines.new("BEZIER")
-    spline.bezier_points.add(1)
-    spline.bezier_points.foreach_set("co", (2 * hopf_link(6).vertices[:2] + 9).ravel())
-    spline.use_cyclic_u, spline.resolution_u = True, 1
-    before = contents()
-    with pytest.raises(RuntimeError, match="Spline 3 of 'Knot' is drawn with only 2 points; raise its Resolution U"):
-        relax(**SAMPLED)
-    assert contents() == before
 
 
 def test_the_questions_count_points_and_of_many_objects_some_are_asked_about():

@@ -104,18 +104,6 @@ def test_a_strand_follows_the_mouse_and_all_is_proved(operator):
     assert operator.run.report.certified
 
 
-@pytest.mark.parametrize("operator", ["process"], indirect=True)
-def test_a_worker_that_dies_in_mid_drag_loses_nothing(operator):
-    place = taken(operator)
-    operator.run._worker.process.kill()
-    operator.run._worker.process.wait()
-    for k in range(50):
-        move(operator, moved(place, 0.1 * k, 0.0, 0.0))
-    assert operator.until(lambda: False) == {"FINISHED"}
-    assert "memory may have run out" in operator.run.message
-    assert operator.run.report.certified
-
-
 def test_what_is_beside_the_curve_or_pressed_with_a_key_is_blenders(operator):
     add_curve([torus_trefoil(40).vertices])
     begin(operator)
@@ -206,16 +194,6 @@ def test_a_drag_is_taken_back(operator, pressed, let_go):
     assert len(keys(obj)) == operator.run.last.index + 1
     assert operator.run.last.index <= index + 20
     assert len(operator.run.energies) == operator.run.last.index + 1
-
-
-def test_an_object_that_is_deleted_in_mid_drag_ends_the_run(operator):
-    obj = add_curve([torus_trefoil(40).vertices])
-    begin(operator)
-    press(operator, on_curve(operator))
-    bpy.data.objects.remove(obj)
-    assert move(operator, [0.0, 0.0, 0.0]) == {"RUNNING_MODAL"}
-    assert operator.event() == {"CANCELLED"}
-    assert operator.run.drag is None
 
 
 def test_the_strand_in_front_is_held_where_two_cross(operator):

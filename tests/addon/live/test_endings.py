@@ -114,17 +114,6 @@ def test_points_that_were_added_meanwhile_are_taken_away(operator):
     assert everything() == before
 
 
-def test_a_bad_curve_is_refused_untouched(operator):
-    points = torus_trefoil(30).vertices.copy()
-    points[3] = points[2]
-    add_curve([points])
-    before = everything()
-    operator.start()
-    assert operator.until(lambda: False) == {"CANCELLED"}
-    assert operator.reports[-1][0] == {"ERROR"}
-    assert everything() == before
-
-
 def test_keys_that_are_half_written_are_taken_away(operator, monkeypatch):
     written = keyframes.write
 

@@ -142,13 +142,3 @@ def test_other_tubes_are_not_changed(operator, knot, factor):
     operator.reach(4)
     assert knot.data.bevel_depth == depth
     operator.run.cancel()
-
-
-def test_a_tube_that_somebody_else_takes_over_still_counts_as_fitted(operator, knot):
-    operator.start()
-    operator.reach(4)
-    depth = knot.data.bevel_depth
-    knot.data.splines[0].points.add(1)
-    operator.event()
-    assert operator.run.state.over
-    assert (knot.data.bevel_depth, is_fitted(knot.data)) == (depth, True)

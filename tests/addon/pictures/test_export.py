@@ -171,26 +171,6 @@ def test_what_blender_cannot_write_leaves_the_old_file(tmp_path, tiny, iterates,
     assert os.listdir(tmp_path) == ["a.blend"]
 
 
-@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="the superuser may write anywhere")
-def test_a_read_only_directory(tmp_path, iterates):
-    tmp_path.chmod(0o500)
-    try:
-        with pytest.raises(MobiusFlowError, match="cannot be written"):
-            export.write_blend(tmp_path / "a.blend", iterates)
-        assert os.listdir(tmp_path) == []
-    finally:
-        tmp_path.chmod(0o700)
-
-
-@pytest.mark.slow
-def test_the_trial_of_workbench_runs_nothing_of_the_working_directory(tmp_path, monkeypatch):
-    mark = tmp_path / "mark"
-    (tmp_path / "bpy.py").write_text(f"open({str(mark)!r}, 'w').close()\n")
-    monkeypatch.chdir(tmp_path)
-    rendering.workbench_works()
-    assert not mark.exists()
-
-
 def test_lines_of_drivers_are_kept_out(capfd):
     with rendering.quiet():
         os.write(1, b"Blender\n")

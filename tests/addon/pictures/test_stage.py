@@ -140,16 +140,6 @@ def test_an_object_that_something_moves_is_in_sight(scene):
     see(scene, [obj], range(1, 41, 3))
 
 
-def test_several_objects_with_keys_at_different_frames_are_in_sight(scene):
-    one = baked(start_frame=1)
-    one.select_set(False)
-    other = baked(start_frame=21)
-    other.location.x = 12
-    bpy.context.view_layer.update()
-    staging.set_up(scene, [one, other])
-    see(scene, [one, other], range(1, 31, 2))
-
-
 def test_a_curve_without_keys_has_a_camera_at_rest_and_is_not_seen_from_its_edge(scene):
     obj = add_trefoil()
     obj.data.bevel_depth = 0.1

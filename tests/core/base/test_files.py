@@ -101,10 +101,3 @@ def test_a_pipe_gets_the_whole_contents_at_the_end(tmp_path: Path) -> None:
     assert os.read(reader, 100) == b"all of it"
     os.close(reader)
     assert list(tmp_path.iterdir()) == [pipe]
-
-
-def test_long_suffixes_fit(tmp_path: Path) -> None:
-    target = tmp_path / ("a." + "b" * 250)
-    with atomic_write(target) as temporary:
-        temporary.write_text("x")
-    assert target.read_text() == "x"

@@ -3,7 +3,6 @@
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from types import FrameType
 
@@ -160,25 +159,3 @@ def test_threads_of_the_caller_may_overlap() -> None:
             leave.set()
             thread.join()
         assert threads() == {OWN}
-
-
-def test_other_threads_can_set_their_numbers_afterwards() -> None:
-    """Threadpoolctl leaves the pools to the thread that sets a number, until it lets go of them."""
-    relaxed, seen, leave = threading.Event(), set[int](), threading.Event()
-
-    def other() -> None:
-        minimize(TREFOIL, SHORT)
-        relaxed.set()
-        leave.wait()
-
-    def more() -> None:
-        with threadpoolctl.threadpool_limits(OWN + 1, "blas"):
-            seen.update(threads())
-
-    with ThreadPoolExecutor() as pool:
-        asleep = pool.submit(other)
-        relaxed.wait()
-        pool.submit(more).result()
-        leave.set()
-        asleep.result()
-    assert seen == {OWN + 1}

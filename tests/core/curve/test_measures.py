@@ -92,11 +92,6 @@ def test_both_are_means_over_views() -> None:
     assert (np.abs(seen.mean(axis=0) - writhe_and_crossings(curve)) < error).all()
 
 
-def test_blocks_of_rows_make_no_difference() -> None:
-    curve = smooth_knot("8_19", 130)
-    assert writhe_and_crossings(curve, rows=7) == pytest.approx(writhe_and_crossings(curve), abs=1e-12)
-
-
 def test_the_arcs_without_one_edge_have_all_pairs_of_edges_but_those_with_it() -> None:
     curve = smooth_knot("5_2", 40)
     arcs = [Curve(np.roll(curve.vertices, k, axis=0), Mesh((40,), (False,))) for k in range(40)]

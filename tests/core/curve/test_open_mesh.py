@@ -117,12 +117,3 @@ def test_refined_arcs_are_the_same_arcs(vertices: int | None) -> None:
     assert fine.mesh.closed == (False,)
     assert np.array_equal(fine.vertices[[0, -1]], curve.vertices[[0, -1]])
     assert {tuple(p) for p in curve.vertices.tolist()} <= {tuple(p) for p in fine.vertices.tolist()}
-
-
-def test_an_end_that_nearly_touches_is_a_strand_that_is_near() -> None:
-    """Edges are split at the end and where it is near to, as between other strands."""
-    hook = opened(Curve([[0.0, 0.02, 0.0], [0.0, 1.0, 0.0], [1.5, 1.0, 0.0], [1.5, 0.0, 0.0], [-1.0, 0.0, 0.0]]), 0)
-    fine = refine(hook)
-    nearest = np.argsort(np.linalg.norm(fine.midpoints, axis=1))[:3]
-    assert fine.edge_lengths[nearest].max() < 0.03
-    assert fine.edge_lengths[0] < 0.03

@@ -5,7 +5,7 @@ import pytest
 from mobius_flow.core import Curve, Mesh, OptionError
 from mobius_flow.core.collision import check_embedded
 from mobius_flow.core.curve.refine import Resolution, refine, subdivide
-from mobius_flow.core.knots import knot, knot_type
+from mobius_flow.core.knots import knot_type
 from mobius_flow.core.knots.closures import closed_far_away
 from shapes import hopf_link, lattice_knot, regular_polygon
 
@@ -71,12 +71,6 @@ def test_a_sharp_corner_is_no_near_strand(degrees, cuts):
     assert Resolution.usual <= len(refine(curve)) <= Resolution.usual + len(curve)
 
 
-def test_triangles_get_no_more_vertices_than_squares():
-    assert len(refine(regular_polygon(3))) <= Resolution.usual + 3
-    five = Curve.from_components([regular_polygon(3).vertices + 10 * k for k in range(5)])
-    assert len(refine(five)) <= 5 * (Resolution.usual + 3)
-
-
 @pytest.mark.parametrize("gap", [0.02, 0.005])
 @pytest.mark.parametrize("round_the_end", [False, True])
 def test_strands_side_by_side_are_near_though_a_bend_joins_them(gap, round_the_end):
@@ -118,12 +112,6 @@ def test_many_components_share_the_vertices(count, gap, most):
     pentagon = regular_polygon(5).vertices
     link = Curve.from_components([pentagon + gap * np.array([k % 40, k // 40, 0]) for k in range(count)])
     assert len(link) <= len(refine(link)) <= most
-
-
-def test_an_overhand_knot_is_a_trefoil():
-    closed = closed_far_away(knot("overhand", 60))
-    assert closed.mesh.all_closed
-    assert set(knot_type(closed).names) <= {"3_1", "m3_1"}
 
 
 def test_what_is_closed_stays_and_arcs_do_not_meet_far_away():

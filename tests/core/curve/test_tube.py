@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, Mesh
 from mobius_flow.core.collision.gap import thickness
-from mobius_flow.core.curve.tube import caps, carried, normals, quads, rings, signed_angle, tangents, tubes, turned
+from mobius_flow.core.curve.tube import caps, carried, normals, quads, rings, signed_angle, tangents, tubes
 from mobius_flow.core.knots import knot
 from shapes import hopf_link, lattice_knot, regular_polygon, torus_trefoil
 
@@ -152,16 +152,6 @@ def test_at_rest_normals_stay_and_a_rigid_motion_turns_them():
     u = normals(np.stack([points @ rotation.T, points]))
     back = u[0] @ rotation
     assert np.abs(signed_angle(back, u[1], tangents(points))).max() < 0.2
-
-
-def test_carrying_keeps_angles():
-    rng = np.random.default_rng(5)
-    a, b = (x / np.linalg.norm(x, axis=-1, keepdims=True) for x in rng.normal(size=(2, 20, 3)))
-    u = np.cross(a, b)
-    u /= np.linalg.norm(u, axis=-1, keepdims=True)
-    np.testing.assert_allclose(carried(u, a, b), u, atol=1e-12)  # the axis itself
-    phi = rng.uniform(-3, 3, 20)
-    np.testing.assert_allclose(signed_angle(u, carried(turned(u, a, phi), a, b), b), phi, atol=1e-9)
 
 
 def helix(n=80, turns=2.0):

@@ -133,13 +133,6 @@ def test_what_was_found_is_kept_when_a_trajectory_breaks_off(spoil: Callable[[Ar
     assert said in report.problem
 
 
-@pytest.mark.slow
-def test_a_heap_of_beads_is_refused() -> None:
-    heap = 1e-9 * np.random.default_rng(0).normal(size=(9_000, 3))
-    with pytest.raises(MobiusFlowError, match="frame 1: edges come near too many others"):
-        audit([heap, heap], 200)
-
-
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [

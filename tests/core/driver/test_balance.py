@@ -205,16 +205,6 @@ def test_the_limit_of_iterations_holds_on_the_way(part: float, more: int, said: 
     assert "balanced: " not in result.message
 
 
-@pytest.mark.slow
-def test_a_mesh_becomes_finer_where_strands_are_near_in_the_balanced_shape() -> None:
-    """Not where they were near before: in its balanced shape this knot's strands are far enough apart."""
-    plain, balanced = (minimize(knot("8_19"), RelaxOptions(balance=wanted)) for wanted in (False, True))
-    assert len(plain.curve) == 346
-    assert len(balanced.curve) == 228, "as at the start"
-    assert balanced.final_energy == pytest.approx(plain.final_energy, rel=2e-3)
-    assert "strands are nearer" not in balanced.message
-
-
 def test_what_is_balanced_already_is_said_to_be() -> None:
     result = minimize(knot("3_1"), RelaxOptions(balance=True))
     assert result.message.endswith("; no other shape of the same energy that can be reached bends less")

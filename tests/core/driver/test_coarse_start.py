@@ -8,11 +8,10 @@ from changed_moves import change
 from families import family
 from hard_curves import hard_unknot
 from mobius_flow.core import Curve, Iterate, Outcome, RelaxOptions, Status, minimize
-from mobius_flow.core.curve import Mesh, refine
-from mobius_flow.core.curve.refine import smoothed
+from mobius_flow.core.curve import refine
 from mobius_flow.core.driver.moves import CoarseStart
 from mobius_flow.core.driver.outcome import Rises
-from mobius_flow.core.knots import knot, scramble
+from mobius_flow.core.knots import knot
 from shapes import regular_polygon, torus_trefoil
 from tasks import proved
 
@@ -121,25 +120,6 @@ def test_no_component_has_more_vertices_at_first_than_in_the_end(corners: int) -
 def test_where_vertices_are_to_stay_they_do(options: dict[str, object]) -> None:
     iterates = relaxed(bent(torus_trefoil(300)), **{"max_iterations": 3} | options)
     assert {len(iterate.curve) for iterate in iterates} == {300}
-
-
-@pytest.mark.parametrize("dimension", [2, 3])
-def test_smooth_curves_through_polygons(dimension: int) -> None:
-    coarse = regular_polygon(24, dimension)
-    fine = smoothed(coarse, Mesh((500,)))
-    np.testing.assert_allclose(np.linalg.norm(fine.vertices, axis=1), 1.0, atol=1.5e-5)  # (2π∕24)⁴∕384
-    assert np.ptp(fine.edge_lengths) < 1e-3 * fine.edge_lengths.mean()
-    np.testing.assert_array_equal(fine.vertices[0], coarse.vertices[0])
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("everywhere")
-def test_vertices_come_back_in_a_tangle_too() -> None:
-    """Strands leave way for part of the motion to the smooth curve."""
-    tangle = scramble(regular_polygon(60), seed=5)
-    iterates = relaxed(refine(tangle, 2000), max_iterations=60)
-    assert len(iterates[-1].curve) == 2000
-    assert iterates[-1].edge_length_error < 0.5
 
 
 @pytest.mark.usefixtures("everywhere")

@@ -10,7 +10,6 @@ from changed_moves import change
 from families import family
 from mobius_flow.core import METHODS, Curve, Iterate, Objective, RelaxOptions, Result, Status, Task, minimize, relax
 from mobius_flow.core.curve import Mesh
-from mobius_flow.core.curve.refine import Resolution, subdivide, target_spacing
 from mobius_flow.core.driver.moves import FinerMesh
 from mobius_flow.core.energies import ENERGIES
 from mobius_flow.core.knots import knot
@@ -152,12 +151,3 @@ def test_ends_that_nearly_touch_are_held_with_few_vertices(gap):
     assert result.status is Status.CONVERGED
     assert "closer than this mesh resolves" in result.message
     assert len(result.curve) < 1000
-
-
-def test_edges_per_gap():
-    """Two long parallel strands 1/50 of their length apart, and the wide bends that join them."""
-    curve = Curve([[0, 0, 0], [10, 0, 0], [10, 0.2, 0], [0, 0.2, 0.0]])
-    curve = subdivide(curve, np.array([100, 2, 100, 2]))
-    one, six = (target_spacing(curve, Resolution(200, edges)) for edges in (1.0, 6.0))
-    np.testing.assert_allclose(one[10:90], curve.length / 200)
-    np.testing.assert_allclose(six[10:90], 0.2 / 6, rtol=1e-2)

@@ -21,7 +21,6 @@ from mobius_flow.core import (
 )
 from mobius_flow.core.energies.pull import REACH, Pull, share_of
 from mobius_flow.core.knots import knot, knot_type
-from mobius_flow.core.solve.metrics import DenseInnerProduct, SparseInnerProduct
 from shapes import hopf_link, opened, regular_polygon, torus_trefoil
 from smooth_curves import random_polygon
 from solids import plate
@@ -71,13 +70,6 @@ def test_the_metric_has_the_stiffness(solver: str) -> None:
     pull = Pull.at(point.curve, 0, 0.3, 40.0)
     plain, held = (each.inner_product.dense() for each in (point, point.pulled(pull)))
     np.testing.assert_allclose(held - plain, pull.stiffness(curve).toarray(), atol=1e-9 * np.abs(plain).max())
-
-
-def test_a_sparse_form_is_added_to_a_dense_one_as_a_matrix_is() -> None:
-    curve = torus_trefoil(20)
-    dense, sparse = DenseInnerProduct(np.eye(20) + 1.0), SparseInnerProduct(pulled(curve).stiffness(curve))
-    np.testing.assert_allclose(dense.plus(sparse, 2.0).dense(), dense.dense() + 2.0 * sparse.dense())
-    np.testing.assert_array_equal(dense.dense(), np.eye(20) + 1.0)
 
 
 def test_what_a_moved_target_keeps_is_what_would_be_computed_anew() -> None:
@@ -222,25 +214,6 @@ def test_undo_goes_back_to_the_mesh_that_there_was(mesh: str) -> None:
                 undone = True
     assert undone, "the mesh has changed under the hand"
     check(seen)
-
-
-def test_what_a_hand_holds_survives_other_meshes() -> None:
-    """Where vertices come and go the same place is held."""
-    hand, seen = Hand(), []
-    task = Task(curve=torus_trefoil(60))
-    for iterate in relax(task, RelaxOptions(vertices=60, mesh="adaptive", tolerance=1e-3), hand=hand):
-        if iterate.index == 3:
-            hand.grab(0, 0.25)
-        if 3 <= iterate.index < 40:
-            middle = iterate.curve.vertices.mean(axis=0)
-            hand.move(middle + 0.1 * (iterate.index - 3) * np.array([0.0, 0.0, 1.0]))
-        if iterate.index == 40:
-            hand.release()
-        seen.append(iterate)
-    assert len({len(iterate.curve) for iterate in seen}) > 1
-    top = seen[40].curve
-    height = top.vertices[:, 2] - top.vertices[:, 2].mean()
-    assert share_of(top, 0, top.vertices[height.argmax()]) == pytest.approx(0.25, abs=0.05)
 
 
 def test_what_is_no_place_or_no_point_is_refused() -> None:

@@ -32,7 +32,7 @@ from mobius_flow.core.knots import double, knot, overhand, torus_knot
 from mobius_flow.lab import starts
 from shapes import hopf_link, regular_polygon, torus_trefoil
 from solids import plate
-from tasks import check, proved, wanted
+from tasks import check, wanted
 
 VERTICES = 60
 OPTIONS = RelaxOptions(radius="none", mesh="fixed", vertices=VERTICES, hops=1, seed=1)
@@ -119,13 +119,6 @@ def test_motions_take_turns_in_runs_and_in_starts_of_a_batch(monkeypatch: pytest
     assert turns == list(islice(cycle(map(type, MOTIONS)), 4))
 
 
-@pytest.mark.slow
-def test_more_hops_begin_with_the_same_ones_and_never_end_higher(hopped: Recorded, plain: Recorded) -> None:
-    more, result = recorded(hops=2)
-    assert same(more[: len(hopped[0])], hopped[0])
-    assert plain[1].energies[-1] > hopped[1].energies[-1] >= result.energies[-1]
-
-
 @pytest.mark.parametrize(
     ("error", "said"),
     [(KeyboardInterrupt, "interrupted: "), (np.linalg.LinAlgError, "; hops that lowered the energy: 0 of 1")],
@@ -167,12 +160,6 @@ def test_a_trial_takes_no_more_iterations_than_are_left(plain: Recorded) -> None
     run = run_of(replace(OPTIONS, max_iterations=plain[1].last.index + 10))
     list(WithOutcome(iterates(run, MOVES)))
     assert plain[1].last.index < run.iterations <= run.max_iterations
-
-
-@pytest.mark.slow
-def test_the_mesh_becomes_finer_before_and_after() -> None:
-    result, _ = proved(SADDLE, mesh="finer", vertices=VERTICES, hops=1, seed=1)
-    assert "hops that lowered the energy: 1 of 1" in result.message
 
 
 # -- where hops are pointless ----------------------------------------------------------------------------------------

@@ -9,7 +9,7 @@ import pytest
 from mobius_flow.core import Curve, Mesh, Obstacle, RelaxOptions, Status, minimize
 from mobius_flow.core.curve import refine
 from mobius_flow.core.driver.moves import links
-from mobius_flow.core.driver.moves.links import DIRECTIONS, _near, open_knots, separate_parts
+from mobius_flow.core.driver.moves.links import DIRECTIONS, open_knots, separate_parts
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.knots import knot, overhand
 from mobius_flow.core.knots.composite import Ball
@@ -65,16 +65,6 @@ def test_parts_of_thousands_of_components_without_a_matrix_of_all_pairs():
     far = [ring([1.5 * k, 1e6 * (k + 1), 0.0], size=3) for k in range(10)]
     parts = separate_parts(Curve.from_components([*chain, *far]))
     assert parts == (0,) * count + tuple(range(1, 11))
-
-
-@pytest.mark.parametrize("seed", range(2))
-def test_near_balls_are_all_found(seed):
-    rng = np.random.default_rng(seed)
-    centers, radii = rng.uniform(0, 30, (80, 3)), 10.0 ** rng.uniform(-2, 1, 80)
-    distance = np.linalg.norm(centers[:, None] - centers, axis=2)
-    near = distance < radii[:, None] + radii + np.maximum(radii[:, None], radii)
-    found = _near(centers, radii, 1.0).toarray()
-    np.testing.assert_array_equal(found | found.T, near)
 
 
 @pytest.fixture

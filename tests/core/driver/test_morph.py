@@ -102,16 +102,6 @@ def test_the_invariant_that_tells_types_apart_is_named(a, b, invariant):
         morph(a, b)
 
 
-def test_mutants_of_different_genera_are_told_apart():
-    """Conway's knot and Kinoshita's and Terasaka's, which no polynomial of the table distinguishes."""
-    pytest.importorskip("knot_floer_homology")
-    conway = "3 1 4 22 1 7 2 6 7 3 8 2 11 4 12 5 5 12 6 13 8 16 9 15 20 9 21 10 10 17 11 18 18 13 19 14 14 19 15 20"
-    other = "3 1 4 22 1 7 2 6 7 3 8 2 11 4 12 5 5 12 6 13 8 17 9 18 14 9 15 10 10 20 11 19 18 14 19 13 20 15 21 16"
-    a, b = knot(f"PD: {conway} 16 22 17 21"), knot(f"PD: {other} 16 21 17 22")
-    with pytest.raises(NoMotionError, match=r"genera 3 and 2, by knot Floer homology"):
-        morph(a, b, callback=lambda _: pytest.fail("something moved"))
-
-
 def test_shapes_that_do_not_meet_are_told_with_their_energies():
     stopped = RelaxOptions(max_iterations=0, mesh="fixed")
     corners = [[x, y, z] for x in (-9.0, 9.0) for y in (-9.0, 9.0) for z in (-9.0, 9.0)]

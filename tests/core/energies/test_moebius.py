@@ -38,14 +38,6 @@ def test_orthogonal_circles_in_four_dimensions(n: int) -> None:
     assert ENERGY.value(link) == pytest.approx(8 + 4 * n**2 * np.tan(np.pi / n) ** 2, rel=1e-12)
 
 
-def test_triangles_have_no_disjoint_edges() -> None:
-    curve = Curve([[0, 0], [1, 0], [0, 1.0]])
-    energy, derivative = ENERGY.value_and_derivative(curve)
-    assert energy == 4
-    assert not derivative.any()
-    assert not ENERGY.hessian(curve).any()
-
-
 @pytest.mark.parametrize("n", [60, 400])
 def test_energy_per_length(n: int) -> None:
     curve = torus_trefoil(n)

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, MobiusFlowError, MoebiusEnergy, Objective, OptionError, RelaxOptions, minimize
-from mobius_flow.core.curve.measures import bending
 from mobius_flow.core.energies import ENERGIES, TERMS, Bending, Term, Weighted, is_moebius_invariant
 from shapes import regular_polygon, torus_trefoil
 from smooth_curves import random_polygon
@@ -36,16 +35,6 @@ def test_the_stiffness_of_several_terms_adds_up() -> None:
     curve, term = regular_polygon(20), Bending()
     both = Objective(further=(Weighted(term, 2.0), Weighted(term, 0.5)))
     np.testing.assert_allclose(both.stiffness(curve).toarray(), 2.5 * term.stiffness(curve).toarray())
-
-
-def test_bending_makes_relaxed_curves_rounder_and_steps_no_shorter() -> None:
-    curve = torus_trefoil(60)
-    plain, bent = (
-        minimize(curve, RelaxOptions(vertices=60, mesh="fixed", terms=terms)) for terms in ((), [("bending", 0.5)])
-    )
-    assert bending(bent.curve) < bending(plain.curve)
-    assert bent.outcome.converged
-    assert len(bent.energies) < 3 * len(plain.energies)
 
 
 class Height:

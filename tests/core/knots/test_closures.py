@@ -19,13 +19,6 @@ def test_deep_knots_stay_and_shallow_ones_depend_on_the_direction():
     assert set(types) == {"3_1", "unknot"}
 
 
-def test_shares_are_those_of_the_sphere():
-    """An arc that a ray to one side unties: the half twist of a loop, whose ends point apart."""
-    angle = np.linspace(0.0, 2.0 * np.pi - 0.3, 60)
-    ring = Curve(np.column_stack([np.cos(angle), np.sin(angle), 0.1 * angle]), Mesh((60,), (False,)))
-    assert closures(ring, 30) == {"unknot": 30}
-
-
 def test_links_close_component_by_component():
     hopf = knot("hopf", 80)
     arc = Curve(hopf.vertices[:-1], Mesh((40, 39), (True, False)))

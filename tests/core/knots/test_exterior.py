@@ -4,10 +4,10 @@ import sys
 
 import numpy as np
 import pytest
-from mobius_flow.core.knots import HARD_UNKNOTS, KNOTS, braid_word, coded_knot, exterior, knot_type
-from mobius_flow.core.knots.braids import braid_diagram, connected_sum
+from mobius_flow.core.knots import HARD_UNKNOTS, KNOTS, coded_knot, exterior, knot_type
+from mobius_flow.core.knots.braids import braid_diagram
 from mobius_flow.core.knots.diagrams import diagram_of
-from mobius_flow.core.knots.exterior import CENSUS, GENUS, GROUP, KnotGroup, floer, group, names_by_exterior
+from mobius_flow.core.knots.exterior import CENSUS, GENUS, GROUP, KnotGroup, floer, group
 from mobius_flow.core.knots.knot_type import type_of_diagram
 
 GENERA = {"3_1": 1, "4_1": 1, "5_1": 2, "7_4": 1, "8_19": 3, "10_132": 2}
@@ -67,19 +67,6 @@ def test_groups_are_presented(name):
     for without in ((), (1, 1, 3, 3), (1,) * 151):  # too small, falls apart, too large
         assert group(braid_diagram(without)) is None
     assert group(diagram_of(HARD_UNKNOTS["ochiai-1"])) == KnotGroup(("a",), ())
-
-
-def test_only_three_knots_are_fibered_of_genus_one():
-    pytest.importorskip("knot_floer_homology")
-    found = {
-        name
-        for name, word in KNOTS.items()
-        if name[0] != "L" and name != "0_1" and names_by_exterior(braid_diagram(word))[0]
-    }
-    assert found == {"3_1", "4_1"}
-    long = braid_diagram((*braid_word("3_1"), *[letter for k in range(5) for letter in (2, -2)]))
-    assert type_of_diagram(long).names in (("3_1",), ())
-    assert floer(braid_diagram(connected_sum(KNOTS["3_1"], KNOTS["3_1"]))).genus == 2
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,6 @@ from families import crossed
 from knot_diagrams import pairwise_linking
 from knot_type import UNKNOT, knot_invariants
 from mobius_flow.core import Curve, CurveError
-from mobius_flow.core.collision import check_embedded
 from mobius_flow.core.knots import cable, double, knot, lissajous_knot, smooth_knot, torus_knot
 from mobius_flow.core.knots.formulas import MAX_STRANDS, SolidTorus
 from shapes import regular_polygon
@@ -86,12 +85,6 @@ def test_small_lissajous_knots(frequencies: tuple[int, int, int], phases: tuple[
         knot_invariants(curve.vertices) for curve in (lissajous_knot(frequencies, phases), smooth_knot(name))
     )
     assert (found.alexander, found.genus, found.rank) == (expected.alexander, expected.genus, expected.rank)
-
-
-def test_a_lissajous_knot_fills_its_box_and_is_embedded() -> None:
-    curve = lissajous_knot((3, 5, 7), (0.3, 0.15))
-    check_embedded(curve)
-    assert np.ptp(curve.vertices, axis=0) == pytest.approx(2.0, abs=0.01)
 
 
 @pytest.mark.parametrize(

@@ -9,13 +9,10 @@ from knot_type import knot_invariants
 from mobius_flow.core import Curve
 from mobius_flow.core.base.errors import CurveError, MobiusFlowError
 from mobius_flow.core.knots import (
-    FORMULAS,
-    HARD_UNKNOTS,
     KNOTS,
     UnknownKnotError,
     braid_word,
     knot,
-    knot_names,
     knot_type,
     lissajous_knot,
     smooth_knot,
@@ -158,13 +155,6 @@ def test_rational_knots_and_others_are_plats(name: str) -> None:
     assert set(found.names) <= names
     assert found.diagram is not None
     assert name not in CONWAY or found.diagram.crossings == sum(CONWAY[name])
-
-
-def test_listed_names_are_names() -> None:
-    names = knot_names()
-    assert {"3_1", "L5a1", "figure-eight", "haken", "sheet-bend"} < set(names)
-    no_words = {*HARD_UNKNOTS, *FORMULAS, "0_1", "unknot", "circle"}
-    assert all(name in no_words or braid_word(name) for name in names)
 
 
 MAKERS = {

@@ -58,14 +58,6 @@ def test_codes_have_room_though_faces_lie_in_faces(word: tuple[int, ...]) -> Non
     assert quick_invariants(curve) == quick_invariants(braid_closure(word))
 
 
-def test_number_of_vertices() -> None:
-    assert len(knot("Goeritz unknot", 100)) == 100
-    assert np.array_equal(knot("ochiai 1").vertices, knot("Ochiai-1").vertices)
-    for vertices, said in ((43, "too few"), (10**9, "too many")):
-        with pytest.raises(CurveError, match=said):
-            knot("goeritz", vertices)
-
-
 @pytest.mark.parametrize(
     ("code", "said"),
     [

@@ -14,7 +14,7 @@ from mobius_flow.core.collision import is_free
 from mobius_flow.core.curve.refine import subdivide
 from mobius_flow.core.knots import ALIASES, KNOTS, UnknownKnotError, smooth_knot
 from mobius_flow.core.knots.inscribed import equal_steps, is_isotopic
-from mobius_flow.core.knots.shapes import FILE, QUANTUM, SmoothShape, least_energies, shapes
+from mobius_flow.core.knots.shapes import FILE, QUANTUM, least_energies, shapes
 from mobius_flow.lab.smooth.rest import energy_of
 
 
@@ -96,15 +96,3 @@ def test_shapes_are_made_anew_as_they_are_stored(name: str, tmp_path: Path, monk
     assert len(made) == len(stored)
     for one, other in zip(made, stored, strict=True):
         np.testing.assert_allclose(one, other, rtol=0, atol=4 * QUANTUM)
-
-
-def test_what_is_stored_is_read_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    rng = np.random.default_rng(3)
-    parts = [QUANTUM * rng.integers(-9000, 9000, size=(n, 3, 2)) for n in (4, 2, 7)]
-    first, second, third = (part[..., 0] + 1j * part[..., 1] for part in parts)
-    tool.store({"a": SmoothShape((first, second)), "b": SmoothShape((third,))}, tmp_path / "shapes.npz")
-    monkeypatch.setattr("mobius_flow.core.knots.shapes.FILE", tmp_path / "shapes.npz")
-    found = shapes.__wrapped__()
-    assert list(found) == ["a", "b"]
-    for got, given in zip((*found["a"].coefficients, *found["b"].coefficients), (first, second, third), strict=True):
-        assert np.array_equal(got, given)

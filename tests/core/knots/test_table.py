@@ -1,8 +1,6 @@
 """Every knot of the table has the type its name says, checked from the coordinates and from the word."""
 
-import re
 from collections import defaultdict
-from pathlib import Path
 
 import pytest
 from braid_words import burau_alexander
@@ -12,7 +10,7 @@ from jones import jones
 from knot_diagrams import pairwise_linking, simplified
 from knot_type import UNKNOT, knot_invariants
 from known_knots import KNOWN
-from mobius_flow.core.knots import ALIASES, KNOTS, knot, knot_type, smooth_knot
+from mobius_flow.core.knots import ALIASES, KNOTS, knot, smooth_knot
 from mobius_flow.core.knots.braids import braid_diagram
 from mobius_flow.core.knots.diagrams import diagram_of, normalized_bracket
 from mobius_flow.core.knots.diagrams import jones as quick_jones
@@ -89,15 +87,3 @@ def test_geometry(name: str) -> None:
     assert lengths.max() < 1.1 * lengths.min()
     assert abs(curve.vertices).max() < 1.7
     assert strand_distance(curve) > lengths.max()
-
-
-def test_determinants_tell_which_knots_are_meant_whose_numbers_are_in_doubt() -> None:
-    page = (Path(__file__).parents[3] / "docs" / "least-energies.md").read_text(encoding="utf-8")
-    rows = dict(re.findall(r"^\| (10_\d+) \| (\d+) \|", page, re.MULTILINE))
-    assert list(rows) == [f"10_{number}" for number in (83, 86, 161, 162, 163, 164, 165)]
-    for name, determinant in rows.items():
-        found = knot_type(knot(name))
-        assert found.names == (name,)
-        assert found.determinant == int(determinant)
-    perkos = "DT: 4 12 -16 14 -18 2 8 -20 -10 -6"  # a code of one of Perko's two diagrams
-    assert knot_type(knot(perkos)).names == ("10_161",)

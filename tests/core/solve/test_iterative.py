@@ -131,15 +131,6 @@ def test_iterations_do_not_grow_with_the_mesh(monkeypatch, kind: str) -> None:
     assert counts[0] <= (8 if kind == "torus" else 25)
 
 
-def test_iterations_do_not_grow_with_the_number_of_components(monkeypatch) -> None:
-    counts = []
-    for number in (10, 100, 400):
-        curve = chain_of_rings(number, (12, 20, 9))
-        load = np.random.default_rng(41).normal(size=curve.vertices.shape)
-        counts.append(outer_iterations(monkeypatch, space_at(curve), load))
-    assert max(counts) <= 25
-
-
 def with_compressed_metric(curve: Curve) -> Point:
     class Compressed(MoebiusMetric):
         def at(self, curve: Curve) -> CompressedInnerProduct:

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from mobius_flow.core import CurveError, OptionError, RelaxOptions, minimize
+from mobius_flow.core import OptionError, RelaxOptions, minimize
 from mobius_flow.core.curve import Mesh
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.energies.quadrature import ENDS, TAIL, Rule
@@ -181,15 +181,6 @@ def test_a_metric_of_ones_own_is_an_object_as_an_energy_is():
         for metric in (Own(), METRICS["l2"])
     )
     assert own == pytest.approx(usual / np.sqrt(10.0), rel=1e-9)
-
-
-def test_a_name_does_not_make_it_one_of_the_table():
-    """Those for many vertices are compressed; this one is not, and has the bound that it says."""
-    options = RelaxOptions(metric=Own(), solver="hierarchical", method="flow-moebius")
-    assert start_problem(torus_trefoil(40), options).metric.name == "moebius"
-    assert isinstance(start_problem(torus_trefoil(40), options).metric, Own)
-    with pytest.raises(CurveError, match="has 101 vertices; flow-moebius has room and time for 100"):
-        start_problem(torus_trefoil(101), options)
 
 
 def test_a_metric_beside_a_method_that_names_another_is_refused():

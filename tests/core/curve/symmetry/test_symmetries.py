@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, CurveError, OptionError, RelaxOptions, minimize
+from mobius_flow.core import Curve, CurveError, OptionError
 from mobius_flow.core.curve.symmetry import SymmetryGroup, standing, symmetries
 from mobius_flow.core.curve.symmetry.group import schoenflies
-from mobius_flow.core.driver.moves.balance import balanced, moebius_image
 from mobius_flow.core.knots import smooth_knot, torus_knot
 from scipy.spatial.transform import Rotation
 from shapes import chain_of_rings, half_circle, regular_polygon
@@ -151,14 +150,6 @@ def test_the_best_of_several_subgroups_is_taken() -> None:
     part = symmetries(bent, 0.2).subgroup("C2")
     assert part is not None
     assert part.distance < 1e-9
-
-
-def test_balanced_images_have_the_symmetry_that_others_hide() -> None:
-    curve = minimize(torus_knot(2, 3, 90), RelaxOptions(mesh="fixed", tolerance=1e-6)).curve
-    points = curve.vertices / np.abs(curve.vertices).max()
-    image = curve.with_vertices(moebius_image(points, np.array([1.0, 0.2, 0.1, 0.15])))
-    assert symmetries(image).name == "C1"
-    assert symmetries(balanced(image)).name == "D3"
 
 
 RING, COARSE = (regular_polygon(n).vertices for n in (80, 20))

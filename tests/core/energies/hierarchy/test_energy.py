@@ -11,7 +11,7 @@ from mobius_flow.core.energies.hierarchy import BlockList, HierarchicalMoebiusEn
 from mobius_flow.core.knots import knot
 from mobius_flow.core.solve.metrics import FractionalMetric, L2Metric
 from mobius_flow.core.solve.metrics.moebius import MoebiusMetric
-from shapes import hopf_link, regular_polygon, scattered_rings, torus_trefoil
+from shapes import hopf_link, scattered_rings, torus_trefoil
 from smooth_curves import SMOOTH_CURVES, random_polygon
 from taylor import derivative_slope
 
@@ -83,22 +83,6 @@ def test_products_with_the_second_derivative_to_four_digits(name: str, smooth: b
     error = with_small_leaves(curve).hessian_product(curve, v) - exact
     assert np.sum(error * inner.solve(error)) < 1e-8 * np.sum(exact * inner.solve(exact))
     np.testing.assert_array_equal(with_small_leaves(curve).hessian_product(curve, 0.0 * v), 0.0 * v)
-
-
-def test_taylor_slope_where_expansions_are_poor(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("mobius_flow.core.energies.hierarchy.energy.OUTDATED", 1.0)
-    curve = torus_trefoil(200)
-    poor = with_small_leaves(curve, 0.8)
-    assert poor.value(curve) != pytest.approx(MoebiusEnergy().value(curve), rel=1e-4)
-    assert derivative_slope(poor, curve, direction_for(curve), largest=1e-4) == pytest.approx(2, abs=0.02)
-
-
-def test_curves_without_blocks_or_pairs() -> None:
-    for curve in (regular_polygon(3), regular_polygon(5, 2), scattered_rings(1, 4)):
-        energy, derivative = HierarchicalMoebiusEnergy().value_and_derivative(curve)
-        exact, exact_derivative = MoebiusEnergy().value_and_derivative(curve)
-        assert energy == pytest.approx(exact, rel=1e-14)
-        np.testing.assert_allclose(derivative, exact_derivative, atol=1e-14)
 
 
 def test_error_falls_with_the_fifth_power_of_separation() -> None:

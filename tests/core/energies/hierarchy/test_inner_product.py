@@ -56,12 +56,6 @@ def test_near_the_exact_one_on_tangles(unknot: str) -> None:
 
 
 @METRIC
-def test_many_components_at_once(name: str) -> None:
-    """Clusters of several components, of which some are larger than leaves and some are not."""
-    assert_equivalent(name, chain_of_rings(80, (3, 11, 5)))
-
-
-@METRIC
 @pytest.mark.parametrize("sum_with", ["compressed", "sparse", "dense"])
 def test_sums(name: str, sum_with: str) -> None:
     curve = CURVES["chain"]

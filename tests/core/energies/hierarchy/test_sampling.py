@@ -6,7 +6,6 @@ from itertools import combinations
 import numpy as np
 import pytest
 from hard_curves import bent_trefoil
-from mobius_flow.core import Curve
 from mobius_flow.core.curve.refine import refine, subdivide
 from mobius_flow.core.descent import Point
 from mobius_flow.core.driver import RelaxOptions
@@ -94,16 +93,6 @@ def test_standard_errors_are_those_of_samples_without_replacement(count: int) ->
     assert np.mean([each.mean for each in told]) == pytest.approx(5.0 + numbers.sum())
     variance = np.var([each.mean for each in told])
     assert np.mean([each.standard_error**2 for each in told]) == pytest.approx(variance, abs=1e-12)
-
-
-def test_the_standard_error_does_not_grow_with_the_mesh() -> None:
-    """That of forces on single edges, in place of differences of energies, would grow like n."""
-
-    def spread(n: int) -> float:
-        curve = Curve(torus_trefoil(n).vertices * [1.0, 1.3, 0.8])
-        return slope_error(HierarchicalMoebiusEnergy(), curve, np.sin(curve.vertices[:, [1, 2, 0]])).standard_error
-
-    assert spread(16_000) < 1.5 * spread(2000)
 
 
 def test_each_stretch_of_a_curve_has_one_sampled_edge() -> None:

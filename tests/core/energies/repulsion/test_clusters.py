@@ -7,7 +7,7 @@ from mobius_flow.core.curve.obstacle import Obstacle
 from mobius_flow.core.energies.edge_pairs import change, stepped
 from mobius_flow.core.energies.repulsion.repulsion import THETA, Schedule
 from mobius_flow.core.energies.repulsion.simplices import Clusters
-from repulsion_references import quartered, repulsion, soup, sphere, wavy
+from repulsion_references import repulsion, soup, sphere, wavy
 from taylor import taylor_slope
 
 
@@ -96,9 +96,3 @@ def test_far_clusters(corners: int) -> None:
     np.testing.assert_allclose(np.sum(gradient * v, axis=0), value_change, rtol=1e-12)
     slope = taylor_slope(lambda t: clusters.potential(ROOT, x + t * v)[1], [gradient, gradient_change])
     assert slope == pytest.approx(2, abs=0.02)
-
-
-def test_quartered_triangles_are_the_same_surface() -> None:
-    coarse, curve = sphere(2), wavy(30, 0.8)
-    fine = soup(quartered(coarse.corners))
-    assert repulsion(fine).value(curve) == pytest.approx(repulsion(coarse).value(curve), rel=1e-8)

@@ -66,18 +66,6 @@ def test_the_work_grows_with_the_logarithm_of_the_gap(shape: str) -> None:
     assert points[-1] < 1000
 
 
-def test_contact_ends_the_halving() -> None:
-    obstacle, crossing = Obstacle(TRIANGLE, [[0, 1, 2]]), curve_of([0.3, 0.3, -0.5], [0.3, 0.3, 0.4])
-    value, derivative = repulsion(obstacle).value_and_derivative(crossing)
-    assert np.isfinite(value)
-    assert np.isfinite(derivative).all()
-    assert value > repulsion(obstacle).value(curve_of([0.3, 0.3, 1e-9], [0.3, 0.3, 0.4]))
-    _, schedule = integrated(obstacle, crossing)
-    widths = [panels.width[panels.edge == 0] for _, panels in schedule.single]
-    assert sum(np.sum(each) for each in widths) == 1.0
-    assert min(np.min(each, initial=1.0) for each in widths) == 2.0**-48
-
-
 def test_an_edge_may_be_in_the_middle_of_an_obstacle() -> None:
     box = np.array([[2.0, 2, 2], [2, -2, -2], [-2, 2, -2], [-2, -2, 2]])
     obstacle = Obstacle(box, [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]])

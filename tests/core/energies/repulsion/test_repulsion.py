@@ -9,7 +9,6 @@ from mobius_flow.core.energies import ENERGIES, Bending, Weighted
 from mobius_flow.core.energies.repulsion import Repulsion
 from mobius_flow.core.energies.repulsion.repulsion import OUTDATED, THETA
 from repulsion_references import potential_by_quadrature, repulsion, soup, sphere, wavy
-from shapes import hopf_link
 from tasks import wanted
 from taylor import derivative_slope, hessian_slope
 
@@ -201,16 +200,6 @@ def test_segments_among_triangles_repel_as_segments(named: list[int]) -> None:
     assert [len(term.clusters.simplices.corners) for term, _ in objective.further] == [3, 2]
     expected = Objective.of(MoebiusEnergy(), [BALL, FRAME]).value(wavy(24))
     assert objective.value(wavy(24)) == pytest.approx(expected, rel=1e-12)
-
-
-def test_a_polyline_repels_as_another_component_does() -> None:
-    """What the two have in common of the Möbius energy, of which the midpoint sums leave an error of second order."""
-    energy, (curve, other) = MoebiusEnergy(), hopf_link(300).components
-    alone = sum(energy.value(Curve(each)) for each in (curve, other))
-    following = np.arange(len(other)) + 1
-    polyline = Obstacle(other, np.stack([following - 1, following % len(other)], axis=1))
-    expected = energy.value(Curve.from_components([curve, other])) - alone
-    assert repulsion(polyline, THETA).value(Curve(curve)) == pytest.approx(expected, rel=1e-3)
 
 
 def test_thin_triangles_give_numbers_and_what_has_no_area_repels_nothing() -> None:

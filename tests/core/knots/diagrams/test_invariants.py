@@ -93,13 +93,6 @@ def test_the_bracket_by_own_crossings_is_that_of_all_orientations() -> None:
     assert normalized_bracket(one, one.own_writhe) == normalized_bracket(other, other.own_writhe)
 
 
-def test_circles() -> None:
-    assert jones(CIRCLE) == {0: 1}
-    assert jones(Diagram(((), ()), ())) == {1: -1, -1: -1}
-    assert alexander(CIRCLE) == (1,)
-    assert signature(CIRCLE) == 0
-
-
 def test_what_is_too_large_is_not_computed() -> None:
     assert alexander(braid_diagram((1,) * (MAX_CROSSINGS + 1))) is None
     assert jones(braid_diagram(tuple(range(1, 14)) * 14)) is None

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from families import crossed
 from hard_curves import hard_unknot
-from mobius_flow.core import CurveError
 from mobius_flow.core.knots import braid_word, knot, scramble
 from mobius_flow.core.knots.braids import braid_diagram
 from mobius_flow.core.knots.diagrams import Diagram, factors, is_least, jones, shuffled_down, simplified, views
@@ -96,10 +95,3 @@ def test_factors_are_found_and_hard_unknots_lose_all_crossings(name: str) -> Non
     diagram = next(views(hard_unknot(80, len(name)), 1))
     assert diagram.crossings > 60
     assert shuffled_down(simplified(diagram), is_least).crossings == 0
-
-
-def test_views_of_flat_curves_and_of_strands_in_contact() -> None:
-    assert next(views(knot("0_1"), 1)).crossings == 0
-    hopf = knot("hopf")
-    with pytest.raises(CurveError, match="no view of the curve shows which one is in front"):
-        next(views(hopf.with_vertices(hopf.vertices * [1.0, 1.0, 0.0]), 3))
