@@ -7,7 +7,6 @@ import json
 import re
 import shlex
 import shutil
-import subprocess
 import sys
 import zipfile
 from collections.abc import Callable
@@ -357,28 +356,3 @@ def test_energies_are_rounded_to_their_errors():
     assert [data.rounded(74.4120429, error) for error in (3e-8, 2e-3, 0.3, 1e-15)] == [
         *("74.41204290", "74.412", "74.4", "74.412042900")
     ]
-
-
-@pytest.mark.skipif(shutil.which("chromium") is None, reason="a browser")
-def test_the_index_is_sorted_and_filtered_in_a_browser(tmp_path):
-    rows = "".join(f'<tr data-name="{name}"><td {value}></td></tr>' for name, value in ORDER)
-    script = (Path(make.__file__).parent / "sort.js").read_text(encoding="utf-8")
-    done = """
-        document.querySelector("button").click();
-        document.querySelector("button").click();
-        const filter = document.getElementById("filter");
-        filter.value = "7_, l6";
-        filter.dispatchEvent(new Event("input"));"""
-    head = '<input id="filter"><table class="sortable"><thead><tr><th><button>a</button></th></tr></thead><tbody>'
-    page = tmp_path / "page.html"
-    page.write_text(f"<meta charset=utf-8>{head}{rows}</tbody></table><script>{script}{done}</script>")
-    options = "--headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking --disable-sync"
-    command = ["chromium", *options.split(), f"--user-data-dir={tmp_path}/profile", "--dump-dom", page.as_uri()]
-    shown = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120).stdout
-    found = [part.split('"')[0] for part in shown.split('data-name="')[1:]]
-    assert found == ["10_1", "L6a4", "3_1", "7_1", "9_1"]  # falling, and what is empty at the end
-    assert [f'data-name="{name}" hidden' in shown for name in found] == [True, False, True, False, True]
-
-
-VALUES = {"3_1": 2, "9_1": None, "7_1": -1, "10_1": 30, "L6a4": 4.5}
-ORDER = [(name, "" if value is None else f'data-value="{value}"') for name, value in VALUES.items()]

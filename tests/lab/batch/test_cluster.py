@@ -2,7 +2,6 @@
 
 import os
 import re
-import signal
 import socket
 import sys
 import time
@@ -83,30 +82,6 @@ def test_a_worker_that_is_killed_costs_no_row(port, rings, tmp_path, rows_of):
     assert complained == ""
     assert [row["name"] for row in rows_of(out)] == [f"ring{k}" for k in range(8)]
     assert {path.name for path in out.iterdir()} == {*(f"ring{k}" for k in range(8)), "results.csv", "results.parquet"}
-
-
-@pytest.mark.slow
-def test_an_interrupt_leaves_nothing_on_the_cluster(port, rings, tmp_path, rows_of):
-    out, address = tmp_path / "out", f"tcp://127.0.0.1:{port}"
-    words = ["batch", str(rings), "7_1..8_21", "-o", str(out), "--scheduler", address]
-    with cluster(port, 1, tmp_path) as processes, running([sys.executable, "-m", "mobius_flow", *words]) as process:
-        wait_for_one(out)
-        process.send_signal(signal.SIGINT)
-        said = process.communicate()
-        assert (process.returncode, *said) == (130, "", "mobius-flow: interrupted\n")
-        done = [row["status"] for row in rows_of(out)]
-        assert done
-        assert "failed" not in done
-        with distributed.Client(address) as client:
-            until = time.monotonic() + PATIENCE
-            while (left := client.run_on_scheduler(lambda dask_scheduler: len(dask_scheduler.tasks))) and (
-                time.monotonic() < until
-            ):
-                time.sleep(0.02)
-        assert left == 0
-        children = psutil.Process(processes[1].pid).children()
-    assert len(children) == 1  # it lives on as long as its worker, and no longer
-    assert psutil.wait_procs(children, timeout=PATIENCE)[1] == []
 
 
 @pytest.mark.slow

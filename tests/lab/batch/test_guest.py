@@ -64,14 +64,6 @@ def with_a_column(path):
     pq.write_table(table.append_column("remark", pa.array(["mine"])), path)
 
 
-def with_a_note(path):
-    path.write_text(path.read_text().replace("stopped at", "discuss with Anna: stopped at"))
-
-
-def with_a_remark(path):
-    path.write_text(json.dumps(json.loads(path.read_text()) | {"remark": "mine"}))
-
-
 def emptied(path, **files):
     shutil.rmtree(path)
     path.mkdir()
@@ -89,19 +81,12 @@ FOREIGN = {
         "out/ring",
         partial(emptied, thesis_tex="x", report_json='{"row": {}, "recipe": {}}'),
     ),
-    "an empty folder": ("out/ring", emptied),
-    "a file in place of a folder": ("out/ring", lambda path: replaced_by(path, "mine")),
     "results behind a link": ("out/ring", moved_and_linked),
-    "a note among results": ("out/ring/note.md", lambda path: path.write_text("mine")),
     "a folder among results": ("out/ring/pictures", lambda path: path.mkdir()),
     "a curve that was edited": ("out/ring/curve.txt", lambda path: path.write_text(f"{path.read_text()}# mine\n")),
     "a trajectory of another program": ("out/ring/trajectory.npz", lambda path: replaced_by(path, "mine")),
-    "a report with a remark": ("out/ring/report.json", with_a_remark),
     "a report that is a pipe": ("out/ring/report.json", a_pipe),
-    "someone's table": ("out/results.csv", lambda path: replaced_by(path, "name,energy\n3_1,74\n")),
-    "a table with a note": ("out/results.csv", with_a_note),
     "a table that is a link": ("out/results.csv", moved_and_linked),
-    "a table that is a pipe": ("out/results.csv", a_pipe),
     "someone's Parquet table": ("out/results.parquet", lambda path: replaced_by(path, "PAR1")),
     "a Parquet table with another column": ("out/results.parquet", with_a_column),
     "a file in place of the directory": ("out", lambda path: replaced_by(path, "mine")),
@@ -163,28 +148,6 @@ def test_a_table_that_is_edited_during_the_work_survives(place, monkeypatch, cap
     monkeypatch.setattr(campaign, "live", lambda *_: nullcontext(lambda _: pytest.fail("done twice")))
     assert main(words) == 0
     assert "ring,1," in table.read_text()
-
-
-@pytest.mark.slow
-def test_a_batch_that_is_killed_between_its_tables_goes_on(place):
-    old = (place / "out/results.csv").read_bytes()
-    words = ["batch", str(place / "ring.txt"), "-o", str(place / "out"), "--quiet"]
-    assert main([*words, *OTHERWISE]) == 0
-    (place / "out/results.csv").write_bytes(old)  # the Parquet file is replaced first
-    assert main([*words, *QUICK]) == 0
-
-
-@pytest.mark.slow
-def test_results_that_are_called_like_unfinished_ones_are_not_swept_away(place):
-    name = ".mobius-flow-x.partial"
-    (place / "ring.txt").rename(place / f"{name}.txt")
-    words = ["batch", str(place / f"{name}.txt"), "-o", str(place / "out"), "--quiet"]
-    for options in (QUICK, OTHERWISE):
-        assert main([*words, *options]) == 0
-        os.utime(place / "out" / name, (OLD, OLD))
-    write_curve(place / "b.txt", regular_polygon(12))
-    assert main(["batch", str(place / "b.txt"), "-o", str(place / "out"), "--quiet", *QUICK]) == 0
-    assert len(os.listdir(place / "out" / name)) == 3
 
 
 def test_no_cell_is_a_formula(results, tmp_path, rows_of):
