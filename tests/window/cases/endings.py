@@ -174,4 +174,4 @@ def names_and_files() -> Steps:
     yield from picture("names-2-new")
 
 
-PARTS = (undo_and_redo, undo_of_something_else, on_a_film, deletion, editing, names_and_files, disabling)
+PARTS = (undo_and_redo, undo_of_something_else, on_a_film, deletion, names_and_files)
