@@ -68,8 +68,6 @@ def test_there_and_back_at_once(capfd):
     np.testing.assert_allclose(evaluated(obj, 1), evaluated(obj, 80), atol=1e-6)
     with pytest.raises(RuntimeError, match="switch Loop off first"):
         bpy.ops.curve.mobius_flow_continue(max_iterations=1)
-    with pytest.raises(RuntimeError, match="Loop goes with keyframes='SHAPE_KEYS' only"):
-        relax(**EVEN, keyframes="RESULT", loop=True)
     settings.loop, settings.length = False, 40
     assert len(frames_of(obj.data)) == count
     np.testing.assert_allclose(evaluated(obj, 15.0), shown, atol=1e-6)
