@@ -20,7 +20,8 @@ import numpy as np
 from hard_curves import hard_unknot
 from mobius_flow.core import Curve, Iterate, RelaxOptions, minimize, read_curve
 from mobius_flow.core.collision import thickness
-from mobius_flow.core.keys.motion import Playing, recorded
+from mobius_flow.core.keys.key_options import Playing
+from mobius_flow.core.keys.motion import recorded
 from mobius_flow.core.keys.placement import Measure
 from mobius_flow.core.knots import knot, scramble
 from mobius_flow.core.knots.diagrams import simplified
@@ -100,7 +101,7 @@ def sharpest_turn(curve: Curve) -> float:
 def film_speed(iterates: Sequence[Iterate]) -> tuple[float, int, int]:
     """The largest way of a point from one whole frame to the next, over the median, where, and of how many."""
     motion, _ = recorded(iterates, Measure.RADIUS)
-    timing = Playing().timed(motion).timing
+    timing = Playing().timed(motion.way).timing
     keys = motion.keys(lambda *_: True, timing.length, timing)
     times, points = timing.frames(motion.course(keys)), np.stack([key.points for key in keys.keys]).astype(float)
     whole = np.arange(np.ceil(times[0]), np.floor(times[-1]) + 1)

@@ -14,7 +14,7 @@ from ..core.driver import Relaxation, finish
 from ..core.driver.run import gradient_bound
 from ..core.energies.hierarchy import moebius_energy
 from ..core.io import CurveFile, written_formats
-from ..core.keys.motion import Playing
+from ..core.keys.key_options import Playing
 from . import curves, signals
 from . import options as relax_options
 from .options import DEFAULT, LOOKS

@@ -40,7 +40,8 @@ from mobius_flow.core import (
     separate,
 )
 from mobius_flow.core.collision import is_rope
-from mobius_flow.core.keys.motion import Playing, recorded
+from mobius_flow.core.keys.key_options import Playing
+from mobius_flow.core.keys.motion import recorded
 from mobius_flow.core.keys.placement import Measure
 from mobius_flow.core.keys.tube import rope_radii
 from mobius_flow.core.knots import knot, overhand
@@ -205,7 +206,7 @@ def packed() -> None:
 def untangle() -> None:
     """Every second frame of the film, which repeats; the first one is the still for those who see no motion."""
     motion, _ = recorded([*relax(read_curve(ROOT / "examples" / "tangle.obj"))], Measure.RADIUS)
-    playing = Playing().timed(motion)
+    playing = Playing().timed(motion.way)
     keys, mesh = motion.keys(is_rope, playing.timing.length, playing.timing), motion.start.mesh
     frames = playing.timing.frames(motion.course(keys))
     scene = empty_scene()

@@ -8,7 +8,7 @@ import numpy as np
 from ...core import Curve, Iterate
 from ...core.base.types import FloatArray
 from ...core.keys.key_options import Timing
-from ...core.keys.motion import Keys
+from ...core.keys.recording import Keys
 from .fcurves import CONSTANT
 from .keyframes import add_keys, there_and_back
 from .splines import Reference

@@ -12,8 +12,8 @@ import numpy as np
 
 from ...core.base import FloatArray
 from ...core.keys.key_options import Timing
-from ...core.keys.motion import Keys
 from ...core.keys.placement import Frame
+from ...core.keys.recording import Keys
 from .fcurves import LINEAR, collections, draw_line, new_action
 from .splines import key_points, read
 from .splines import radii as spline_radii

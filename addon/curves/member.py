@@ -11,8 +11,8 @@ import numpy as np
 from ...core import Curve
 from ...core.base import FloatArray, Message
 from ...core.keys.key_options import Course, KeyOptions
-from ...core.keys.motion import Keys
 from ...core.keys.placement import Frame
+from ...core.keys.recording import Keys
 from . import bake, bevel, doors, keyframes, sizes
 from .keyframes import own_action
 from .moving import what_deforms

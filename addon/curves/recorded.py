@@ -11,8 +11,9 @@ from mathutils import Matrix
 from ...core import Curve, CurveError, MobiusFlowError
 from ...core.base import FloatArray, Message
 from ...core.collision import check_embedded, is_free
-from ...core.curve import Mesh, along, interpolated
+from ...core.curve import Mesh, interpolated
 from ...core.driver.words import in_blenders_words, named, spline_names
+from ...core.keys.markers import along
 from ...core.keys.placement import Frame, Link, Measure, Similarity, Turn, orthonormal
 from . import bake, pins
 from .keyframes import fcurves_of, keyed_points

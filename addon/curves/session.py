@@ -22,8 +22,9 @@ from ...core.driver.prepare import rope_radius
 from ...core.driver.words import in_blenders_words, named, spline_names
 from ...core.keys.contact_map import contact_forces
 from ...core.keys.key_options import Course, KeyOptions
-from ...core.keys.motion import Key, Keys, Kind, Proof, Recording
+from ...core.keys.motion import Recording
 from ...core.keys.placement import Frame, Measure, Placement, Spot, spots
+from ...core.keys.recording import Key, Keys, Kind, Proof
 from ...core.keys.tube import eased, rope_radii
 from ...core.ropes import SeparateOptions, Tightened, TightenOptions
 from ..engine.worker import begun, in_common_space

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from ...core import Curve, CurveError, Mesh
 from ...core.base import FloatArray, Message
-from ...core.curve.refine import along, on_refined
+from ...core.keys.markers import along, on_refined
 from ...core.keys.placement import Frame
 from .sizes import placement
 

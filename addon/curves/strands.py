@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from ...core import Curve, CurveError, Mesh
 from ...core.base import BoolArray, FloatArray, Message
-from ...core.curve.refine import on_refined
+from ...core.keys.markers import on_refined
 from ...core.keys.placement import Link, Placement
 from .assets import add_nodes, drop_nodes
 from .moving import what_deforms

@@ -31,8 +31,8 @@ from ...core.collision import is_free, is_rope
 from ...core.curve import Mesh
 from ...core.driver import Relaxation
 from ...core.driver.morph import morphing
-from ...core.keys.motion import frames_of
 from ...core.keys.placement import Frame, Link, Placement
+from ...core.keys.recording import frames_of
 from ...core.ropes import SeparateOptions, TightenOptions, separating, tightening
 
 Inbox = queue.SimpleQueue[Any]

@@ -17,8 +17,8 @@ import numpy as np
 from ...core import CurveError, Iterate, MobiusFlowError, Outcome, Status
 from ...core.base import FloatArray, Message, Place
 from ...core.driver import TimeLeft
-from ...core.keys.motion import Proof
 from ...core.keys.placement import Spot
+from ...core.keys.recording import Proof
 from ..curves.session import Prepared, Report, Session
 from ..curves.splines import digest
 from ..engine.rest import Target, target_of

@@ -16,8 +16,10 @@ import numpy as np
 from ...core import Curve, Iterate, Mesh, MobiusFlowError
 from ...core.base import FloatArray, OutputError, atomic_write, termination_raises
 from ...core.collision import is_rope
-from ...core.keys.motion import Key, Keys, Playing, check_dimension, recorded
+from ...core.keys.key_options import Playing
+from ...core.keys.motion import check_dimension, recorded
 from ...core.keys.placement import Measure, Origin
+from ...core.keys.recording import Key, Keys
 from ...core.keys.tube import rope_radii, rounded, tube_radii
 from .looks import DEFAULT, LOOKS
 
@@ -94,7 +96,7 @@ def _played(
     from . import rendering
 
     motion, origin = recorded(iterates, Measure.LENGTH if in_place else Measure.RADIUS)
-    playing = playing.timed(motion)
+    playing = playing.timed(motion.way)
     timing = playing.timing
     keys = motion.keys(is_rope, timing.length, timing)
     frames = timing.frames(motion.course(keys))

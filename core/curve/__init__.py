@@ -22,7 +22,6 @@ from .refine import (
     SPLIT,
     Resolution,
     affordable_pieces,
-    along,
     arc_lengths,
     cubic_spline,
     evenly,

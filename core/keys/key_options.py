@@ -5,7 +5,7 @@ Chords between keys are proved whatever their times: a key's frame says when it 
 
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -230,3 +230,23 @@ class KeyOptions:
                 "Only the length can be kept where something is pinned or avoided; give keep_size='LENGTH', or none"
             )
             raise OptionError(Message(sentence))
+
+
+@dataclass(frozen=True)
+class Playing:
+    """How a relaxation is played in a scene or a film."""
+
+    MOVING: ClassVar = (72, 720)  # frames in motion, at least and at most
+    RESTS: ClassVar = (6, 12)  # frames at rest before the motion and after it
+
+    look: str | None = None  # one of `pictures.looks`; None: the default one, and films drawn plainly
+    loop: bool = False  # there and back
+    constant_radius: bool = False  # the tube is as thick at all keys as at the one where it is thinnest
+    timing: Timing = field(default_factory=Timing)  # that of the keys
+
+    def timed(self, way: float) -> "Playing":
+        """Let a curve go a way, in its sizes, evenly, no faster than can be followed, and rest before and after."""
+        (low, high), (before, after) = self.MOVING, self.RESTS
+        moving = round(min(max(20 * way, low), high))  # as far as the curve is wide in 20 frames
+        length = (before + moving + after) * (1 + self.loop) + (not self.loop)
+        return replace(self, timing=Timing(length=length, hold_start=before, hold_end=after, loop=self.loop))

@@ -19,8 +19,8 @@ from ..curve import Curve, Mesh
 from ..curve.distances import nearest_strands, strand_gaps
 from ..curve.obstacle import Obstacle
 from ..curve.refine import interpolated
-from .motion import Keys, Proof
 from .placement import Frame
+from .recording import Keys, Proof
 
 AIR = 0.94  # of half the gap, so that strands do not seem to touch
 _LEAST = 4e-3  # radius over the size: of a thinner tube it is not seen in a film which strand is in front

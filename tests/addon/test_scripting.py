@@ -11,7 +11,7 @@ from mobius_flow.addon.pictures import staging
 from mobius_flow.addon.properties import SETTINGS
 from mobius_flow.addon.scripting import complete
 from mobius_flow.core import MobiusFlowError, OptionError
-from mobius_flow.core.keys.motion import Kind
+from mobius_flow.core.keys.recording import Kind
 from shapes import hopf_link, regular_polygon
 
 SHORT = {"max_iterations": 5, "vertices": 100, "length": 10, "timing": "DISTANCE"}

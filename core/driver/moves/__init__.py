@@ -9,9 +9,10 @@ from .grow import Grow
 from .hand import AwaitHand, Hold
 from .hops import ON_A_FIXED_MESH, Hops
 from .links import Composite, OpenKnots, SplitLinks
-from .remesh import CoarseStart, FinerMesh, Remesh, SymmetricStart
+from .remesh import FinerMesh, Remesh
 from .rest import CheckAccuracy, EscapeSaddle, Fallback, Settle
 from .rope import GiveWay
+from .starts import CoarseStart, SymmetricStart
 from .untangling import Untangling
 
 MOVES: Sequence[Callable[[Run], Move]] = (

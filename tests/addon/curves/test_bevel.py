@@ -10,7 +10,7 @@ from mobius_flow.addon.curves.recorded import BakedKeys
 from mobius_flow.core import Curve
 from mobius_flow.core.collision import thickness
 from mobius_flow.core.curve.distances import nearest_strands
-from mobius_flow.core.keys.motion import Kind
+from mobius_flow.core.keys.recording import Kind
 from mobius_flow.core.keys.tube import free_radius, thickest_radius
 from mobius_flow.core.knots import knot
 from shapes import hopf_link, torus_trefoil

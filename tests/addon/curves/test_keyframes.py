@@ -11,7 +11,7 @@ from mobius_flow.addon.curves.keyframes import write
 from mobius_flow.addon.curves.moving import what_moves
 from mobius_flow.core import Curve, RelaxOptions
 from mobius_flow.core import relax as iterates_of
-from mobius_flow.core.keys.motion import Key, Keys
+from mobius_flow.core.keys.recording import Key, Keys
 
 
 def library_frames(obj, **options):

@@ -17,8 +17,8 @@ from mobius_flow.core.base.messages import Message
 from mobius_flow.core.collision import Contact, is_free
 from mobius_flow.core.driver.outcome import stalled
 from mobius_flow.core.driver.words import in_blenders_words, spline_names
-from mobius_flow.core.keys.motion import frames_of
 from mobius_flow.core.keys.placement import Link, Placement
+from mobius_flow.core.keys.recording import frames_of
 from option_values import unlike_default
 from processes import PATIENCE
 from shapes import hopf_link

@@ -12,7 +12,7 @@ from families import crossed
 from mobius_flow.addon.curves import keyframes
 from mobius_flow.addon.live import handlers, registry
 from mobius_flow.addon.live.run import RunState
-from mobius_flow.core.keys.motion import Kind
+from mobius_flow.core.keys.recording import Kind
 from modal_operator import everything, restored, ring_and_torus, rings, splines_of
 from shapes import lattice_knot, torus_trefoil
 

@@ -16,7 +16,7 @@ from mobius_flow.addon.live import handlers, run
 from mobius_flow.addon.live.modal import Listening
 from mobius_flow.addon.live.run import RunState
 from mobius_flow.addon.properties import SETTINGS
-from mobius_flow.core.keys.motion import Kind
+from mobius_flow.core.keys.recording import Kind
 from modal_operator import keys, ring_and_torus, rings
 
 

@@ -11,7 +11,8 @@ import pytest
 from blender_scenes import evaluated, in_world
 from mobius_flow.addon.pictures import export, movie, rendering
 from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, relax
-from mobius_flow.core.keys.motion import Playing, recorded
+from mobius_flow.core.keys.key_options import Playing
+from mobius_flow.core.keys.motion import recorded
 from processes import finished
 from shapes import hopf_link, regular_polygon, torus_trefoil
 
@@ -114,7 +115,7 @@ def test_a_film(tmp_path, tiny, iterates, capfd):
 def test_a_film_rests_before_and_after(iterates):
     motion, _ = recorded(iterates)
     keys = motion.keys(lambda *_: True)
-    timing = Playing().timed(motion).timing
+    timing = Playing().timed(motion.way).timing
     frames = timing.frames(motion.course(keys))
     scene = bpy.context.scene
     export.compose(scene, keys, frames, motion.start.mesh, Playing())
@@ -132,7 +133,7 @@ def test_a_film_is_as_long_as_the_way_of_the_fastest_vertex():
     moves = (replace(start, index=k, curve=ring.with_vertices(p), path=(p,)) for k, p in enumerate(places[1:], 1))
     motion, _ = recorded([replace(start, curve=ring), *moves])
     assert motion.way == pytest.approx(12 * 0.5 + 0.5 * 49 / 50, rel=0.1)
-    assert Playing().timed(motion).timing.length == 1 + 6 + round(20 * motion.way) + 12
+    assert Playing().timed(motion.way).timing.length == 1 + 6 + round(20 * motion.way) + 12
 
 
 @pytest.mark.parametrize("write", WRITERS)

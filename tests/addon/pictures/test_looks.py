@@ -9,7 +9,8 @@ from mathutils import Vector
 from mobius_flow.addon.pictures import export, rendering, staging
 from mobius_flow.addon.pictures.looks import LOOKS
 from mobius_flow.core import Curve
-from mobius_flow.core.keys.motion import Key, Keys, Playing
+from mobius_flow.core.keys.key_options import Playing
+from mobius_flow.core.keys.recording import Key, Keys
 from shapes import hopf_link, regular_polygon, torus_trefoil
 
 SIZE = (96, 54)

@@ -14,8 +14,9 @@ from mobius_flow.addon.pictures import export, rendering, stage, staging
 from mobius_flow.addon.pictures.looks import LOOKS
 from mobius_flow.core import CurveError
 from mobius_flow.core.curve import Mesh
-from mobius_flow.core.keys.motion import Key, Keys, Playing
+from mobius_flow.core.keys.key_options import Playing
 from mobius_flow.core.keys.placement import Origin
+from mobius_flow.core.keys.recording import Key, Keys
 from shapes import lattice_knot
 
 SIZES = [(640, 360), (360, 640)]

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from mobius_flow.core import Mesh
-from mobius_flow.core.curve import refine
-from mobius_flow.core.curve.refine import along, interpolated, on_refined
+from mobius_flow.core.curve import interpolated, refine
 from mobius_flow.core.curve.tube import places_between, rings, tangents
+from mobius_flow.core.keys.markers import along, on_refined
 from mobius_flow.core.knots import overhand
 from shapes import hopf_link, regular_polygon, torus_trefoil
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, relax
 from mobius_flow.core.collision import is_rope
-from mobius_flow.core.curve.refine import Markers, subdivide
+from mobius_flow.core.curve.refine import subdivide
+from mobius_flow.core.keys.markers import Markers
 from mobius_flow.core.keys.motion import Recording
 from mobius_flow.core.keys.placement import Link, Placement
 from mobius_flow.core.knots import knot

@@ -8,8 +8,9 @@ from mobius_flow.core import Curve, RelaxOptions, relax
 from mobius_flow.core.collision import is_free, is_rope
 from mobius_flow.core.io.trajectory import StrandMoves
 from mobius_flow.core.keys.key_options import Pace, Timing
-from mobius_flow.core.keys.motion import Kind, Recording
+from mobius_flow.core.keys.motion import Recording
 from mobius_flow.core.keys.placement import Link, Placement
+from mobius_flow.core.keys.recording import Kind
 from recorded_motions import around, assert_proved, at_rest, collected, followed, iterate
 from shapes import regular_polygon, torus_trefoil
 

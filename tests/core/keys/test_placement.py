@@ -7,7 +7,7 @@ from mobius_flow.core.base.errors import Place
 from mobius_flow.core.collision import is_rope
 from mobius_flow.core.curve import refine
 from mobius_flow.core.keys.key_options import Timing
-from mobius_flow.core.keys.motion import Kind, Recording
+from mobius_flow.core.keys.motion import Recording
 from mobius_flow.core.keys.placement import (
     DrawingPlane,
     Link,
@@ -19,6 +19,7 @@ from mobius_flow.core.keys.placement import (
     barycenter,
     spots,
 )
+from mobius_flow.core.keys.recording import Kind
 from recorded_motions import around, assert_proved, at_rest, followed, iterate
 from shapes import hopf_link, lattice_knot, regular_polygon, torus_trefoil
 

@@ -9,9 +9,10 @@ from mobius_flow.core.collision import is_rope
 from mobius_flow.core.curve.distances import nearest_strands
 from mobius_flow.core.curve.refine import evenly
 from mobius_flow.core.keys.key_options import Pace, Timing
-from mobius_flow.core.keys.motion import Key, Keys, Kind, recorded
+from mobius_flow.core.keys.markers import corners
+from mobius_flow.core.keys.motion import recorded
 from mobius_flow.core.keys.placement import Measure
-from mobius_flow.core.keys.rope import corners
+from mobius_flow.core.keys.recording import Key, Keys, Kind
 from mobius_flow.core.keys.tube import (
     free_radius,
     radius_beside,

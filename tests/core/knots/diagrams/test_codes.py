@@ -8,7 +8,8 @@ from mobius_flow.core import CurveError
 from mobius_flow.core.knots import KNOTS
 from mobius_flow.core.knots.braids import braid_diagram
 from mobius_flow.core.knots.diagrams import Diagram, diagram_of, jones
-from mobius_flow.core.knots.diagrams.codes import MAX_CROSSINGS, diagram_from_code, gauss_text, is_code, realized
+from mobius_flow.core.knots.diagrams.codes import MAX_CROSSINGS, diagram_from_code, gauss_text, is_code
+from mobius_flow.core.knots.diagrams.realization import realized
 from spherogram import Link
 
 TREFOILS = [
