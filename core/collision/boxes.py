@@ -56,10 +56,10 @@ class BoxTree:
     chunk: ClassVar[int] = 1 << 14  # pairs of boxes handled at once: bounds the memory whatever the curve
 
     @classmethod
-    def build(cls, mesh: Mesh, start: FloatArray, end: FloatArray) -> "BoxTree":
-        """The tree of one leg; ``start`` and ``end`` have shape (m, n) and entries of absolute value at most 1."""
-        order = component_order(mesh, start)
-        return cls.over(order, np.stack([mesh.tails[order], mesh.heads[order]]), np.stack([start, end]))
+    def build(cls, mesh: Mesh, *points: FloatArray) -> "BoxTree":
+        """The tree of a leg from start to end, or of a curve at rest; entries, (m, n), of absolute value at most 1."""
+        order = component_order(mesh, points[0])
+        return cls.over(order, np.stack([mesh.tails[order], mesh.heads[order]]), np.stack(points))
 
     @classmethod
     def over(cls, order: IntArray, corners: IntArray, points: FloatArray) -> "BoxTree":

@@ -57,7 +57,7 @@ def check_embedded(curve: Curve) -> None:
         return
     # Pairs that no plane separates certainly in floating-point numbers are decided exactly, and never all at once:
     # where thousands of edges coincide there are millions, and the first is enough.
-    tree, count = BoxTree.build(mesh, points, points), 0
+    tree, count = BoxTree.build(mesh, points), 0
     for a, b in tree.pairs(nearer_than(lambda: 0.0)):
         pairs = np.sort(tree.order[np.stack([a, b])], axis=0)
         for k, other in sorted(pairs[:, doubtful(points, corners(mesh, *pairs))].T.tolist()):
@@ -133,7 +133,7 @@ def _near(curve: Curve, obstacles: Sequence[Obstacle], distance: float) -> Itera
     given = np.concatenate([curve.vertices, still.vertices])
     points, radius = np.ldexp(given.T, -exponent, order="C"), float(np.ldexp(distance, -exponent))
     own = points[:, : len(curve)]
-    tree = BoxTree.build(curve.mesh, own, own)
+    tree = BoxTree.build(curve.mesh, own)
     for a, b in tree.pairs_with(still.tree, nearer_than(lambda: radius**2)):
         vertices = np.concatenate([tree.corners[:, a], len(curve) + still.tree.corners[:, b]])
         close = np.flatnonzero(doubtful(points, vertices, radius))

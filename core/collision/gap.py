@@ -63,22 +63,26 @@ def thickness(curve: Curve, most: float = np.inf) -> float:
     least distance of points that are further apart along the curve than half a circle of that radius is long.
     Ropelength is the length divided by the thickness.
     """
-    bend = float(bending_radii(curve).min())
-    points, unit = scaled_points(curve)
+    bend, (points, unit) = float(bending_radii(curve).min()), scaled_points(curve)
     best = min(float(np.ldexp(2.0 * min(bend, most), -unit)) ** 2, 4.0 * len(points))  # for coordinates within ±1
-    near = near_edges(curve, points, lambda: best)
-    for i, j, squares in near:
+    mesh, ell, tree = curve.mesh, curve.edge_lengths, BoxTree.build(curve.mesh, points)
+    near = tree.pairs(nearer_than(lambda: best))
+    for a, b in near:
         # Points just half a circle apart are two radii apart or more (Schur's theorem).  So where the closest points of
         # two edges are nearer along the curve, none of the others can count for less than the bending radius.
+        i, j = tree.order[a], tree.order[b]
+        half = 0.5 * ell[i], 0.5 * ell[j]
+        far = arc_distance_of_points(curve, i, half[0], j, half[1]) + half[0] + half[1] >= np.pi * bend
+        i, j = i[far], j[far]
         # the closest points, as lengths from the edges' tails; one of many pairs if they are parallel
-        mesh, ell = curve.mesh, curve.edge_lengths
         e, f = curve.edge_vectors[i] / ell[i, None], curve.edge_vectors[j] / ell[j, None]
         D = curve.vertices[mesh.tails[i]] - curve.vertices[mesh.tails[j]]
         ef, De, Df = (np.einsum("pm,pm->p", *pair) for pair in ((e, f), (D, e), (D, f)))
         s = ((ef * Df - De) / np.maximum(1.0 - ef * ef, np.finfo(np.float64).eps)).clip(0.0, ell[i])
         t = (ef * s + Df).clip(0.0, ell[j])
         s = (ef * t - De).clip(0.0, ell[i])
-        squares = squares[arc_distance_of_points(curve, i, s, j, t) >= np.pi * bend]
+        chord = np.ldexp(D + s[:, None] * e - t[:, None] * f, -unit)
+        squares = np.einsum("pm,pm->p", chord, chord)[arc_distance_of_points(curve, i, s, j, t) >= np.pi * bend]
         best = min(best, float(squares.min(initial=np.inf)))
     return min(bend, most, 0.5 * float(np.ldexp(np.sqrt(best), unit)))
 
@@ -97,7 +101,7 @@ def near_edges(
     Two arrays of edges and one of squared distances; ``bound`` may fall meanwhile.  ``points`` are the vertices as
     `scaled_points` gives them.
     """
-    tree = BoxTree.build(curve.mesh, points, points)
+    tree = BoxTree.build(curve.mesh, points)
     for a, b in tree.pairs(nearer_than(bound)):
         i, j = tree.order[a], tree.order[b]
         squares = squared_segment_distances(points, np.concatenate([tree.corners[:, a], tree.corners[:, b]]))

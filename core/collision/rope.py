@@ -54,9 +54,9 @@ def rope_motion(
     points = np.ldexp(start.T, -exponent, order="C"), np.ldexp(end.T, -exponent, order="C")
     own = np.ldexp(radius, -exponent) * (1.0 + _SLACK) + _SLACK
     spans = [p[:, mesh.heads] - p[:, mesh.tails] for p in points]
-    limit, edge, saved = _bends(mesh, spans, own[mesh.edge_component])
+    limit, edge, saved, turns = _bends(mesh, spans, own[mesh.edge_component])
     met, in_part = None if limit >= 1.0 else Contact((edge, int(mesh.next[edge]))), False
-    for places, vertices, names, width in _near(mesh, points, spans, saved, own, obstacles, exponent):
+    for places, vertices, names, width in _near(mesh, points, spans, saved, turns, own, obstacles, exponent):
         reached = march(*places, vertices, np.zeros(vertices.shape[1]), limit, width)
         if reached.size and (time := float(reached.min())) < limit:
             edge, other = names[:, reached.argmin()].tolist()
@@ -93,11 +93,12 @@ def _near(
     points: tuple[FloatArray, FloatArray],
     spans: list[FloatArray],
     saved: FloatArray,
+    turns: FloatArray,
     radius: FloatArray,
     obstacles: Sequence[Obstacle],
     exponent: int,
 ) -> Iterator[tuple[tuple[FloatArray, FloatArray], IntArray, IntArray, FloatArray]]:
-    """Pairs that may come nearer than they must, in batches; points are (m, n), edges and what arcs save as in
+    """Pairs that may come nearer than they must, in batches; points are (m, n), edges, what arcs save and turns as in
     `_bends`.
 
     Points (m, k) at both times, indices of x₀, x₁, y₀, y₁ and y₂ of triangles, shape (4 or 5, pairs), numbers of the
@@ -108,6 +109,7 @@ def _near(
     longest = np.sqrt(np.maximum(*(np.einsum("me,me->e", e, e) for e in spans))) * (1.0 + _SLACK) + _SLACK
     position, around = np.cumsum(longest - saved) - longest, np.add.reduceat(longest - saved, mesh.edge_offsets[:-1])
     once_round, batch = np.where(mesh.closed, around, np.inf), 1 << 13
+    turned, all_round = np.cumsum(turns), np.add.reduceat(turns, mesh.edge_offsets[:-1])
 
     def within(width: float) -> Test:
         width = min(width, 2.5)  # more than boxes can be apart, and less than those that only pad the tree are
@@ -135,6 +137,12 @@ def _near(
         # of others only the parts that are half a circle apart or more count, but for a step: from the distance u on of
         # i, and from v to w of j, counted as shares of the edges from the ends that are nearer along the curve
         i, j, ways, half = i[~whole], j[~whole], ways[:, ~whole], half[~whole]
+        # Edges between the two that turn by φ are within φ/2 of a direction, along which the way from one to the other
+        # leads by π r cos φ/2 or more: far enough, and so that a checker sees it that looks at a bit too much
+        turn = turned[j] - turned[i]
+        turn = np.where(ways[1] < ways[0], all_round[component[i]] - turn, turn)
+        bent = np.cos(0.5 * np.minimum(turn, np.pi)) < 0.7  # which 2/π would do for
+        i, j, ways, half = i[bent], j[bent], ways[:, bent], half[bent]
         for steps in (4, 16):  # in which that border is followed, more where they do not suffice
             back, rest, step = ways[1] < ways[0], half - ways.min(axis=0), np.arange(steps)[:, None] / steps
             u = np.maximum(rest * (1.0 - step - 1.0 / steps), 0.0) / longest[i]
@@ -225,11 +233,12 @@ def shortcut(x: FloatArray) -> FloatArray:
 
 def _bends(
     mesh: Mesh, spans: list[FloatArray], radius: FloatArray, halvings: int = 14
-) -> tuple[float, int, FloatArray]:
-    """The time up to which arcs fit into corners, 1 if always, the edge that limits it, and what they save on the way.
+) -> tuple[float, int, FloatArray, FloatArray]:
+    """The time up to which arcs fit into corners, 1 if always, the edge that limits it, and for the tail of each edge
+    what its arc takes off the way at least, r (2 tan(θ/2) − θ), and the angle θ at most.
 
-    ``spans`` are the edges at both times, each (m, edges), radii are by edge; the last is what the arc at the tail of
-    each edge takes off the way at least, r (2 tan(θ/2) − θ).  Where the bounds do not suffice the time is halved.
+    ``spans`` are the edges at both times, each (m, edges), radii are by edge.  Where the bounds do not suffice the time
+    is halved.
     """
     edges = np.arange(mesh.edges)
     before, after = mesh.previous, mesh.next
@@ -241,12 +250,13 @@ def _bends(
     is_corner = before != edges
     saved = np.where(is_corner, 2.0 * radius * shortcut(low), 0.0)
     high = np.where(is_corner, high, 0.0)
+    turns = 2.0 * np.arctan(high)
     needed = high + np.where(after != edges, high[after], 0.0)
     which = np.flatnonzero(radius * needed * (1.0 + _SLACK) > own - _SLACK)
     if not len(which):
-        return 1.0, 0, saved
+        return 1.0, 0, saved, turns
     if np.array_equal(spans[0], spans[1]):  # halves of the time would be the same
-        return 0.0, int(which[0]), saved
+        return 0.0, int(which[0]), saved, turns
     first, size, k, limit, worst = np.zeros(len(which)), 1.0, np.arange(len(which)), 1.0, int(which[0])
     tail, head = corners(before[which], which), corners(which, after[which])
     for _ in range(halvings):
@@ -262,5 +272,5 @@ def _bends(
             limit, worst = time, int(which[ends][first[ends].argmin()])
         k = np.flatnonzero(fails & (first < limit))
         if not len(k):
-            return limit, worst, saved
-    return float(first[k].min()), int(which[k][first[k].argmin()]), saved
+            return limit, worst, saved, turns
+    return float(first[k].min()), int(which[k][first[k].argmin()]), saved, turns

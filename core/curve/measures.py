@@ -1,8 +1,10 @@
 """Integrals over a curve: its bending, and its writhe and average crossing number."""
 
+from functools import lru_cache
+
 import numpy as np
 
-from ..base import CurveError, FloatArray
+from ..base import CurveError, FloatArray, frozen
 from .curve import Curve
 
 
@@ -72,10 +74,14 @@ def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
     return np.asarray(np.einsum("ijk,ijk->ij", a, b))
 
 
+@lru_cache(maxsize=2)
 def bending_radii(curve: Curve) -> FloatArray:
-    """At each vertex the radius of the circle that touches both edges, the shorter one at its middle; shape (n,)."""
+    """At each vertex the radius of the circle that touches both edges, the shorter one at its middle; shape (n,).
+
+    The last answers are kept: several terms and measures of a step ask the same.
+    """
     ell, mesh = curve.edge_lengths, curve.mesh
     tau, before, after = curve.edge_vectors / ell[:, None], mesh.incoming, mesh.outgoing
-    sine, cosine = (np.linalg.norm(d, axis=1) for d in (tau[after] - tau[before], tau[after] + tau[before]))
+    sine, cosine = (np.einsum("ij,ij->i", d, d) for d in (tau[after] - tau[before], tau[after] + tau[before]))
     with np.errstate(divide="ignore"):
-        return np.asarray(0.5 * np.minimum(ell[before], ell[after]) * cosine / sine)  # ½ min(ℓ, ℓ') / tan(θ/2)
+        return frozen(0.5 * np.minimum(ell[before], ell[after]) * np.sqrt(cosine / sine))  # ½ min(ℓ, ℓ') / tan(θ/2)

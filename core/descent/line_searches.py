@@ -8,7 +8,6 @@ import numpy as np
 
 from ..base import ENERGY_ROUNDING, FloatArray
 from ..collision import Contact
-from ..curve import Curve
 from ..energies.components import energy_scale
 from ..solve.metrics import Metric
 from ..solve.saddle import TangentSpace
@@ -37,7 +36,7 @@ class FirstTrial:
             return 0.0, None
         tau = min(longest, self.max_displacement / speed)
         if (rope := point.problem.objective.rope) is not None:  # its barrier shortens steps, here at little cost
-            while np.isinf(rope.value(Curve(point.vertices + tau * direction, point.problem.mesh))) and tau > 1e-9:
+            while rope.meets(point.curve.with_vertices(point.vertices + tau * direction)) and tau > 1e-9:
                 tau *= 0.5
             return tau, None
         end = point.problem.at(point.vertices + tau * direction)

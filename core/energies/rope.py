@@ -11,7 +11,8 @@ straight pieces would feel it, and b = 2r. φ is that of incremental potential c
 """
 
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar
+from functools import cached_property
+from typing import Any, ClassVar, cast
 
 import numpy as np
 import scipy.sparse as sp
@@ -93,32 +94,49 @@ class Rope:
                 first = first + scatter_first(mesh, i, j, part.first)
         return total, first
 
-    def _strands(self, curve: Curve) -> tuple[IntArray, IntArray]:
-        """Unordered pairs of edges within the barrier's reach that are far enough along the curve.
+    def meets(self, curve: Curve) -> bool:
+        """Whether strands are no further apart than they must be, so that E is infinite; corners are left aside."""
+        (i, j), r = self._strands(curve), self.radius[curve.mesh.edge_component]
+        chord, _, _ = closest(EdgePairs.of(curve.mesh, curve.vertices, i, j))
+        return bool((np.einsum("km,km->k", chord, chord) <= (r[i] + r[j]) ** 2).any())
 
-        They are among those found for a curve nearby.
+    def _strands(self, curve: Curve) -> tuple[IntArray, IntArray]:
+        """Unordered pairs of edges that are far enough along the curve, among them all within the barrier's reach.
+
+        They are those found for a curve nearby, if there is one.
         """
-        mesh, r, margin = curve.mesh, self.radius[curve.mesh.edge_component], 0.1 * float(self.radius.max())
-        there = self._near[0] if self._near else None
-        if there is None or there.mesh != mesh or not np.abs(curve.vertices - there.vertices).max() <= margin:
-            seen, component = self._seen(curve), mesh.edge_component
-            cut = 2.0 * self.reach * float(self.radius.max()) + float(curve.edge_lengths.max())
-            i, j = cKDTree(curve.midpoints).query_pairs(cut + 4.0 * margin, output_type="ndarray").T
-            ell, tails = seen.edge_lengths, mesh.tails
-            # at each edge's tail an arc of the radius is shorter than the corner, of angle θ = 2 arctan t
-            tangent = 0.5 * np.minimum(ell[mesh.incoming], ell[mesh.outgoing]) / np.maximum(bending_radii(seen), 1e-300)
-            saved = 2.0 * r * (tangent - np.arctan(tangent))[tails]
-            position, around = np.cumsum(ell - saved) - 0.5 * ell, np.add.reduceat(ell - saved, mesh.edge_offsets[:-1])
-            arc = np.abs(position[i] - position[j])
-            arc = np.minimum(arc, np.where(mesh.closed, around, np.inf)[component[i]] - arc)
-            far = (component[i] != component[j]) | (arc > np.pi * r[i] + 0.5 * (ell[i] + ell[j]))
-            i, j = i[far], j[far]
-            self._near[:] = [curve, i, j] if seen is self.seen else []
-        else:
-            _, i, j = self._near
+        if self.seen is None or self.seen.mesh != curve.mesh:
+            return replace(self, seen=curve)._strands(curve)
+        mesh, r, margin = curve.mesh, self.radius[curve.mesh.edge_component], 0.05 * float(self.radius.max())
+        if self._near:
+            there, i, j = self._near
+            if np.abs(curve.vertices - there.vertices).max() <= margin:
+                return i, j
+        # no distance changes by more than 2 √3 margins nearby
+        cut = 2.0 * self.reach * float(self.radius.max()) + 4.0 * margin
+        i, j = cKDTree(curve.midpoints).query_pairs(cut + float(curve.edge_lengths.max()), output_type="ndarray").T
+        position, component, ell = self._middles, mesh.edge_component, self.seen.edge_lengths
+        arc = np.abs(position[0, i] - position[0, j])
+        arc = np.minimum(arc, position[1, i] - arc)
+        far = (component[i] != component[j]) | (arc > np.pi * r[i] + 0.5 * (ell[i] + ell[j]))
+        i, j = i[far], j[far]
         chord, _, _ = closest(EdgePairs.of(mesh, curve.vertices, i, j))
-        near = np.einsum("km,km->k", chord, chord) < (self.reach * (r[i] + r[j])) ** 2
+        near = np.einsum("km,km->k", chord, chord) < (self.reach * (r[i] + r[j]) + 4.0 * margin) ** 2
+        self._near[:] = curve, i[near], j[near]
         return i[near], j[near]
+
+    @cached_property
+    def _middles(self) -> FloatArray:
+        """Distances along the curve that is seen: to each edge's middle, and once round; shape (2, edges).
+
+        At an edge's tail an arc of the radius is shorter than the corner, of angle θ = 2 arctan t.
+        """
+        seen = cast(Curve, self.seen)
+        mesh, ell, r = seen.mesh, seen.edge_lengths, self.radius[seen.mesh.edge_component]
+        tangent = 0.5 * np.minimum(ell[mesh.incoming], ell[mesh.outgoing]) / np.maximum(bending_radii(seen), 1e-300)
+        step = ell - 2.0 * r * (tangent - np.arctan(tangent))[mesh.tails]
+        around = np.where(mesh.closed, np.add.reduceat(step, mesh.edge_offsets[:-1]), np.inf)
+        return np.stack([np.cumsum(step) - 0.5 * ell, around[mesh.edge_component]])
 
     def _corners(self, curve: Curve) -> tuple[IntArray, IntArray]:
         """The edges before and after each corner that bends within the barrier's reach."""

@@ -96,7 +96,7 @@ def _with_obstacles(
     exponent = int(np.frexp(max(np.abs(curve.vertices).max(), *(each.size for each in obstacles)))[1])
     still = still_triangles(tuple(obstacles), exponent)
     points, nearest = np.ldexp(curve.vertices.T, -exponent, order="C"), float(np.ldexp(reach, -exponent))
-    tree = BoxTree.build(mesh, points, points)
+    tree = BoxTree.build(mesh, points)
     found = [*tree.pairs_with(still.tree, nearer_than(lambda: nearest**2))]
     none = np.zeros(0, dtype=np.intp)
     a, b = (np.concatenate(each) for each in zip((none, none), *found, strict=True))
