@@ -1,17 +1,19 @@
 """A stage for the selected curves, and a film of what the scene shows."""
 
+from contextlib import suppress
 from typing import Any
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 
+from ...core import MobiusFlowError
 from ...core.base.messages import Message
 from ...core.driver.words import named, time_left
 from ..curves.recorded import drawn_radius
 from ..live.modal import clear_status
 from ..live.requirements import FILMABLE, Condition, idle, shown_curves
 from ..pictures import staging
-from ..pictures.movie import CHOICES, Filming, is_rendering, is_there, play, target
+from ..pictures.movie import CHOICES, Filming, is_rendering, play, target
 from ..scripting import Relaxation
 from ..translations import iface_, rpt_
 from .button import Button, LiveButton, button, offer
@@ -136,10 +138,13 @@ class CURVE_OT_mobius_flow_render_film(LiveButton, bpy.types.Operator):
         self.report({"INFO"}, rpt_("A film of {count} frames: {path}", count=made.frames, path=made.path))
 
 
-_MADE = Condition(
-    "This scene has made no film at this place; press Render Film first",
-    lambda context: not is_there(context.scene, context.scene.mobius_flow_film.filepath),
-)
+def _is_missing(context: bpy.types.Context) -> bool:
+    with suppress(MobiusFlowError):
+        return not target(context.scene.mobius_flow_film.filepath).is_file()
+    return True
+
+
+_MADE = Condition("There is no film at this place; press Render Film first", _is_missing)
 
 
 @button("Play Film", _MADE, bl_options=set())

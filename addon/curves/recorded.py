@@ -19,7 +19,7 @@ from . import bake, pins
 from .keyframes import fcurves_of, keyed_points
 from .moving import what_moves
 from .sizes import placement, resume, suspend
-from .splines import depth, key_points, mesh_of, radii, read, stretch, write_points
+from .splines import depth, key_points, mesh_of, radii, read, stretch
 from .strands import Strands, read_link
 
 
@@ -169,13 +169,12 @@ def keep_size(objects: Sequence[bpy.types.Object], measure: Measure, reference: 
 
 
 def lay_flat(objects: Sequence[bpy.types.Object]) -> int:
-    """Turn curves so that they extend least upwards; one that is animated, least along its own Z axis.
+    """Turn curves so that they extend least upwards.
 
     Returns the number of motions of keys that are not proved any more. Raises MobiusFlowError if something moves one
-    of them, or its parent's scale would shear it, and it is not alone, or has no keys; or if all points are the same.
+    of them, or its parent's scale would shear it, or if all points are the same.
     """
-    flat = placement(objects[0]).linear.T if what_moves(objects[0]) else np.eye(3)
-    return _turn(objects, orthonormal(flat))
+    return _turn(objects, np.eye(3))
 
 
 def face_camera(objects: Sequence[bpy.types.Object], camera: bpy.types.Object) -> int:
@@ -203,23 +202,7 @@ def _turn(objects: Sequence[bpy.types.Object], wanted: FloatArray) -> int:
                 uneven = "'{name}' would change its shape, as its parent's scale is uneven"
                 why = why or Message(uneven, name=obj.name)
     if why:
-        if len(objects) > 1 or not bake.is_baked(objects[0].data):
-            raise MobiusFlowError(Message("{why}; remove that, or bake it and turn it alone", why=why))
-        if bake.is_edited(objects[0].data):
-            raise MobiusFlowError(Message("{why}, and its keys were edited; undo one or the other", why=why))
-        # the keyed points themselves are turned, and the places where they are shown in other sizes
-        (obj,), keys = objects, BakedKeys(objects)
-        (place,), (shown,) = keys.link.placements, keys.sizes
-        for block, frame in zip(obj.data.shape_keys.key_blocks, keys.frames, strict=True):
-            points = place.to_local(turn.of(place.to_world(frame.astype(np.float64)))).astype(np.float32)
-            block.data.foreach_set("co", points.ravel())
-        write_points(obj.data, points)
-        world = [place.in_world(size) for size in shown]
-        about = [turn.of(each.shift / (1.0 - each.factor)) if each.factor != 1.0 else each.shift for each in world]
-        turned = [Similarity.about(c, each.factor) for c, each in zip(about, world, strict=True)]
-        bake.resize(obj, [place.similarity(each) for each in turned])
-        bake.update(obj.data)
-        return BakedKeys(objects).unproved
+        raise MobiusFlowError(Message("{why}; remove that first", why=why))
     for obj in objects:
         suspend(obj)
     there = {obj: Matrix(turn.matrix.tolist()) @ obj.matrix_world for obj in objects}

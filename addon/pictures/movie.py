@@ -24,7 +24,6 @@ from .rendering import is_rendering
 Progress = Callable[[int, int], None]
 
 _MARK = "mobius_flow_copy"  # custom property of scenes made here; before Blender 5 settings of scenes are such, too
-_FILM = "mobius_flow_film_bytes"  # custom property of a scene: the size of the last film that it made
 SUFFIX = ".mp4"
 # how films are rendered: their labels and descriptions
 CHOICES = {
@@ -120,9 +119,9 @@ def _spliced(scene: bpy.types.Scene, pictures: Sequence[Path]) -> bpy.types.Scen
 class Filming:
     """One film of the frames that a scene plays, in the size of its renders, through its camera.
 
-    The scene stays as it is: a copy is rendered, next to the film's place, and what is whole is moved there. In the
-    path, Blender's ``//`` is the directory of the open file, and ``.mp4`` is added to a name without suffix. Raises
-    MobiusFlowError if the film cannot be made.
+    The scene stays as it is, but for its stage, which takes on the look: a copy is rendered, next to the film's place,
+    and what is whole is moved there. In the path, Blender's ``//`` is the directory of the open file, and ``.mp4`` is
+    added to a name without suffix. Raises MobiusFlowError if the film cannot be made.
     """
 
     def __init__(self, scene: bpy.types.Scene, path: str, look: str = "SCENE", overwrite: bool = False) -> None:
@@ -148,9 +147,11 @@ class Filming:
         self.path, self.frames = place, len(frames_of(scene))
         self.done, self._began = 0, 0.0  # frames that are written, and when that began
         self._part = place.with_name(f".{secrets.token_hex(8)}{SUFFIX}")
-        self._filmed, copy = str(scene.name), scene.copy()  # with the same objects; `sweep` removes it
+        if look in LOOKS:
+            staging.renew(scene, look)
+        copy = scene.copy()  # with the same objects; `sweep` removes it
         copy.name, copy[_MARK] = "Film", True
-        self._scene, self._undress = str(copy.name), staging.dress(copy, scene, look)
+        self._scene = str(copy.name)
         if look in LOOKS:
             rendering.look_fine(copy, LOOKS[look])
         elif look == "QUICK":
@@ -195,11 +196,7 @@ class Filming:
         return (time.monotonic() - self._began) / self.done * (self.frames - self.done) if self.done else None
 
     def finish(self) -> bool:
-        """Put the film in its place if it is whole, and return whether it is; leave nothing else behind.
-
-        The scene remembers it, for another one may come there.
-        """
-        self._undress()
+        """Put the film in its place if it is whole, and return whether it is; leave nothing else behind."""
         with suppress(ValueError):  # it was not started in a window
             bpy.app.handlers.render_write.remove(self._count)
         whole = False
@@ -211,8 +208,6 @@ class Filming:
             self._part.unlink(missing_ok=True)
         if not is_rendering():
             sweep()
-        if whole and self._filmed in bpy.data.scenes:
-            bpy.data.scenes[self._filmed][_FILM] = str(self.path.stat().st_size)
         return whole
 
 
@@ -225,14 +220,6 @@ def play(path: Path) -> None:
             bpy.ops.wm.path_open(filepath=str(path))
     except (OSError, RuntimeError) as error:
         raise OutputError(path, error) from error
-
-
-def is_there(scene: bpy.types.Scene, path: str) -> bool:
-    """Whether the film at a path is the one that a scene made, and not another project's."""
-    try:
-        return bool(scene.get(_FILM) == str(target(path).stat().st_size))
-    except (MobiusFlowError, OSError):
-        return False
 
 
 def target(path: str) -> Path:

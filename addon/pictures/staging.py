@@ -4,7 +4,7 @@ What belongs to it is marked. A scene's own camera and world stay in the file wh
 collection holds on to them, and gives them back.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 
 import bpy
@@ -34,7 +34,6 @@ def set_up(
     use_world: bool = True,
     look: str = ON_STAGE,
     hide_others: bool = True,
-    played: bpy.types.Scene | None = None,
 ) -> bpy.types.Collection:
     """Put a camera, lights and a floor around curve objects for as long as they move; an existing stage is replaced.
 
@@ -42,9 +41,9 @@ def set_up(
     stage's camera and under its sky, instead of its own, ``hide_others`` whether renders leave out all else that has a
     shape, but for what curves avoid. Curves without materials of their own get those of the ``look``, `ON_STAGE` where
     it is none of `LOOKS`. All that lasts until the stage is struck. Raises CurveError if splines cannot be read, or are
-    a single point; nothing has changed then.  ``played``: the scene that shows how objects move, if it is another.
+    a single point; nothing has changed then.
     """
-    frames, points, radii = world_motion(played or scene, objects)
+    frames, points, radii = world_motion(scene, objects)
     ground = stage.Ground.around(points, np.array([0.0, 0.0, 1.0]))
     if not ground.size:
         raise CurveError("All points of the curves are the same; move them apart")
@@ -111,7 +110,7 @@ def strike(scene: bpy.types.Scene) -> None:
 
 
 def renew(scene: bpy.types.Scene, look: str = "") -> None:
-    """Set up a scene's stage again, if it has one, in its own look or another.
+    """Set up a scene's stage again, if it has one, in its own look or one of `LOOKS`.
 
     Curves that are gone, or no longer curves, are left out.
     """
@@ -123,30 +122,6 @@ def renew(scene: bpy.types.Scene, look: str = "") -> None:
     with suppress(CurveError):
         look = look or collection.get(_LOOK, ON_STAGE)
         set_up(scene, objects, camera_used, world_used, look, bool(kept(collection, HIDDEN)))
-
-
-def dress(copy: bpy.types.Scene, scene: bpy.types.Scene, look: str) -> Callable[[], None]:
-    """Give a copy of a scene, which shares its stage, one in another look; return what takes that away again."""
-    shared = own_stage(copy)
-    if shared is None or shared not in list(copy.collection.children) or look not in LOOKS or shared.get(_LOOK) == look:
-        return lambda: None
-    copy.collection.children.unlink(shared)
-    objects = [obj for obj in kept(shared, _SHOWN) if obj.name in scene.objects]
-    camera_used, world_used = (block is not None and STAGE in block for block in (copy.camera, copy.world))
-    try:
-        set_up(copy, objects, camera_used, world_used, look, hide_others=False, played=scene)
-    except CurveError:  # it is filmed as it stands
-        copy.collection.children.link(shared)
-        return lambda: None
-    _undressed(objects)
-    _paint(objects, look)
-
-    def undress() -> None:
-        with suppress(ReferenceError):  # another file was loaded meanwhile
-            strike(copy)
-            _paint(objects, shared[_LOOK])
-
-    return undress
 
 
 def kept(collection: bpy.types.Collection, which: str) -> list[bpy.types.Object]:

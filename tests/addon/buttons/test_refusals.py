@@ -149,7 +149,7 @@ CASES = {
         "face_camera": "The scene has no camera; add one first",
         "render_film": "The scene has no camera; press Set Up Stage first",
         "remove_stage": "The scene has no stage; press Set Up Stage first",
-        "play_film": "This scene has made no film at this place; press Render Film first",
+        "play_film": "There is no film at this place; press Render Film first",
         "pin": "All splines are closed and have no ends; go to Edit Mode and select the points to pin",
         "unpin": "No points of the selected curves are pinned",
         "morph": "Select a curve, and then the one that it is to become",
