@@ -8,14 +8,14 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any
 
 import bpy
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...core import Curve, Hand, Iterate, Obstacle, Outcome, RelaxOptions, Task, WithOutcome
+from ...core import Curve, Hand, Iterate, Mesh, Obstacle, Outcome, RelaxOptions, Task, WithOutcome
 from ...core.base import CurveError, FloatArray, Message, MobiusFlowError, OptionError, Place, Sentence
 from ...core.collision import is_rope
 from ...core.driver.prepare import rope_radius
@@ -27,7 +27,7 @@ from ...core.keys.placement import Frame, Measure, Placement, Spot, spots
 from ...core.keys.recording import Key, Keys, Kind, Proof
 from ...core.keys.tube import eased, rope_radii
 from ...core.ropes import SeparateOptions, Tightened, TightenOptions
-from ..engine.worker import begun, in_common_space
+from ..engine.worker import begun
 from . import bake, bevel, doors, pins
 from .goals import Goals
 from .member import Member
@@ -201,7 +201,7 @@ class Session:
                 raise self.reworded(error) from error
             assert relaxation.outcome is not None, "the loop is through"
             self.end(relaxation.outcome)
-            prepared = self.prepare(partial(is_rope, obstacles=self._avoided))
+            prepared = self.prepare(self.proved)
             if reason := self.lost():
                 raise MobiusFlowError(Message("{reason} during the relaxation; nothing was written", reason=reason))
             return self.bake(prepared)
@@ -367,7 +367,12 @@ class Session:
 
     @cached_property
     def _avoided(self) -> tuple[Obstacle, ...]:
-        return in_common_space(self.task.obstacles, self.link)
+        """What is avoided, in the common space."""
+        return tuple(Obstacle(self.link.from_world(o.vertices), o.faces, o.name) for o in self.task.obstacles)
+
+    def proved(self, mesh: Mesh, start: FloatArray, end: FloatArray, radius: FloatArray | None = None) -> bool:
+        """Whether a motion in the common space is free of contact, or of a rope; as `core.collision.is_rope`."""
+        return is_rope(mesh, start, end, radius, self._avoided)
 
     def prepare(self, proof: Proof) -> Prepared:
         """Choose and prove the keys; this touches nothing of Blender's and may be done in any thread."""

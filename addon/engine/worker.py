@@ -1,11 +1,9 @@
 """Both ends of the worker: what it does in its process, and how Blender starts it, takes in its iterates and ends it.
 
-The worker yields the driver's iterates, with proofs for the motions that Blender's own numbers make of them. Blender
-never waits for it, and ends it at once. What they tell each other is pickled: both run the same files.
+Blender never waits for it, and ends it at once. What they tell each other is pickled: both run the same files.
 """
 
 import contextlib
-import hashlib
 import inspect
 import os
 import pickle
@@ -14,9 +12,8 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from functools import partial
-from itertools import pairwise
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -25,21 +22,17 @@ import numpy as np
 import scipy
 import threadpoolctl
 
-from ...core import Curve, Hand, Iterate, MobiusFlowError, Obstacle, Outcome, RelaxOptions, Task, WithOutcome, relax
-from ...core.base import FloatArray, Message
-from ...core.collision import is_free, is_rope
-from ...core.curve import Mesh
+from ...core import Curve, Hand, Iterate, MobiusFlowError, Outcome, RelaxOptions, Task, WithOutcome, relax
+from ...core.base import Message
 from ...core.driver import Relaxation
 from ...core.driver.morph import morphing
-from ...core.keys.placement import Frame, Link, Placement
-from ...core.keys.recording import frames_of
 from ...core.ropes import SeparateOptions, TightenOptions, separating, tightening
 
 Inbox = queue.SimpleQueue[Any]
 
 
 def messages(inbox: Inbox) -> Iterator[Any]:
-    """Yield the iterates of a job, each with the names of motions that are proved, and at last the outcome or an error.
+    """Yield the iterates of a job, and at last the outcome or an error.
 
     The inbox holds the job first, what `Worker` is given, and then pauses and actions of the hand, read between steps;
     None ends it.
@@ -47,20 +40,12 @@ def messages(inbox: Inbox) -> Iterator[Any]:
     job = inbox.get()
     if job is None:
         return
-    task, options, link, stays, goals = job
-    obstacles, hand = in_common_space(task.obstacles, link), Hand(stays=stays)
-    last: Frame | None = None
-    paused = False
+    task, options, stays, goals = job
+    hand, paused = Hand(stays=stays), False
     try:
         run = WithOutcome(begun(task, options, goals, hand))
         for iterate in run:
-            frames = frames_of(link, iterate)
-            shapes, mesh = [*([] if last is None else [last]), *frames], iterate.curve.mesh
-            last, proved = frames[-1], []  # names of the motions that are free of contact, in the common space
-            if all(len(shape) == mesh.size for shape in shapes):
-                common = pairwise(link.to_common(mesh, shape) for shape in shapes)
-                proved = [digest(a, b) for a, b in common if is_free(mesh, a, b, obstacles)]
-            yield iterate, proved
+            yield iterate
             while paused or hand.rests or not inbox.empty():
                 if (said := inbox.get()) is None:
                     return
@@ -91,17 +76,6 @@ def begun(task: Task, options: Job, goals: Mapping[str, Curve], hand: Hand) -> R
     )
 
 
-def in_common_space(avoid: Iterable[Obstacle], link: Link) -> tuple[Obstacle, ...]:
-    """The world's obstacles in the space where motions of a link are proved: vertices are mapped there in doubles."""
-    there = Placement(np.eye(3), np.zeros(3)).relative_to(link.placements[0])
-    return tuple(Obstacle(there.to_world(each.vertices), each.faces, each.name) for each in avoid)
-
-
-def digest(start: FloatArray, end: FloatArray) -> str:
-    """Name of the straight motion between two arrays of vertices: exactly these bits, nothing else."""
-    return hashlib.blake2b(start.tobytes() + end.tobytes(), digest_size=16).hexdigest()
-
-
 class WorkerError(MobiusFlowError):
     """The worker ended without saying why."""
 
@@ -109,22 +83,14 @@ class WorkerError(MobiusFlowError):
 class Worker:
     """A relaxation in another process, or in a thread where no process can be started.
 
-    ``link``: where Blender stores the vertices; motions of the stored ones are proved too. ``stays``: as for `Hand`;
-    ``goals``: as for `begun`.
+    ``stays``: as for `Hand`; ``goals``: as for `begun`.
     """
 
     def __init__(
-        self,
-        task: Task,
-        options: Job,
-        link: Link,
-        stays: bool = False,
-        goals: Mapping[str, Curve] = MappingProxyType({}),
+        self, task: Task, options: Job, stays: bool = False, goals: Mapping[str, Curve] = MappingProxyType({})
     ) -> None:
         self._inbox: Inbox = queue.SimpleQueue()
-        self._inbox.put((task, options, link, stays, dict(goals)))
-        self._obstacles = in_common_space(task.obstacles, link)
-        self._proved: set[str] = set()
+        self._inbox.put((task, options, stays, dict(goals)))
         self._queue: queue.Queue[Any] = queue.Queue(64)  # wait while Blender draws; then the worker does
         self._closed = threading.Event()
         self.process = _start()
@@ -153,16 +119,7 @@ class Worker:
             raise WorkerError(Message("The computation ended unexpectedly; memory may have run out"))
         if isinstance(message, MobiusFlowError):
             raise message
-        if isinstance(message, Outcome):
-            return message
-        iterate, proved = message
-        self._proved.update(proved)
-        return iterate  # type: ignore[no-any-return]
-
-    def is_rope(self, mesh: Mesh, start: FloatArray, end: FloatArray, radius: FloatArray | None = None) -> bool:
-        """As `core.collision.is_rope`, but most motions were proved free of contact by the worker already."""
-        known = radius is None and digest(start, end) in self._proved
-        return known or is_rope(mesh, start, end, radius, self._obstacles)
+        return message  # type: ignore[no-any-return]
 
     def close(self) -> None:
         """End the process now and the thread with it; harmless to repeat."""

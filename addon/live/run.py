@@ -18,7 +18,6 @@ from ...core import CurveError, Iterate, MobiusFlowError, Outcome, Status
 from ...core.base import FloatArray, Message, Place
 from ...core.driver import TimeLeft
 from ...core.keys.placement import Spot
-from ...core.keys.recording import Proof
 from ..curves.session import Prepared, Report, Session
 from ..curves.splines import digest
 from ..engine.rest import Target, target_of
@@ -69,14 +68,14 @@ class _AbandonedError(Exception):
 class KeyChoice:
     """Chooses and proves the keys of a session in a thread, while Blender stays usable."""
 
-    def __init__(self, session: Session, proof: Proof) -> None:
+    def __init__(self, session: Session) -> None:
         self.abandoned = False  # which ends the thread at its next proof
         self._prepared: Prepared | None = None
 
         def prove(*motion: Any) -> bool:
             if self.abandoned:
                 raise _AbandonedError
-            return proof(*motion)
+            return session.proved(*motion)
 
         def prepare() -> None:
             with contextlib.suppress(_AbandonedError):
@@ -130,7 +129,7 @@ class LiveRun:
         self.avoided = session.surroundings.names
         self.time_left = TimeLeft(session.options)
         try:
-            self._worker = Worker(session.task, session.job, self.session.link, stays, session.goals.curves)
+            self._worker = Worker(session.task, session.job, stays, session.goals.curves)
         except BaseException:
             self.session.discard()
             raise
@@ -231,7 +230,7 @@ class LiveRun:
             self.session.outcome = Outcome(Status.INTERRUPTED, (reason,))
         self.state = RunState.FINISHING
         self._worker.close()
-        self._keys = KeyChoice(self.session, self._worker.is_rope)
+        self._keys = KeyChoice(self.session)
 
     def cancel(self, message: str = Message("Cancelled; all is as it was")) -> None:
         if not self.state.over:

@@ -183,6 +183,10 @@ class Link:
         """From each object's own coordinates to the common space; shape (n, 3)."""
         return Link(self._to_first, self.counts).to_world(mesh, stored)
 
+    def from_world(self, points: FloatArray) -> FloatArray:
+        """From the world to the common space; shape (n, 3)."""
+        return Placement(np.eye(3), np.zeros(3)).relative_to(self.placements[0]).to_world(points)
+
 
 @dataclass(frozen=True, eq=False)
 class Origin:

@@ -214,8 +214,7 @@ name = next(name for name in bpy.context.preferences.addons.keys() if name.endsw
 # the worker of a run in a window, under the name that Blender gives the package
 live = importlib.import_module(f"{name}.addon.engine.worker")
 task = live.Task(curve=live.Curve(written[0].astype(float)))
-link = live.Link((live.Placement(np.eye(3), np.zeros(3)),), (1,))
-worker = live.Worker(task, live.RelaxOptions(max_iterations=3), link)
+worker = live.Worker(task, live.RelaxOptions(max_iterations=3))
 assert worker.process is not None
 arrived = [worker._queue.get(timeout=100) for _ in range(5)]
 assert isinstance(arrived[-1], live.Outcome), arrived[-1]

@@ -19,7 +19,7 @@ from blender_scenes import (
     stored,
 )
 from mobius_flow.addon.buttons import shape
-from mobius_flow.addon.curves import bake, bevel, recorded
+from mobius_flow.addon.curves import bevel, recorded
 from mobius_flow.addon.curves.recorded import BakedKeys, Recorded
 from mobius_flow.core import Curve
 from mobius_flow.core.collision import is_free

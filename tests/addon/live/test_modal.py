@@ -11,7 +11,6 @@ import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_hopf_link, add_trefoil, stored
-from mobius_flow.addon.engine import worker
 from mobius_flow.addon.live import handlers, run
 from mobius_flow.addon.live.modal import Listening
 from mobius_flow.addon.live.run import RunState
@@ -65,22 +64,6 @@ def test_the_same_curves_as_the_headless_job(operator, scene, said):
         np.testing.assert_array_equal(keys(obj), keys(headless))
         np.testing.assert_array_equal(stored(obj.data), stored(headless.data))
         assert obj.data.bevel_depth == headless.data.bevel_depth > 0
-
-
-@pytest.mark.parametrize("operator", ["process"], indirect=True)
-@pytest.mark.parametrize("scene", [rings, beside])
-def test_the_worker_proves_what_is_stored(operator, scene, monkeypatch):
-    """Nothing is proved twice: the motions of rounded points of all objects come proved from the worker."""
-    scene()
-    again = []
-    monkeypatch.setattr(worker, "is_free", lambda *given: again.append(given[-1]) or True)
-    avoid = list(bpy.data.collections["Avoid"].objects) if scene is beside else []
-    operator.given["avoid"] = avoid
-    operator.start()
-    assert operator.until(lambda: False) == {"FINISHED"}
-    assert operator.run.report.certified
-    assert len(again) <= 1, "only the rounding of the start"
-    assert all([each.name for each in given] == [each.name for each in avoid] for given in again)
 
 
 def test_a_start_in_contact_is_said_and_shown(operator):

@@ -44,13 +44,6 @@ def test_what_is_shown_at_once():
     assert not refresh.ends_batch(8)
 
 
-def started(session, proof):
-    """A choice whose thread is at its end."""
-    choice = KeyChoice(session, proof)
-    choice._thread.join(PATIENCE)
-    return choice
-
-
 def test_an_abandoned_thread_ends_at_its_next_proof():
     gate, proved, went_on = threading.Event(), [], []
 
@@ -59,7 +52,7 @@ def test_an_abandoned_thread_ends_at_its_next_proof():
         proof(None, None, None)
         went_on.append(True)
 
-    choice = KeyChoice(SimpleNamespace(prepare=prepare), lambda *_: proved.append(True))
+    choice = KeyChoice(SimpleNamespace(prepare=prepare, proved=lambda *_: proved.append(True)))
     choice.abandoned = True
     gate.set()
     choice._thread.join(PATIENCE)
@@ -70,7 +63,8 @@ def test_an_abandoned_thread_ends_at_its_next_proof():
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
 def test_a_thread_that_fails_is_an_error():
-    choice = started(SimpleNamespace(prepare=lambda proof: proof(0)), lambda number: 1 // number)
+    choice = KeyChoice(SimpleNamespace(prepare=lambda proof: proof(0), proved=lambda number: 1 // number))
+    choice._thread.join(PATIENCE)
     with pytest.raises(MobiusFlowError, match="could not be prepared"):
         _ = choice.made
 

@@ -61,6 +61,7 @@ def test_the_common_space_is_the_first_objects_and_objects_placed_alike_are_prov
     common = Link((TURNED, Placement(np.eye(3), np.array([1.0, 2, 3]))), (1, 1))
     stored = common.to_stored(curve.mesh, curve.vertices)
     np.testing.assert_allclose(TURNED.to_world(common.to_common(curve.mesh, stored)), curve.vertices, atol=1e-13)
+    np.testing.assert_allclose(common.from_world(curve.vertices), common.to_common(curve.mesh, stored), atol=1e-13)
     for alike in (Link((TURNED, TURNED), (1, 1)), Link((TURNED,), (2,))):
         stored = alike.to_stored(curve.mesh, curve.vertices).astype(np.float32)
         assert np.array_equal(alike.to_common(curve.mesh, stored), stored)
