@@ -170,7 +170,7 @@ def test_what_is_refused_in_german(tmp_path):
     with pytest.raises(MobiusFlowError) as caught:
         lay_flat([curve])
     said = str(caught.value).said(german)
-    assert said == "'Knot' wird bewegt (Beschränkung); das entfernen oder die Kurve backen und einzeln drehen"
+    assert said == "'Knot' wird bewegt (Beschränkung); das zuerst entfernen"
     with pytest.raises(MobiusFlowError) as caught:
         target(str(tmp_path))
     assert str(caught.value).said(german) == f"{tmp_path} ist ein Verzeichnis; eine Datei darin angeben"
