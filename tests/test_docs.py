@@ -119,7 +119,6 @@ def test_the_readme_example_for_blender_runs():
     assert example is not None
     scripting = (ROOT / "docs/scripting.md").read_text(encoding="utf-8")
     told = re.search(r"`mobius_flow_relax` takes the panel's settings: (.*?);", scripting, re.DOTALL)
-    assert told is not None
     names = re.findall(r"`([a-z_]+)`", told.group(1))
     assert "max_keys" in names
     code = (
@@ -138,7 +137,6 @@ def test_the_example_for_scripts_in_blender_runs(tmp_path):
     pytest.importorskip("bpy")
     guide = (ROOT / "docs/scripting.md").read_text(encoding="utf-8")
     example = re.search(r"```python\n(import bpy.*?)```", guide, re.DOTALL)
-    assert example is not None
     code = example.group(1).replace("from bl_ext.user_default.mobius_flow", "from mobius_flow")
     code = code.replace('"/tmp/film.mp4", look="QUICK"', f"{str(tmp_path / 'film.mp4')!r}")
     before = (

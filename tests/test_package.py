@@ -60,7 +60,6 @@ def test_a_command_of_the_readme_installs_what_it_needs(command, needs):
     """For the site also what the gallery imports; its film is shown without running where there is no Blender."""
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     extras = re.search(rf"<!-- {command} command -->\n\n    \S.* \"\.\[(\S+)\]\" && \S", readme)
-    assert extras is not None
     has = {*installed(*extras[1].split(","))}
     if command == "site":
         needs = needs.union(*map(imported, ROOT.glob("examples/*.py"))) - {"bl_ext", "bpy", "numpy"}

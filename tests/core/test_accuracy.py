@@ -19,7 +19,6 @@ def short(vertices: int = 1500, **options: object) -> Result:
 def test_errors_are_in_outcome_and_report() -> None:
     result = short()
     errors = result.outcome.sampled_errors
-    assert errors is not None
     assert 0.0 < errors.energy.bound < 1e-6
     assert 0.0 < errors.gradient_norm.bound < 5e-5
     report = result.report()["sampled_errors"]
@@ -44,7 +43,6 @@ def test_sums_of_all_pairs_have_no_errors(solver: str) -> None:
 def test_expansions_are_tightened_for_the_accuracy_asked_for() -> None:
     result = short(accuracy=1e-5)
     errors = result.outcome.sampled_errors
-    assert errors is not None
     assert errors.order == 6
     assert errors.energy.bound < 1e-7
     assert errors.gradient_norm.bound < 5e-6

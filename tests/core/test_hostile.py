@@ -38,7 +38,6 @@ def check_run(curve: Curve, options: RelaxOptions) -> None:
             frames = [before.curve.vertices, *iterate.path]
             assert all(is_free(before.curve.mesh, a, b) for a, b in itertools.pairwise(frames))
         before = iterate
-    assert before is not None
     if curve.dimension == 3:
         assert quick_invariants(before.curve) == quick_invariants(curve)
 

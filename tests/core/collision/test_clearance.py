@@ -30,7 +30,6 @@ def test_without_obstacles_everything_is_clear() -> None:
 def test_an_edge_that_pierces_is_named_with_the_place() -> None:
     error = refusal(SQUARE, box(5, 6), plate(0.25, name="tile"))
     assert str(error) == "edge 1 of component 1 pierces obstacle tile at (1, 1, 0.25); move one of them away"
-    assert error.place is not None
     assert error.place.vertices == (0, 1)
     assert error.place.position == pytest.approx((1.0, 1.0, 0.25))
 

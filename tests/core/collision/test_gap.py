@@ -31,7 +31,6 @@ def test_against_brute_force(sizes: tuple[int, ...], m: int) -> None:
         parts = [rng.normal(size=(k, m)) + offset * c for c, k in enumerate(sizes)]
         curve = Curve.from_components(parts)
         gap, pair = minimal_gap(curve)
-        assert pair is not None
         corners = curve.vertices[[pair[0], curve.mesh.heads[pair[0]], pair[1], curve.mesh.heads[pair[1]]]]
         assert gap == pytest.approx(brute_force(curve), rel=1e-6, abs=1e-7)
         assert gap == pytest.approx(segment_distance(corners), rel=1e-6, abs=1e-7)

@@ -35,7 +35,6 @@ def test_hopf_link_pulled_apart() -> None:
     # the second circle's leftmost vertex, at x = 0, meets the first circle's vertex at x = 1
     assert motion.limit is Limit.CONTACT
     assert 0.98 * 0.25 < motion.time < 0.25
-    assert motion.contact is not None
     assert sorted(link.mesh.component[list(motion.contact.edges)].tolist()) == [0, 1]
     assert not is_free(link.mesh, link.vertices, end)
     assert is_free(link.mesh, link.vertices, link.vertices + motion.time * (end - link.vertices))

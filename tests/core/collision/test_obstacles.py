@@ -20,7 +20,6 @@ def test_a_wall_in_the_way(obstacle: Obstacle, scale: float) -> None:
     motion = free_motion(curve.mesh, curve.vertices, end, (still,))
     assert motion.limit is Limit.CONTACT
     assert 0.98 / 3 < motion.time < 1 / 3
-    assert motion.contact is not None
     assert motion.contact.obstacle == "obstacle plate"
     assert motion.contact.edges[0] in (19, 20)
     assert motion.contact.message == f"edge {motion.contact.edges[0] + 1} and obstacle plate"
@@ -37,7 +36,6 @@ def test_the_earlier_of_two_contacts_counts() -> None:
     late = Obstacle([[4.0, 0, 5.0], [4.0, 0, -5.0]], [[0, 1]], "late")
     assert free_motion(link.mesh, link.vertices, end, (late,)) == alone
     motion = free_motion(link.mesh, link.vertices, end, [late, early])
-    assert motion.contact is not None
     assert motion.contact.obstacle == "obstacle early"
     assert 0.98 * 0.05 < motion.time < 0.05
 

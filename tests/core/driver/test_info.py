@@ -28,7 +28,6 @@ def test_circles_and_arcs(curve: Curve, kind: str, thickness: float, energy: flo
     assert found.thickness == pytest.approx(thickness)
     assert found.ropelength == pytest.approx(found.length / thickness)
     assert found.writhe is None if curve.dimension == 2 else found.writhe == pytest.approx(0.0, abs=1e-12)
-    assert found.rest is not None
     assert found.open or found.rest.sentence == "at rest at a minimum"
 
 
@@ -36,7 +35,6 @@ def test_a_relaxed_trefoil_is_at_rest_and_its_start_is_not() -> None:
     start = knot("3_1", 80)
     result = minimize(start, EXACT)
     before, after = info(start), info(result.curve)
-    assert before.rest is not None
     assert after.rest is not None
     assert before.rest.sentence == "not at rest"
     assert before.rest.index is None
@@ -50,7 +48,6 @@ def test_a_saddle_has_its_index() -> None:
     result = minimize(torus_knot(3, 4, 120), EXACT)
     assert result.outcome.converged
     found = info(result.curve).rest
-    assert found is not None
     assert found.index == result.outcome.negative_eigenvalues
 
 
@@ -59,7 +56,6 @@ def test_an_arc_that_relax_takes_for_converged_is_at_rest() -> None:
     result = minimize(half_circle(40), RelaxOptions(mesh="fixed"))
     assert result.outcome.converged
     found = info(result.curve)
-    assert found.rest is not None
     assert found.rest.objective < 1e-4
     assert found.rest.at_rest
     assert found.type.sentence == "none: only closed curves have a knot type, and this one is open"
@@ -75,12 +71,10 @@ def test_what_takes_too_long_is_left_out_and_what_touches_refused(monkeypatch: p
 
 def test_a_curve_at_rest_is_told_which_minimum_it_stands_for() -> None:
     smooth = info(minimize(knot("m3_1", 60), RelaxOptions(vertices=60)).curve).smooth
-    assert smooth is not None
     assert smooth.sentence.startswith("74.41204")
     assert smooth.sentence.endswith("the least known of 3_1")
     assert info(knot("3_1", 60)).smooth is None  # which is not at rest
     circle = info(knot("0_1", 40)).smooth
-    assert circle is not None
     assert circle.sentence.endswith("the least known of 0_1")
 
 

@@ -61,7 +61,6 @@ def test_short_steps_do_not_drift_away_from_the_lengths() -> None:
     move = 5e-6 * base.gradient / base.gradient_norm
     missed = base.problem.at(base.vertices - move).infeasibility
     end = base.retract(base.vertices - move, base.residual)
-    assert end is not None
     assert 100 * end.infeasibility < missed < Constrained().tolerance
 
 
@@ -86,7 +85,6 @@ def test_the_metric_is_asked_only_for_large_corrections(size: float, solves: int
     assert (np.abs(moved - point.residual).max() > Constrained().small) == (solves > 0)
     space = Counting(point.tangent_space)
     end = point.retract(point.vertices + direction, point.residual, space)
-    assert end is not None
     assert np.abs(end.residual).max() <= Constrained().tolerance
     assert space.solves == solves
 

@@ -82,7 +82,6 @@ def test_the_radius_gives_way_where_it_is_in_its_own_way() -> None:
     free, rope = (minimize(start, RelaxOptions(radius=each, **options)) for each in ("none", "keep"))
     assert rope.final_energy <= (1 + 5e-4) * free.final_energy
     assert "the rope gave way from radius" in rope.message
-    assert rope.last.radius is not None
     assert rope.last.radius[0] < 0.8 * thickness(start)
 
 
@@ -124,7 +123,6 @@ def test_edges_of_a_rope_are_split_as_its_bending_radii_bear(name: str) -> None:
         problem = begin(task, RelaxOptions(radius=radius)).problem
         curve, rope = task.curve, problem.radius
         finer = split_edges(problem, curve, np.full(curve.mesh.edges, 4))
-        assert finer is not None
         least = bending_radii(Curve(finer.placed, finer.problem.mesh)).min()
         if rope is None:
             assert least == pytest.approx(bending_radii(curve).min() / 4, rel=1e-6)
@@ -168,10 +166,8 @@ TRIANGLE = Curve([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]])
 def test_coarse_polygons_have_a_radius_that_is_told() -> None:
     first = minimize(TRIANGLE, RelaxOptions(max_iterations=1)).last
     assert np.isfinite(first.energy)
-    assert first.radius is not None
     with pytest.raises(CurveError, match=f"it is one of radius {first.radius[0]:.4g}") as error:
         minimize(TRIANGLE, RelaxOptions(radius=1.4 * first.radius[0]))
-    assert error.value.place is not None
     assert not error.value.place.vertices, "the user knows none of the refined curve"
 
 
@@ -226,8 +222,6 @@ def test_a_rope_that_has_let_go_gives_way_where_its_proof_is_in_the_way_but_not_
     assert move.stepped(replace(step, limited_by=None)) is None
     assert move.stuck(NoStep("no step")) is None
     for change in (move.stepped(replace(step, limited_by=contact)), move.stuck(NoStep("no step", contact))):
-        assert change is not None
-        assert change.point is not None
         assert change.point.problem.objective.rope is not None
         assert (change.point.problem.radius < before.problem.radius).all()  # type: ignore[operator]
     for point in (run.point, before):
@@ -240,8 +234,6 @@ def test_a_rope_gives_way_only_where_it_acts() -> None:
     run = begin(Task.of(knot("3_1", 60)), RelaxOptions(radius="keep", vertices=60, mesh="fixed"))
     stuck, point = NoStep("no step"), run.point
     change = GiveWay(run).stuck(stuck)
-    assert change is not None
-    assert change.point is not None
     assert (change.point.problem.radius < point.problem.radius).all()  # type: ignore[operator]
     thin = point.problem.as_rope(0.1 * np.asarray(point.problem.radius))
     run.view(point.changing(objective=thin.objective, radius=thin.radius))

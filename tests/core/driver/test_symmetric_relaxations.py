@@ -18,7 +18,6 @@ EXACT = 1e-10  # shortest edges, of rounded coordinates
 def error(last: Iterate, *others: Iterate) -> float:
     """How far vertices are from where symmetry puts them, under the group that the last curve is said to have."""
     group = symmetries(last.curve, 1e-6).subgroup(last.symmetry)
-    assert group is not None
     kept = Symmetry(group.name, group.centre, group.matrices)
     return max(kept.on(each.curve).error(each.curve) for each in (last, *others))
 
@@ -75,7 +74,6 @@ def test_torus_knots_are_saddles_that_only_broken_symmetry_leaves(p: int, q: int
 def test_energies_are_those_of_kim_and_kusner(p: int, q: int) -> None:
     options = RelaxOptions(symmetry="auto", vertices=32 * q, mesh="fixed", tolerance=1e-7)
     found = extrapolated(minimize(torus_knot(p, q), options).curve, options)
-    assert found is not None
     assert found.energy == pytest.approx(torus_knot_minimum(p, q), rel=1e-6)
     assert found.order == pytest.approx(2.0, abs=0.05)
 

@@ -35,16 +35,12 @@ def test_lammps_dumps(tmp_path: Path) -> None:
     assert np.array_equal(second.points, POINTS + 1.0)
     assert first.cell.tolist() == [[2, 0, 0], [0, 4, 0], [0, 0, 0]]
     assert (first.step, second.step, first.images) == (0, 100, None)
-    assert first.names is not None
-    assert first.molecules is not None
     assert (first.names.tolist(), first.molecules.tolist()) == ([1, 2, 3], [7, 7, 7])
     (scaled,) = read(path, "ITEM: UNITS\nlj\n" + dump(POINTS, atoms="id mol xs ys zs"))
     assert np.array_equal(scaled.points, POINTS * [2, 4, 8] + [0, 0, 1])
     (unwrapped,) = read(path, dump(POINTS, atoms="id mol xu yu zu"))
-    assert unwrapped.images is not None
     assert not unwrapped.images.any()
     (flagged,) = read(path, dump(np.hstack([POINTS, [[1, 0, -2]] * 3]), atoms="id mol x y z ix iy iz"))
-    assert flagged.images is not None
     assert flagged.images.tolist() == [[1, 0, -2]] * 3
     (tilted,) = read(path, dump(POINTS, box="BOX BOUNDS xy xz yz pp pp pp\n-1 5 1\n0 6 -2\n0 5 0.5"))
     assert tilted.cell.tolist() == [[3, 0, 0], [1, 5.5, 0], [-2, 0.5, 5]]

@@ -110,7 +110,6 @@ def test_types_beyond_the_table_are_not_told() -> None:
         assert not found.proved
         assert str(found) == "not identified"
         assert found.sentence.startswith(f"not identified: Alexander polynomial {polynomial}")
-    assert found.diagram is not None
     assert found.diagram.crossings == 13
 
 

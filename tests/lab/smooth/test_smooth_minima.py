@@ -61,7 +61,6 @@ def test_errors_of_both_count(trefoil, apart, groups):
 
 def test_links_whose_components_change_places_are_the_same():
     link = at_rest(minimize(knot("L4a1", 80), RelaxOptions(vertices=80)).curve)
-    assert link is not None
     turned = replace(link, curve=FourierCurve(link.curve.coefficients[::-1]))
     assert distinct([link, turned]) == [[0, 1]]
 

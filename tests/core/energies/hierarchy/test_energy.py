@@ -49,7 +49,6 @@ CURVE = pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)
 def with_small_leaves(curve: Curve, theta: float = HierarchicalMoebiusEnergy.theta) -> HierarchicalMoebiusEnergy:
     """The energy with many blocks even on small curves."""
     energy = HierarchicalMoebiusEnergy(BlockList.of(curve, theta, 4))
-    assert energy.blocks is not None
     assert len(energy.blocks.first) > len(curve) / 4
     return energy
 
