@@ -5,9 +5,8 @@ import numpy as np
 import pytest
 from baked_curves import SHORT, again, blocks, clear, curve_of, go_on, last_frame, two_rings
 from blender_scenes import add_curve, add_trefoil, contents, evaluated, relax
-from mobius_flow.addon.curves import bake, keyframes
+from mobius_flow.addon.curves import keyframes
 from mobius_flow.addon.curves.recorded import BakedKeys
-from mobius_flow.core.keys import key_options
 from mobius_flow.core.knots import knot
 
 
@@ -23,17 +22,6 @@ def test_clear_takes_a_fitted_tube_back_but_not_ones_own():
     assert obj.data.bevel_depth == 0.125
 
 
-@pytest.mark.usefixtures("defaults")
-def test_frames_per_iterate_alone_means_by_iterate():
-    obj = add_trefoil()
-    bpy.ops.curve.mobius_flow_relax(max_iterations=4, frames_per_iterate=2.5)
-    frames = {point.co[0] for point in curve_of(obj).keyframe_points}
-    assert {1, 3.5, 6, 8.5, 11} <= frames
-    assert max(frames) == 11
-    bpy.ops.curve.mobius_flow_relax(max_iterations=4)
-    assert curve_of(obj).keyframe_points[-1].co[0] == 250
-
-
 def test_constant_thickness_is_the_least():
     obj = add_curve([knot("5_2", 60).vertices])
     relax(max_iterations=8, fit_bevel=True, radius="none")
@@ -46,20 +34,6 @@ def test_constant_thickness_is_the_least():
     further = [block.data[0].radius for block in obj.data.shape_keys.key_blocks[len(constant) :]]
     assert len(further) == 8
     assert np.ptp(further) < 1e-6
-
-
-def test_no_motion_takes_no_length_but_the_rest_at_the_beginning_is_played(monkeypatch):
-    obj = add_trefoil()
-    with monkeypatch.context() as patch:
-        patch.setattr(key_options, "_SLOWEST", 1e9)
-        relax(max_iterations=3, timing="DISTANCE", length=50, hold_start=10, hold_end=5)
-        go_on(timing="DISTANCE", length=100, hold_start=3, hold_end=2)
-        assert bake.scene_range([obj]) == (1, 150)
-    relax(max_iterations=400, timing="EVEN", length=50)
-    go_on(timing="EVEN", length=100, tolerance=1e-3)
-    first, last = bake.scene_range([obj])
-    assert first == 1
-    assert 50 <= last <= 60
 
 
 @pytest.mark.parametrize("keyframes", ["SHAPE_KEYS", "RESULT"])
@@ -160,18 +134,6 @@ def test_a_look_into_edit_mode_edits_nothing():
         bpy.ops.object.mode_set(mode="OBJECT")
     again()
     clear()
-
-
-def test_a_copy_has_an_animation_of_its_own():
-    obj = add_trefoil()
-    relax(max_iterations=3)
-    shown = evaluated(obj, 3)
-    bpy.ops.object.duplicate()
-    copy = bpy.context.object
-    assert copy != obj
-    clear()
-    assert copy.data.shape_keys is None
-    np.testing.assert_array_equal(evaluated(obj, 3), shown)
 
 
 def test_drivers_and_settings_of_the_curve_stay():

@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 import pytest
-from baked_curves import SHORT, clear
+from baked_curves import SHORT
 from blender_scenes import add_curve, evaluated, relax, stored
 from mobius_flow.addon.live.requirements import RELAXABLE
 from mobius_flow.core import Curve, Mesh, RelaxOptions, minimize
@@ -56,16 +56,6 @@ def test_a_smooth_open_spline_becomes_a_polygon_from_end_to_end(kind):
     assert bpy.ops.curve.mobius_flow_mend(remedy="TO_POLY") == {"FINISHED"}
     np.testing.assert_allclose(stored(obj.data)[[0, -1]], ARC[[0, -1]], atol=1e-5)  # Blender 4.2 is not that exact
     assert cyclic(obj) == [False]
-
-
-def test_a_tube_is_fitted_with_its_ends_closed():
-    obj = add_arc()
-    assert bpy.ops.curve.mobius_flow_fit_tube() == {"FINISHED"}
-    assert obj.data.use_fill_caps
-    relax(**SHORT | {"fit_bevel": True, "radius": "none"})
-    assert len({round(key.data[0].radius, 6) for key in obj.data.shape_keys.key_blocks}) > 1
-    clear()
-    assert obj.data.use_fill_caps, "as it was before it was relaxed"
 
 
 @pytest.mark.parametrize("filled", [True, False])

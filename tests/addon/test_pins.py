@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 import pytest
 from baked_curves import SHORT, go_on, reopen
-from blender_scenes import add_curve, add_trefoil, contents, place, relax
+from blender_scenes import add_curve, contents, place, relax
 from mobius_flow import Relaxation
 from mobius_flow.addon.curves import pins
 from mobius_flow.addon.curves.recorded import BakedKeys
@@ -104,20 +104,6 @@ def test_they_are_the_points_own_in_copies_files_and_edit_mode(tmp_path):
     pin(obj, 0)  # keys stay ours there, too
     go_on(max_iterations=2)
     assert held(obj) == [0]
-
-
-def test_a_link_counts_on(capfd):
-    ring = add_trefoil()
-    ring.location.z = 20
-    arc = add_arc(name="Arc")
-    pin(arc, 5)
-    bpy.context.view_layer.update()
-    relax(**SHORT)
-    still_there = BakedKeys([ring, arc])
-    start = int(still_there.mesh.offsets[1])
-    frames = np.stack(still_there.frames)
-    index = start + held(arc)[0]
-    np.testing.assert_array_equal(frames[:, index], np.broadcast_to(ARC[5], (len(frames), 3)))
 
 
 @pytest.mark.slow

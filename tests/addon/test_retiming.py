@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_curve, add_trefoil, evaluated, relax
+from blender_scenes import add_trefoil, evaluated, relax
 from mobius_flow.addon.buttons import button, relaxing
 from mobius_flow.addon.curves import bake
 from mobius_flow.addon.curves.keyframes import all_fcurves, frames_of
@@ -115,19 +115,6 @@ def test_the_frames_that_the_scene_plays_follow_and_so_does_the_stage(settings):
     scene.frame_end = 70
     settings.length = 50
     assert scene.frame_end == 70
-
-
-def test_materials_follow(settings):
-    moving, goal = (add_curve([[(0.0, 0, 0), (3, 0, 0.3), (3, 1, 0), (0, height, 0.3)]]) for height in (1, 2))
-    moving.data.materials.append(bpy.data.materials.new("A"))
-    goal.data.materials.append(bpy.data.materials.new("B"))
-    goal.select_set(True)
-    bpy.context.view_layer.objects.active = goal
-    assert bpy.ops.curve.mobius_flow_morph(length=60, vertices=12, untangle="never") == {"FINISHED"}
-    goal.select_set(False)
-    settings.length = 120
-    (material,) = [curve for curve in all_fcurves() if curve.data_path.endswith("material_index")]
-    assert material.keyframe_points[-1].co.x == frames_of(moving.data)[-1] == 120.0
 
 
 def asked(name, monkeypatch, **values):

@@ -1,7 +1,6 @@
 """The scene's settings, the operator's and the panels are the library's options: none is declared a second time."""
 
 from dataclasses import asdict
-from types import SimpleNamespace
 
 import bpy
 import numpy as np
@@ -197,13 +196,6 @@ def test_choosing_a_quality_sets_its_options(name, capfd):
     item = panel().bl_rna.properties["quality"].enum_items[name]
     assert (item.name, item.description) == (QUALITIES[name].label, QUALITIES[name].description)
     assert item.description.isprintable()
-
-
-@pytest.mark.parametrize(
-    "change", [{"tolerance": 2e-4}, {"vertices": 100}, {"method": "cg"}, {"max_iterations": 7}], ids=str
-)
-def test_other_settings_have_no_quality(change):
-    assert properties.quality_of(SimpleNamespace(**QUALITIES["GOOD"].values | change)) is None
 
 
 def test_good_is_what_the_library_does_by_itself_and_better_ones_have_less_energy():

@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 from baked_curves import curve_of
 from blender_scenes import add_curve, add_trefoil, contents, drawn, evaluated, in_world, place, relax
-from mathutils import Matrix
 from mobius_flow.addon.curves import bake, sizes
 from mobius_flow.addon.curves.moving import what_moves
 from mobius_flow.addon.curves.recorded import BakedKeys
@@ -13,7 +12,7 @@ from mobius_flow.core import Curve, RelaxOptions
 from mobius_flow.core import relax as iterates_of
 from mobius_flow.core.keys.placement import Measure
 from mobius_flow.core.knots import smooth_knot
-from shapes import hopf_link, lattice_knot
+from shapes import lattice_knot
 
 FILM = {"timing": "EVEN", "length": 24, "keep_size": "AUTO", "max_iterations": 12, "vertices": 90, "mesh": "fixed"}
 FILM |= {"radius": "none"}  # ropes take longer to prove
@@ -113,22 +112,6 @@ def test_an_object_is_turned_scaled_and_parented_afterwards_as_any_other(lattice
             expected = old.vertices @ matrix[:3, :3].T + matrix[:3, 3]
             np.testing.assert_allclose(curve.vertices, expected, atol=2e-5)
     assert what_moves(lattice) is None
-
-
-def test_objects_that_are_turned_together_keep_their_places_relative_to_each_other():
-    points = hopf_link(24).vertices * 0.3 + np.array([1.0, 0.5, 0.0])
-    objects = [add_curve([points[:24]], "A"), add_curve([points[24:]], "B")]
-    objects[0].select_set(True)
-    relax(**FILM | {"max_iterations": 6, "vertices": 0})
-    turned = np.array(Matrix.Rotation(2.0, 4, (1.0, 2.0, 3.0)) @ Matrix.Scale(0.8, 4))
-    before = [np.concatenate([shown(obj, frame).vertices for obj in objects]) for frame in (1, 12, 24)]
-    assert any(not size.is_identity for size in bake.sizes(objects[1].data))
-    for obj in objects:
-        obj.matrix_basis = Matrix(turned.tolist()) @ obj.matrix_basis
-    for frame, old in zip((1, 12, 24), before, strict=True):
-        seen = np.concatenate([shown(obj, frame).vertices for obj in objects])
-        np.testing.assert_allclose(seen, old @ turned[:3, :3].T, atol=1e-6)
-    assert BakedKeys(objects).unproved == 0
 
 
 def test_copies_and_saved_files_keep_the_size_and_the_last_one_takes_the_action_along(lattice, tmp_path):

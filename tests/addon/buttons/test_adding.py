@@ -130,21 +130,6 @@ def test_what_is_none_is_refused(add, options):
     assert contents() == before
 
 
-def test_components_of_links_have_their_own_materials():
-    one, two = picked(knot="L6a4"), picked(knot="hopf")
-    assert [spline.material_index for spline in one.data.splines] == [0, 1, 2]
-    assert [m.name for m in two.data.materials] == [m.name for m in one.data.materials][:2]
-    assert len({tuple(material.diffuse_color) for material in one.data.materials}) == 3
-    bpy.ops.curve.mobius_flow_color_components()
-    assert len(two.data.materials) == 2, "the button's materials are the same"
-    assert not picked(knot="hopf", color_components=False).data.materials
-    assert not picked(knot="3_1").data.materials
-    (material, _) = two.data.materials
-    material.diffuse_color = (0, 0, 0, 1)
-    assert picked(knot="hopf").data.materials[0] == material, "one that was changed stays"
-    assert tuple(material.diffuse_color) == (0, 0, 0, 1)
-
-
 def test_the_gallery_has_every_knot_in_one_group_and_files_keep_what_was_picked(monkeypatch, tmp_path):
     monkeypatch.setattr(icons, "icon", lambda _: 0)
     settings = bpy.context.scene.mobius_flow_knots

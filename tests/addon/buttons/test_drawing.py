@@ -94,19 +94,6 @@ def test_a_crossing_is_changed_and_all_are_numbered():
     assert all(child.show_name for child in obj.children)
 
 
-def test_the_mirror_image(capfd):
-    names, hands = set(), []
-    for mirror in (False, True):
-        bpy.ops.object.select_all(action="DESELECT")
-        add_curve([scribble()])
-        obj, points = lifted(mirror=mirror)
-        names.add(obj.name)
-        hands.append(knot_invariants(points).tau)
-        assert f"3 crossings: {obj.name.removeprefix('Drawn ')}, proved" in capfd.readouterr().out
-    assert names == {"Drawn 3_1", "Drawn m3_1"}
-    assert hands[0] == -hands[1] != 0
-
-
 @pytest.mark.parametrize(
     ("place", "turn"), [((0, 0, 5), (0, 0, 0)), ((40, -3, 2), (1.2, 0.4, 0.3)), ((0, 0, 5), (np.pi, 0, 0))]
 )

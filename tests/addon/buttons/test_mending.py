@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_curve, add_trefoil, contents, evaluated, in_world, linked, relax, show, stored
+from blender_scenes import add_curve, add_trefoil, contents, evaluated, linked, relax, show, stored
 from mended_curves import SHAPE, call, may_be_relaxed, mend, relax_once, two, with_material
 from mobius_flow.addon.buttons import mending
 from mobius_flow.addon.live.requirements import POLYGONS, RELAXABLE, UNEDITED, Remedy
@@ -255,29 +255,4 @@ def test_a_still_copy_has_the_shape_that_is_shown_and_nothing_that_moves_it(prep
     assert (copy.matrix_world, copy.users_collection) == (matrix, homes)
     assert copy.data.materials[0].name == "Gold"
     assert UNEDITED(bpy.context) is None
-    may_be_relaxed()
-
-
-def test_still_copies_stand_where_their_originals_are():
-    first, second = two()
-    parent = bpy.data.objects.new("Parent", None)
-    bpy.context.scene.collection.objects.link(parent)
-    parent.scale, parent.rotation_euler = (1, 2, 1), (0.3, 0, 0)
-    first.parent, first.rotation_euler = parent, (0, 0, 0.7)
-    first.keyframe_insert("location", frame=1)
-    second.constraints.new("COPY_SCALE").target = parent
-    bpy.context.view_layer.update()
-    places = {obj.name: in_world(obj, stored(obj.data)) for obj in (first, second)}
-    mend(Remedy.COPY)
-    copies = bpy.context.selected_objects
-    assert len(copies) == 2
-    assert not {first, second} & set(copies)
-    for obj in copies:
-        assert obj.parent is None
-        assert not obj.constraints
-        assert obj.animation_data is None
-        np.testing.assert_allclose(in_world(obj, stored(obj.data)), places[obj.name[0]], atol=1e-5)
-    assert first.parent == parent
-    assert first.animation_data is not None
-    assert len(second.constraints) == 1
     may_be_relaxed()

@@ -19,7 +19,7 @@ from blender_scenes import (
     stored,
 )
 from mobius_flow.addon.buttons import shape
-from mobius_flow.addon.curves import bevel, recorded
+from mobius_flow.addon.curves import recorded
 from mobius_flow.addon.curves.recorded import BakedKeys, Recorded
 from mobius_flow.core import Curve
 from mobius_flow.core.collision import is_free
@@ -114,19 +114,6 @@ def test_a_size_stays_while_it_is_baked_and_further(keyframes, measure):
         np.testing.assert_allclose(of_keys([obj], measure), size, rtol=1e-5)
         assert BakedKeys([obj]).unproved == 0
         OPS.mobius_flow_continue(max_iterations=5, keep_size=measure, fit_bevel=False)
-
-
-def test_by_itself_a_curve_stays_in_view_and_its_length_is_what_the_flow_keeps():
-    lengths = [curve.length for curve in BakedKeys([baked(keep_size="AUTO", grow=1.1)]).curves]
-    assert lengths[-1] > 1.05 * lengths[0], "what grows is not scaled"
-    bpy.context.object.select_set(False)
-    radii = of_keys([baked(keep_size="AUTO")], "RADIUS")
-    np.testing.assert_allclose(radii, radii[0], rtol=1e-5)
-    points = []
-    for options in ({}, {"keep_size": "LENGTH"}):
-        bpy.context.object.select_set(False)
-        points.append(BakedKeys([baked(**options)]).frames)
-    np.testing.assert_array_equal(*points)
 
 
 @pytest.mark.parametrize("is_baked", [False, True])
@@ -248,13 +235,3 @@ def test_components_are_coloured_through_all_objects_and_in_turn():
     OPS.mobius_flow_color_components()
     assert len(many.data.materials) == len(PALETTE)
     assert colours(many)[5:] == colours(many)[:2]
-
-
-def test_a_tube_of_constant_thickness_stays_one_until_it_is_fitted_otherwise():
-    obj = baked(radius="none")
-    for constant in (False, True, False):
-        OPS.mobius_flow_fit_tube(constant=constant)  # which acts on the finished film
-        for _ in range(2):
-            drawn = obj.data.bevel_depth * np.array([block.data[0].radius for block in obj.data.shape_keys.key_blocks])
-            assert (np.ptp(drawn) < 1e-6) == constant == bevel.is_constant(obj.data)
-            OPS.mobius_flow_relax(max_iterations=8, vertices=120)

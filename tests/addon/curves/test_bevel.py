@@ -76,16 +76,6 @@ def test_ones_own_never_meets_itself(share, kept, capfd):
     assert ("the bevel is too thick" in capfd.readouterr().out) is not kept
 
 
-@pytest.mark.parametrize("depth", [0.0, 0.125])
-def test_a_script_may_ask_for_it(depth):
-    obj = add_trefoil()
-    obj.data.bevel_depth = depth
-    relax(fit_bevel=False)
-    assert obj.data.bevel_depth == depth
-    relax(fit_bevel=True)
-    assert obj.data.bevel_depth not in (0, depth)
-
-
 def test_a_fitted_one_is_kept_fitting_also_in_a_file_that_is_opened_again(tmp_path):
     add_tight()
     fit()

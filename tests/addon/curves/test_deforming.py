@@ -76,19 +76,6 @@ def test_what_adds_to_the_drawing_is_not_refused():
     assert bpy.ops.curve.mobius_flow_relax(max_iterations=1) == {"FINISHED"}
 
 
-def test_a_run_ends_when_its_curve_is_deformed(operator):
-    obj = add_trefoil()
-    before = stored(obj.data)
-    operator.start()
-    operator.reach(1)
-    obj.modifiers.new("Wave", "WAVE")
-    assert operator.event() == {"CANCELLED"}
-    said = "The modifier 'Wave' of 'Knot' moves its points; the relaxation has ended"
-    assert operator.reports[-1][1].startswith(said)
-    np.testing.assert_array_equal(stored(obj.data), before)
-    assert len(obj.modifiers) == 1
-
-
 def test_only_what_moves_points_and_is_shown_counts():
     obj = add_trefoil()
     modifier = nodes(obj, "GeometryNodeCurveToMesh", "GeometryNodeSetPosition")

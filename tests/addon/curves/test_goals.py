@@ -88,12 +88,6 @@ def test_each_spline_takes_on_that_of_the_one_it_becomes(red, blue):
     assert [worn(moving, frame) for frame in (1, 30, 31)] == [["Red", "Blue"], ["Red", "Blue"], ["Blue", "Red"]]
 
 
-def test_without_keys_it_has_the_last_one(red, blue):
-    moving = painted([RECTANGLE], red)
-    Relaxation(moving).morph(painted([ZIGZAG], blue), keyframes="RESULT", **SHORT)
-    assert moving.data.materials[moving.data.splines[0].material_index] == blue
-
-
 def test_baking_again_takes_them_off(red, blue):
     moving = painted([RECTANGLE], red)
     Relaxation(moving).morph(painted([ZIGZAG], blue), **SHORT)

@@ -76,28 +76,6 @@ def test_the_result_alone_has_no_keys():
     assert not bpy.data.actions
 
 
-def test_thinning_keeps_first_and_last():
-    obj = add_trefoil()
-    expected = library_frames(obj, max_iterations=20)
-    relax(max_iterations=20, max_keys=4)
-    assert 4 <= len(obj.data.shape_keys.key_blocks) < 20
-    np.testing.assert_array_equal(evaluated(obj, 1), expected[0])
-    np.testing.assert_array_equal(evaluated(obj, 21), expected[-1])
-    for key in fcurves(obj.data.shape_keys)[0].keyframe_points:
-        shown = evaluated(obj, key.co[0])
-        assert any(np.array_equal(shown, frame) for frame in expected)
-
-
-def test_keys_near_the_last_frame_are_all_there():
-    obj = add_trefoil()
-    expected = library_frames(obj, max_iterations=8)
-    relax(max_iterations=8, start_frame=1_048_500)
-    (curve,) = fcurves(obj.data.shape_keys)
-    assert [point.co[0] for point in curve.keyframe_points] == [1_048_500 + k for k in range(9)]
-    for k, points in enumerate(expected):
-        np.testing.assert_array_equal(evaluated(obj, 1_048_500 + k), points)
-
-
 # -- since 4.4 Blender puts keys of an object into the action of its curve ---------------------------------------------
 
 

@@ -349,15 +349,6 @@ def test_metaballs_are_one_surface():
     assert said == ["an object that its shape is made with", "animation", None]
 
 
-def test_objects_that_are_made_with_each_other_stand_still():
-    one, other = cube(), cube("Other")
-    for each, target in ((one, other), (other, one)):
-        modified(each, "SHRINKWRAP", target=target)
-    assert what_changes(one) is None
-    modified(other, "WAVE")
-    assert what_changes(one) == "the modifier 'Shrinkwrap'"
-
-
 def test_what_is_made_with_a_relaxed_curve_moves():
     bent, relaxed, line = cube(), ring(), ring("Line")
     modified(bent, "CURVE", object=relaxed)
@@ -409,11 +400,3 @@ def test_what_is_near_and_seen_and_solid_is_named():
     for k in range(7):
         box(f"Box {k}", (2, 0, 0))
     assert said(obj).startswith("'Far', 'Near', 'Box 0' and 6 more nearby are neither")
-
-
-def test_boxes_are_those_in_the_world():
-    obj, other = ring(), box("Turned", (5, 0, 0))
-    other.scale = (6, 1, 1)
-    assert said(obj) is None
-    other.rotation_euler.z = np.pi
-    assert "'Turned'" in said(obj)

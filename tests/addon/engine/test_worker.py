@@ -6,10 +6,9 @@ import signal
 import subprocess
 import sys
 
-import numpy as np
 import pytest
-from mobius_flow.addon.engine.worker import Worker, messages
-from mobius_flow.core import Curve, CurveError, Iterate, OptionError, RelaxOptions, Task
+from mobius_flow.addon.engine.worker import messages
+from mobius_flow.core import CurveError, OptionError, RelaxOptions
 from mobius_flow.core.base.arguments import declared
 from mobius_flow.core.base.errors import Place
 from mobius_flow.core.base.messages import Message
@@ -18,7 +17,6 @@ from mobius_flow.core.driver.outcome import stalled
 from mobius_flow.core.driver.words import in_blenders_words, spline_names
 from option_values import unlike_default
 from processes import PATIENCE
-from shapes import hopf_link
 
 GIVEN = {each.name: unlike_default(each) for each in declared(RelaxOptions) if not each.repeated}
 
@@ -47,26 +45,6 @@ def test_options_and_words_arrive_as_they_were():
         assert type(sent(error)) is type(error)
         assert in_blenders_words(str(sent(error)), names) == "segment 3 and segment 8"
         assert getattr(sent(error), "place", None) == getattr(error, "place", None)
-
-
-def test_a_process_has_the_same_iterates():
-    """Blender's worker, with a goal, which is reached in the same bits."""
-    task = Task(curve=Curve(hopf_link(24).vertices[24:] * [1.0, 1.0, 4.0] + 5.0))
-    options = RelaxOptions(max_iterations=20, vertices=60, mesh="fixed")
-    goals = {"Goal": task.curve.with_vertices(task.curve.vertices[::-1] + 1.0)}
-    *expected, outcome = done(task, options, False, goals)
-    worker, found = Worker(task, options, goals=goals), []
-    try:
-        assert worker.process is not None
-        while not found or isinstance(found[-1], Iterate):
-            found.append(worker._queue.get(timeout=PATIENCE))
-    finally:
-        worker.close()
-    assert found[-1] == outcome
-    for one, other in zip(found[:-1], expected, strict=True):
-        np.testing.assert_array_equal(one.curve.vertices, other.curve.vertices)
-        assert (one.index, one.energy, len(one.path)) == (other.index, other.energy, len(other.path))
-    np.testing.assert_array_equal(np.sort(expected[-1].curve.vertices, axis=0), np.sort(goals["Goal"].vertices, axis=0))
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGPIPE"), reason="there is no such signal")

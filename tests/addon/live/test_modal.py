@@ -78,15 +78,6 @@ def test_a_start_in_contact_is_said_and_shown(operator):
     assert [spot.member for spot in operator.run.trouble] == [0]
 
 
-def test_every_iterate_is_shown(operator):
-    obj = add_trefoil()
-    operator.start()
-    shown = []
-    operator.until(lambda: operator.run.last is not None and shown.append(operator.run.last.index))
-    assert sorted(set(shown)) == list(range(operator.run.last.index + 1))
-    assert obj.data.shape_keys is not None
-
-
 def test_iterates_are_taken_together_and_the_last_is_shown(operator, monkeypatch):
     obj = add_trefoil()
     monkeypatch.setattr(run.LiveRun, "slice", 60.0)

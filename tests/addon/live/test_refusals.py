@@ -141,10 +141,3 @@ NAN = float("nan")
 def test_numbers_that_do_not_fit(options, said):
     add_trefoil()
     assert said in refused(**options)
-
-
-def test_without_keys_there_is_room_anywhere():
-    add_trefoil()
-    with pytest.raises(TypeError, match="magic"):
-        bpy.ops.curve.mobius_flow_relax(method="magic")
-    relax(keyframes="RESULT", start_frame=1_048_000, max_iterations=2000, vertices=60)

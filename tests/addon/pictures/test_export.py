@@ -112,17 +112,6 @@ def test_a_film(tmp_path, tiny, iterates, capfd):
     assert capfd.readouterr().out == ""
 
 
-def test_a_film_rests_before_and_after(iterates):
-    motion, _ = recorded(iterates)
-    keys = motion.keys(lambda *_: True)
-    timing = Playing().timed(motion.way).timing
-    frames = timing.frames(motion.course(keys))
-    scene = bpy.context.scene
-    export.compose(scene, keys, frames, motion.start.mesh, Playing())
-    scene.frame_start, scene.frame_end = timing.scene_range(frames)
-    assert (frames[0] - scene.frame_start, scene.frame_end - frames[-1]) == (6, 12)
-
-
 def test_a_film_is_as_long_as_the_way_of_the_fastest_vertex():
     """Here a ring that goes six times to and fro over half its width, and is then scaled as a whole."""
     ring = regular_polygon(30)

@@ -3,8 +3,7 @@
 import bpy
 import pytest
 from mobius_flow.addon.pictures import movie, rendering
-from mobius_flow.addon.pictures.looks import LOOKS
-from mobius_flow.addon.pictures.movie import CHOICES, Filming, length_of
+from mobius_flow.addon.pictures.movie import Filming, length_of
 from mobius_flow.core import MobiusFlowError
 
 
@@ -40,19 +39,6 @@ def test_a_film_has_every_frame_and_leaves_the_scene_alone(scene, tmp_path, step
     assert film.frames == length_of(film.path) == count
     assert [path.name for path in tmp_path.iterdir()] == ["film.mp4"]
     assert settings(scene) == before
-    assert list(bpy.data.scenes) == [scene]
-
-
-@pytest.mark.parametrize("look", CHOICES)
-def test_looks_are_of_the_copy(scene, tmp_path, look):
-    before = settings(scene)
-    film = Filming(scene, str(tmp_path / "film.mp4"), look)
-    (copy,) = [each for each in bpy.data.scenes if each != scene]
-    wanted = {"QUICK": "BLENDER_WORKBENCH"}
-    assert copy.render.engine == wanted.get(look, "CYCLES")
-    assert copy.cycles.samples == (LOOKS[look].samples if look in LOOKS else 1)
-    assert settings(scene) == before
-    assert not film.finish()
     assert list(bpy.data.scenes) == [scene]
 
 
