@@ -10,6 +10,7 @@ bpy = pytest.importorskip("bpy")
 TOOL = Path(__file__).resolve().parents[2] / "tools/samples.py"
 
 
+@pytest.mark.slow
 def test_the_button_that_a_sample_is_named_after_works(tmp_path):
     done = finished([sys.executable, "-P", str(TOOL), str(tmp_path)])
     assert done.returncode == 0, done.stdout + done.stderr

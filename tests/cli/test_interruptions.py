@@ -149,17 +149,6 @@ def test_a_signal_after_the_last_step_costs_nothing(run):
     check_results("iteration_limit")
 
 
-@pytest.mark.usefixtures("interrupted_at_the_end")
-def test_files_come_before_streams_that_may_be_interrupted(run):
-    os.mkfifo("pipe")
-    reader = os.open("pipe", os.O_RDONLY | os.O_NONBLOCK)
-    assert run(*COMMAND[:4], "pipe", *COMMAND[5:], "--max-iterations", 3)[0] == 130
-    assert os.read(reader, 100) == b""
-    os.close(reader)
-    assert len(read_curve("o.txt")) == 60
-    assert verify("t.npz").accepted
-
-
 @pytest.mark.parametrize("when", ["in the film", "in the run, too", "by Blender", "while the trajectory is written"])
 def test_a_film_can_be_interrupted_and_the_curve_is_kept(when, terminated, monkeypatch, on_iterate, run):
     save = Trajectory.save

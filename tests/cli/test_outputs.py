@@ -3,7 +3,6 @@
 import json
 import os
 import re
-import sys
 from pathlib import Path
 
 import pytest
@@ -151,12 +150,6 @@ def test_formats_that_are_only_read_are_no_outputs(command, run, refused):
     for output in (["o.dt"], ["-", "--format", "dt"]):
         refused(command, "trefoil.txt" if command == "relax" else "3_1", *output)
     assert not Path("o.dt").exists()
-
-
-@pytest.mark.usefixtures("idle")
-def test_compare_looks_for_matplotlib_first(monkeypatch, refused):
-    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
-    assert "need matplotlib" in refused("compare", "trefoil.txt", "-o", "c.png")
 
 
 def test_a_file_in_a_directory_where_none_can_be_made(room, scratch, monkeypatch, run):

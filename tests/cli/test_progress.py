@@ -8,7 +8,7 @@ import pytest
 from mobius_flow.cli import progress as module
 from mobius_flow.cli.progress import live, progress
 from mobius_flow.cli.terminal import digits, painted, report, sentence, table
-from mobius_flow.core import Curve, Mesh, RelaxOptions, minimize
+from mobius_flow.core import RelaxOptions, minimize
 from shapes import torus_trefoil
 
 
@@ -62,14 +62,6 @@ def test_a_notebook_keeps_the_last_line(monkeypatch):
         show("first")
         show("last, too soon after the first")
     assert shown == ["first", "last, too soon after the first"]
-
-
-def test_a_straight_segment_whose_energy_is_zero_is_shown_too(terminal, monkeypatch):
-    monkeypatch.setattr(sys, "stderr", terminal)
-    segment = Curve([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]], Mesh((2,), (False,)))
-    with progress(options := RelaxOptions(vertices=3)) as draw:
-        assert minimize(segment, options, draw).outcome.converged
-    assert "iteration 0 · E 0.0000 · gradient 0 → " in terminal.getvalue()
 
 
 def test_reports_and_tables_are_wrapped_in_terminals_only(terminal):

@@ -236,10 +236,6 @@ def waving():
     return obj
 
 
-def lattice():
-    return key_shape(show(bpy.data.objects.new("Lattice", bpy.data.lattices.new("Lattice"))))
-
-
 def rig():
     obj = show(bpy.data.objects.new("Rig", bpy.data.armatures.new("Rig")))
     bpy.ops.object.mode_set(mode="EDIT")
@@ -247,12 +243,6 @@ def rig():
     bpy.ops.object.mode_set(mode="OBJECT")
     obj.pose.bones["Bone"].constraints.new("COPY_LOCATION").target = empty()
     return obj
-
-
-def clouds():
-    texture = bpy.data.textures.new("Clouds", "CLOUDS")
-    texture.keyframe_insert("noise_scale", frame=1)
-    return texture
 
 
 def nodes(obj, kind):
@@ -295,19 +285,13 @@ MOVED = [
         lambda obj: cut(obj, operand_type="COLLECTION", collection=collection_of(moving(empty()))),
         "the modifier 'Boolean'",
     ),
-    (lambda obj: modified(obj, "LATTICE", object=lattice()), "the modifier 'Lattice'"),
     (lambda obj: modified(obj, "ARMATURE", object=rig()), "the modifier 'Armature'"),
-    (lambda obj: modified(obj, "DISPLACE", texture=clouds()), "the modifier 'Displace'"),
     (lambda obj: nodes(obj, "GeometryNodeInputSceneTime"), "the modifier 'Nodes'"),
     (
         lambda obj: nodes(obj, "GeometryNodeMeshCube").inputs["Size"].keyframe_insert("default_value", frame=1),
         "the modifier 'Nodes'",
     ),
     (lambda obj: fed(obj, "GeometryNodeObjectInfo", "Object", moving(empty())), "the modifier 'Nodes'"),
-    (
-        lambda obj: fed(obj, "GeometryNodeCollectionInfo", "Collection", collection_of(moving(empty()))),
-        "the modifier 'Nodes'",
-    ),
     (input_of_nodes, "the modifier 'Nodes'"),
 ]
 

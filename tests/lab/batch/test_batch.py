@@ -3,14 +3,13 @@
 import json
 import os
 import signal
-import socket
 import sys
 import threading
 from contextlib import nullcontext
 
 import numpy as np
 import pytest
-from mobius_flow.core import MobiusFlowError, read_curve, write_curve
+from mobius_flow.core import read_curve, write_curve
 from mobius_flow.core.collision.gap import thickness
 from mobius_flow.core.curve.measures import writhe_and_crossings
 from mobius_flow.core.knots import knot
@@ -320,12 +319,3 @@ def test_codes_in_files_and_names_that_are_no_text(batch, ring, tmp_path):
     assert pick(rows, "name", "type_before") == [("knot", ""), ("n\\xff", "unknot"), ("trefoil", "3_1")]
     assert "unknown suffix '.stl'" in rows[0]["message"]
     assert read_curve(tmp_path / "out" / "n\\xff" / "curve.txt")
-
-
-def test_a_peer_that_takes_the_call_and_says_nothing(monkeypatch):
-    pytest.importorskip("distributed")
-    monkeypatch.setattr(campaign, "_PATIENCE", 1.0)
-    with socket.create_server(("127.0.0.1", 0)) as peer:
-        address = f"tcp://127.0.0.1:{peer.getsockname()[1]}"
-        with pytest.raises(MobiusFlowError, match="no Dask scheduler answers there"), campaign.submitting(address):
-            pass
