@@ -70,7 +70,21 @@ def extrapolated(curve: Curve | Task, options: RelaxOptions) -> Extrapolation | 
     for pieces in (1, 2, 2):
         finer = subdivide(task.curve, np.full(task.curve.mesh.edges, pieces))
         task = replace(task, curve=finer, pins=tuple(task.held.on(finer).vertices.tolist()))
-        result = minimize(task, replace(options.at_rest(finer), tolerance=min(options.tolerance, TOLERANCE)))
+        own = replace(  # on that mesh, with none that make it leave a minimum, and exact enough
+            options,
+            mesh="fixed",
+            vertices=len(finer),
+            edge_lengths="keep",
+            grow=1.0,
+            stability=False,
+            escape_saddles=False,
+            balance=False,
+            untangle="never",
+            hops=0,
+            radius="none",
+            tolerance=min(options.tolerance, TOLERANCE),
+        )
+        result = minimize(task, own)
         if not result.outcome.converged:
             return None
         task = replace(task, curve=result.curve)

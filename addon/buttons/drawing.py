@@ -14,7 +14,7 @@ from mathutils import Vector
 from ...core import Curve, MobiusFlowError
 from ...core.base import FloatArray, Message
 from ...core.curve import Mesh, arc_lengths, smoothed
-from ...core.keys.placement import DrawingPlane
+from ...core.keys.planes import DrawingPlane
 from ...core.knots import Drawing, knot_type
 from ...core.knots.inscribed import averaged
 from ..curves.strands import Strands, read_link

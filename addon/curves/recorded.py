@@ -14,7 +14,8 @@ from ...core.collision import check_embedded, is_free
 from ...core.curve import Mesh, interpolated
 from ...core.driver.words import in_blenders_words, named, spline_names
 from ...core.keys.markers import along
-from ...core.keys.placement import Frame, Link, Measure, Similarity, Turn, orthonormal
+from ...core.keys.placement import Frame, Link, Measure, Similarity
+from ...core.keys.planes import Turn, orthonormal
 from . import bake, pins
 from .keyframes import fcurves_of, keyed_points
 from .moving import what_moves

@@ -8,12 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from ..base.arguments import check_known, declared, documented, is_list, option
+from ..base.arguments import declared, documented, is_list, option
 from ..base.errors import OptionError
-from ..curve import Curve
 from ..curve.symmetry import IS_NAME
 from ..descent import METHODS
-from ..energies import ENERGIES, TERMS, Energy, Term
+from ..energies import ENERGIES, TERMS, Energy, Term, is_weighted, weighted_term
 from ..solve.metrics import METRICS, Metric
 
 EDGE_LENGTHS = ("auto", "equal", "keep")
@@ -40,29 +39,6 @@ def _are_radii(value: object) -> bool:
 
 def _is_a(protocol: type, value: object) -> bool:
     return isinstance(value, protocol) and not isinstance(value, type)
-
-
-def _is_weighted(value: object) -> bool:
-    """Whether a value is a pair of a term, or the name of one, and a number."""
-    if not (isinstance(value, tuple | list) and len(value) == 2):
-        return False
-    term, weight = value
-    if isinstance(term, str):
-        check_known("term", term, TERMS)
-    known = isinstance(term, str) or _is_a(Term, term)
-    try:
-        return known and isinstance(weight, Real) and not isinstance(weight, bool) and bool(np.isfinite(float(weight)))
-    except OverflowError:  # whole numbers too large for a float
-        return False
-
-
-def _weighted(text: str) -> tuple[tuple[str, float]]:
-    """A term and its weight, with = between."""
-    name, _, weight = text.partition("=")
-    try:
-        return ((name, float(weight)),)
-    except ValueError:
-        raise OptionError(f"{text!r:.40} is not NAME=WEIGHT, such as bending=0.1") from None
 
 
 def _radius(text: str) -> str | float | tuple[float, ...]:
@@ -159,11 +135,11 @@ class RelaxOptions:
         "Terms",
         "terms added to the energy, each with its weight",
         choices=TERMS,
-        objects=("a pair of a term and its weight, such as ('bending', 0.1)", _is_weighted),
+        objects=("a pair of a term and its weight, such as ('bending', 0.1)", is_weighted),
         example="(('bending', 0.1),)",
         flag="term",
         metavar="NAME=WEIGHT",
-        read=_weighted,
+        read=weighted_term,
     )
     penalty: float | None = option(
         None,
@@ -320,19 +296,3 @@ class RelaxOptions:
         """Whether the final mesh has more vertices where strands are near."""
         free = self.vertices is None and self.edge_lengths == "auto"
         return self.mesh in ("finer", "adaptive") or (self.mesh == "auto" and free)
-
-    def at_rest(self, curve: Curve) -> "RelaxOptions":
-        """The same options for a nearly relaxed curve: on its own mesh, and with none that make it leave a minimum."""
-        return replace(
-            self,
-            mesh="fixed",
-            vertices=len(curve),
-            edge_lengths="keep",
-            grow=1.0,
-            stability=False,
-            escape_saddles=False,
-            balance=False,
-            untangle="never",
-            hops=0,
-            radius="none",
-        )

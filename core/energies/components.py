@@ -22,6 +22,9 @@ def energy_scale(mesh: Mesh, energy: float) -> float:
     return abs(energy) + 4.0 * len(mesh.ends)
 
 
+CONSTANT = 4.0  # of a closed component
+
+
 @dataclass(frozen=True, eq=False)
 class ComponentShares:
     """Σ over the components of a curve: 1 for each closed one, ½ log(L/|a − b|) for each arc."""
@@ -73,3 +76,8 @@ class ComponentShares:
         total[first] += by_chord
         total[last] -= by_chord
         return total
+
+
+def energy_of_pairs(curve: Curve, pairs: float) -> float:
+    """The energy from the sum over unordered pairs."""
+    return CONSTANT * ComponentShares(curve).value() + 2.0 * pairs

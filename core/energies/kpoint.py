@@ -21,17 +21,12 @@ from .quadrature import ENDS, MIDPOINT, TAIL, Rule
 @checked_fields
 @dataclass(frozen=True)
 class KPointEnergy:
-    """The energy of a density F by a quadrature rule.
-
-    Without the derivative of ϱ, that of the energy is right only in directions that keep every edge length, so for
-    gradients projected onto that constraint (footnote 5 of [RS21]).
-    """
+    """The energy of a density F by a quadrature rule."""
 
     name: str  #: as shown to users, like the description
     description: str
     density: Density  #: F, a function of pairs of points of the curve
     rule: Rule  #: the quadrature points on every edge
-    arc_derivative: bool = True  #: whether the derivative includes that of ϱ
     contains_midpoint_pairs = False
 
     @property
@@ -59,16 +54,14 @@ class KPointEnergy:
     def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
         """D²E v for ``v`` of shape (n, m), by a complex step of the derivative; shape (n, m).
 
-        Where two arcs are equally long ϱ is their mean.  Without its derivative ϱ is a constant, which is right where
-        multipliers are those of that derivative.
+        Where two arcs are equally long ϱ is their mean.
         """
         return change(self._sum_and_derivative(SteppedCurve(curve, v))[1])
 
     def _sum_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
         """The sum over unordered pairs, and the energy's derivative, also after a complex step."""
         ell, tau = curve.edge_lengths, curve.edge_vectors / curve.edge_lengths[:, None]
-        # without its derivative ϱ is a constant, which no complex step changes
-        arcs = Arcs(curve if self.arc_derivative else curve.with_vertices(curve.vertices.real))
+        arcs = Arcs(curve)
         by_tail, by_head, by_tau = (np.zeros_like(tau) for _ in range(3))
         by_length, total = np.zeros_like(ell), 0.0
         for tile, x, y, area in self._pairs(curve):
@@ -95,7 +88,7 @@ class KPointEnergy:
                 weights = area * partials.c
                 by_tau[rows] += weights @ tau_y
                 by_tau[columns] += weights.T @ tau_x
-            if partials.rho is not None and self.arc_derivative:
+            if partials.rho is not None:
                 arcs.add(tile, x.t, y.t, area * partials.rho)
             for edges, t, force in ((rows, x.t, force_x), (columns, y.t, -force_y)):
                 by_tail[edges] += (1.0 - t) * force

@@ -28,14 +28,12 @@ from scipy.spatial.distance import cdist
 
 from ..base import BoolArray, FloatArray, IntArray, checked_fields
 from ..curve import Curve, Mesh
-from .components import ComponentShares
+from .components import CONSTANT, ComponentShares, energy_of_pairs
 from .edge_pairs import ROWS_TIMES_COLUMNS, EdgePairIndices, SteppedCurve, change, half_changes, pair_tiles
 from .quadrature import MIDPOINT
 
 Coefficients = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
 """s, a, b and c of pairs: ∂W/∂e_I = s (ℓ_J τ_I + e_J) − 2 b Δ and ∂W/∂Δ = 2 (a Δ − b e_I − c e_J)."""
-
-CONSTANT = 4.0  # of a closed component
 
 
 class Edges(NamedTuple):
@@ -45,25 +43,17 @@ class Edges(NamedTuple):
     m_one: FloatArray  # midpoints, from their mean, and ones; (edges, m + 1)
     tau: FloatArray  # unit tangents; (edges, m)
     foot: FloatArray  # (−e, ⟨m, e⟩), (edges, m + 1): times (m_J, 1) it is ⟨m_I − m_J, e_I⟩
+    e: FloatArray  # parts of these arrays
+    ell: FloatArray
+    m: FloatArray
 
     @classmethod
     def of(cls, curve: Curve) -> "Edges":
         # products of coordinates lose digits far from the origin, so the curve is moved to the origin
         e, ell, m = curve.edge_vectors, curve.edge_lengths, curve.midpoints - curve.midpoints.mean(axis=0)
         foot = np.column_stack([-e, np.einsum("ij,ij->i", m, e)])
-        return cls(np.column_stack([e, ell]), np.column_stack([m, np.ones(len(m))]), e / ell[:, None], foot)
-
-    @property
-    def e(self) -> FloatArray:
-        return self.e_ell[:, :-1]
-
-    @property
-    def ell(self) -> FloatArray:
-        return self.e_ell[:, -1]
-
-    @property
-    def m(self) -> FloatArray:
-        return self.m_one[:, :-1]
+        e_ell, m_one = np.column_stack([e, ell]), np.column_stack([m, np.ones(len(m))])
+        return cls(e_ell, m_one, e / ell[:, None], foot, e_ell[:, :-1], e_ell[:, -1], m_one[:, :-1])
 
 
 class Pairs(NamedTuple):
@@ -213,15 +203,71 @@ class MoebiusEnergy:
 
     def hessian(self, curve: Curve) -> FloatArray:
         """Second derivative D²E, symmetric, shape (n·m, n·m), in the order of ``vertices.ravel()``."""
-        matrix = _hessian_of_pairs(curve, self.without)
-        columns, shares = ComponentShares(curve).hessian_columns()
-        matrix[:, columns] += CONSTANT * shares
+        edges, mesh, (n, m) = Edges.of(curve), curve.mesh, curve.vertices.shape
+        own, lengths = OwnBlocks.zeros(mesh.edges, m), np.zeros(mesh.edges)
+        # What couples two edges is collected in one plane for each two coordinates.  There the tail of edge I has the
+        # number I, and vertices where arcs end come last, so that blocks of edges are blocks of planes.
+        planes, number = np.zeros((m, m, n, n)), np.empty(n, dtype=np.intp)
+        number[np.concatenate([mesh.tails, mesh.ends[:, 1]])] = np.arange(n)
+        head = number[mesh.heads]
+        for tile in pair_tiles(mesh, self.without):
+            rows, columns, first = tile.rows, tile.columns, tile.columns.start
+            g, p, q, s = Pairs.of(edges, *tile)
+            ell_i, ell_j = edges.ell[rows, None], edges.ell[columns]
+            lengths[rows] += s @ ell_j
+            lengths[columns] += edges.ell[rows] @ s
+            # vectors of the rows' edges have shape (m, rows, 1), those of the columns' (m, 1, columns)
+            e, tau, mid = (x[rows].T[:, :, None] for x in (edges.e, edges.tau, edges.m))
+            f, sigma, other_mid = (x[columns].T[:, None, :] for x in (edges.e, edges.tau, edges.m))
+            nu = mid - other_mid
+            nu *= s
+            gs, pq, sn, ps, qs, s2 = g * s, p * q, s * nu, p * s, q * s, 0.5 * s * s
+            alpha = (4.0 * q) * nu - s * (ell_j * tau + f)
+            beta = (4.0 * p) * nu - s * (ell_i * sigma + e)
+            eta = (gs - 6.0 * pq) * nu + (2.0 * qs) * e + (2.0 * ps) * f
+            a = s * (2.0 * pq - 0.5 * gs)
+            for k, j in product(range(m), repeat=2):
+                ee = s * (tau[k] * sigma[j]) - 2.0 * nu[k] * nu[j]  # ∂e_I ∂e_J, coordinates k of e_I and j of e_J
+                ec = alpha[k] * nu[j] - sn[k] * f[j]  # ∂e_I ∂Δ/2
+                fc = beta[j] * nu[k] - sn[j] * e[k]  # ∂Δ/2 ∂e_J
+                cc = eta[k] * nu[j] + nu[k] * eta[j] - s2 * (e[k] * f[j] + f[k] * e[j])  # ∂Δ/2 ∂Δ/2
+                if k == j:
+                    ee += s
+                    ec -= qs
+                    fc -= ps
+                    cc += a
+                own.ec[rows, k, j] += ec.sum(axis=1)
+                own.ec[columns, j, k] -= fc.sum(axis=0)
+                own.cc[rows, k, j] += cc.sum(axis=1)
+                own.cc[columns, k, j] += cc.sum(axis=0)
+                # by ends of edges, signs σ = 1 for heads and −1 for tails: σ_I σ_J ee − σ_I ec + σ_J fc − cc
+                even, odd = ee - cc, ec - fc
+                ee += cc
+                ec += fc
+                of_tails = rows, even + odd, ec - ee
+                even -= odd
+                ee += ec
+                for places, at_tails, at_heads in (of_tails, (head[rows], np.negative(ee, out=ee), even)):
+                    # the heads of edges are the tails of the next ones, but for a component's last one
+                    for last in mesh.edge_offsets[1:] - 1:
+                        if last >= first:
+                            planes[k, j, places, head[last]] += at_heads[:, last - first]
+                            at_heads[:, last - first] = 0.0
+                    at_tails[:, 1:] += at_heads[:, :-1]
+                    planes[k, j, places, columns] += at_tails
+        normal = np.eye(m) - edges.tau[:, :, None] * edges.tau[:, None, :]
+        own.ee[...] = (lengths / edges.ell)[:, None, None] * normal
+        matrix = np.empty((n, m, n, m))
+        for k, j in product(range(m), repeat=2):
+            np.add(planes[k, j], planes[j, k].T, out=matrix[:, k, :, j])
+        matrix *= 2.0  # the energy counts ordered pairs
+        if not mesh.all_closed:  # else this would be a copy
+            matrix = matrix[number][:, :, number]
+        own.add_to(matrix, mesh, 2.0)
+        coordinates, shares = ComponentShares(curve).hessian_columns()
+        matrix = matrix.reshape(n * m, n * m)
+        matrix[:, coordinates] += CONSTANT * shares
         return matrix
-
-
-def energy_of_pairs(curve: Curve, pairs: float) -> float:
-    """The energy from the sum over unordered pairs."""
-    return CONSTANT * ComponentShares(curve).value() + 2.0 * pairs
 
 
 def moebius_by_length(curve: Curve) -> FloatArray:
@@ -251,69 +297,3 @@ class OwnBlocks(NamedTuple):
         matrix[t, :, t, :] += same - even
         matrix[h, :, t, :] += other + odd
         matrix[t, :, h, :] += other - odd
-
-
-def _hessian_of_pairs(curve: Curve, without: EdgePairIndices | None) -> FloatArray:
-    """D² of 2 Σ W_IJ over unordered pairs, shape (n·m, n·m)."""
-    edges, mesh, (n, m) = Edges.of(curve), curve.mesh, curve.vertices.shape
-    own, lengths = OwnBlocks.zeros(mesh.edges, m), np.zeros(mesh.edges)
-    # What couples two edges is collected in one plane for each two coordinates.  There the tail of edge I has the
-    # number I, and vertices where arcs end come last, so that blocks of edges are blocks of planes.
-    planes, number = np.zeros((m, m, n, n)), np.empty(n, dtype=np.intp)
-    number[np.concatenate([mesh.tails, mesh.ends[:, 1]])] = np.arange(n)
-    head = number[mesh.heads]
-    for tile in pair_tiles(mesh, without):
-        rows, columns, first = tile.rows, tile.columns, tile.columns.start
-        g, p, q, s = Pairs.of(edges, *tile)
-        ell_i, ell_j = edges.ell[rows, None], edges.ell[columns]
-        lengths[rows] += s @ ell_j
-        lengths[columns] += edges.ell[rows] @ s
-        # vectors of the rows' edges have shape (m, rows, 1), those of the columns' (m, 1, columns)
-        e, tau, mid = (x[rows].T[:, :, None] for x in (edges.e, edges.tau, edges.m))
-        f, sigma, other_mid = (x[columns].T[:, None, :] for x in (edges.e, edges.tau, edges.m))
-        nu = mid - other_mid
-        nu *= s
-        gs, pq, sn, ps, qs, s2 = g * s, p * q, s * nu, p * s, q * s, 0.5 * s * s
-        alpha = (4.0 * q) * nu - s * (ell_j * tau + f)
-        beta = (4.0 * p) * nu - s * (ell_i * sigma + e)
-        eta = (gs - 6.0 * pq) * nu + (2.0 * qs) * e + (2.0 * ps) * f
-        a = s * (2.0 * pq - 0.5 * gs)
-        for k, j in product(range(m), repeat=2):
-            ee = s * (tau[k] * sigma[j]) - 2.0 * nu[k] * nu[j]  # ∂e_I ∂e_J, coordinates k of e_I and j of e_J
-            ec = alpha[k] * nu[j] - sn[k] * f[j]  # ∂e_I ∂Δ/2
-            fc = beta[j] * nu[k] - sn[j] * e[k]  # ∂Δ/2 ∂e_J
-            cc = eta[k] * nu[j] + nu[k] * eta[j] - s2 * (e[k] * f[j] + f[k] * e[j])  # ∂Δ/2 ∂Δ/2
-            if k == j:
-                ee += s
-                ec -= qs
-                fc -= ps
-                cc += a
-            own.ec[rows, k, j] += ec.sum(axis=1)
-            own.ec[columns, j, k] -= fc.sum(axis=0)
-            own.cc[rows, k, j] += cc.sum(axis=1)
-            own.cc[columns, k, j] += cc.sum(axis=0)
-            # by ends of edges, signs σ = 1 for heads and −1 for tails: σ_I σ_J ee − σ_I ec + σ_J fc − cc
-            even, odd = ee - cc, ec - fc
-            ee += cc
-            ec += fc
-            of_tails = rows, even + odd, ec - ee
-            even -= odd
-            ee += ec
-            for places, at_tails, at_heads in (of_tails, (head[rows], np.negative(ee, out=ee), even)):
-                # the heads of edges are the tails of the next ones, but for a component's last one
-                for last in mesh.edge_offsets[1:] - 1:
-                    if last >= first:
-                        planes[k, j, places, head[last]] += at_heads[:, last - first]
-                        at_heads[:, last - first] = 0.0
-                at_tails[:, 1:] += at_heads[:, :-1]
-                planes[k, j, places, columns] += at_tails
-    normal = np.eye(m) - edges.tau[:, :, None] * edges.tau[:, None, :]
-    own.ee[...] = (lengths / edges.ell)[:, None, None] * normal
-    matrix = np.empty((n, m, n, m))
-    for k, j in product(range(m), repeat=2):
-        np.add(planes[k, j], planes[j, k].T, out=matrix[:, k, :, j])
-    matrix *= 2.0  # the energy counts ordered pairs
-    if not mesh.all_closed:  # else this would be a copy
-        matrix = matrix[number][:, :, number]
-    own.add_to(matrix, mesh, 2.0)
-    return matrix.reshape(n * m, n * m)

@@ -17,7 +17,7 @@ from ..base import BoolArray, FloatArray, check_time
 from ..collision import is_rope, rope_motion
 from ..curve import Curve, Obstacle
 from ..io.trajectory import Iterate
-from ..solve.symmetric import factorised
+from ..solve.saddle.tangent_space import factorised
 from .clearances import Clearances, clearances
 
 INEXTENSIBLE = 1000.0  # stiffness of kept lengths
@@ -119,8 +119,8 @@ class Ropes:
             g = g + (along.T @ tension).reshape(n, 3)
             H = H + INEXTENSIBLE * along.T @ along + spread.T @ taut @ spread
         try:
-            factor = factorised(H[self.free][:, self.free].tocsc())
-        except RuntimeError:  # singular to working precision: the barrier has outgrown all else
+            factor = factorised(H[self.free][:, self.free], symmetric=True)
+        except np.linalg.LinAlgError:  # singular to working precision: the barrier has outgrown all else
             return None, 0.0, 0.0
         flat = np.zeros(3 * n)
         flat[self.free] = -factor.solve(g.ravel()[self.free])

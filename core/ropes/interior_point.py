@@ -27,7 +27,7 @@ from ..base.types import FloatArray
 from ..curve import Curve
 from ..curve.pins import holds
 from ..energies.edge_pairs import EdgePairs
-from ..solve.symmetric import factorised
+from ..solve.saddle.tangent_space import factorised
 from .contacts import Contacts
 
 FALL = 0.2  # of μ
@@ -201,11 +201,13 @@ class InteriorPoint:
         ridge = 1e-6 * elastic.diagonal().mean() * sp.eye_array(elastic.shape[0], format="csr")  # holds it in its place
         metric = sp.csc_array((elastic + 1e4 * ridge)[free][:, free])
         matrix = sp.csc_array((hessian + elastic + ridge)[free][:, free]) + self._delta * metric
-        definite = factor = factorised(matrix)
+        definite = factor = factorised(matrix, symmetric=True)
         negative = int(np.sum(factor.U.diagonal() < 0.0))
         lowest, modes = np.ones(0), np.zeros((len(free), 0))
         if negative:
-            while not ((definite := factorised(matrix + self._depth * metric)).U.diagonal() > 0.0).all():
+            while not (
+                (definite := factorised(matrix + self._depth * metric, symmetric=True)).U.diagonal() > 0.0
+            ).all():
                 self._depth *= 4.0
             inverse, start = LinearOperator(matrix.shape, definite.solve, dtype=float), np.ones(len(free))
             found = eigsh(matrix, negative, metric, sigma=-self._depth, OPinv=inverse, tol=1e-6, v0=start)

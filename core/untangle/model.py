@@ -6,7 +6,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from ..base.types import FloatArray, IntArray
-from ..solve.symmetric import factorised
+from ..solve.saddle.tangent_space import factorised
 
 
 class ElasticModel:
@@ -35,7 +35,7 @@ class ElasticModel:
         form = sp.bsr_array((blocks, columns, np.searchsorted(rows, np.arange(n + 1))), shape=(3 * n, 3 * n)).tocsr()
         # as it is symmetric, its rows are its columns
         form = sp.csc_array((form.data, form.indices, form.indptr), shape=form.shape)
-        return -np.asarray(factorised(form).solve(self.force.ravel())).reshape(-1, 3)
+        return -np.asarray(factorised(form, symmetric=True).solve(self.force.ravel())).reshape(-1, 3)
 
 
 def add_at(total: FloatArray, index: IntArray, values: FloatArray) -> None:

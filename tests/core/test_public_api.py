@@ -59,7 +59,7 @@ FINE: dict[str, tuple[Callable[..., object], dict[str, object]]] = {
     "Barrier": (energies.Barrier, {"replaces_midpoint": True, "left_out": False}),
     "KPointEnergy": (
         energies.KPointEnergy,
-        {"name": "a", "description": "b", "density": moebius_kpoint(2).density, "rule": RULE, "arc_derivative": True},
+        {"name": "a", "description": "b", "density": moebius_kpoint(2).density, "rule": RULE},
     ),
     "Rule": (energies.Rule, {"points": (0.5,), "weights": (1.0,)}),
     "Rule.gauss": (energies.Rule.gauss, {"points": 2}),

@@ -16,9 +16,9 @@ import numpy as np
 
 from ...base import BLAS, FloatArray, IntArray, checked_fields, number
 from ...curve import Curve
-from ..components import ComponentShares, energy_scale
+from ..components import CONSTANT, ComponentShares, energy_of_pairs, energy_scale
 from ..edge_pairs import EdgePairIndices
-from ..moebius import CONSTANT, EdgeDerivatives, Edges, MoebiusEnergy, energy_of_pairs
+from ..moebius import EdgeDerivatives, Edges, MoebiusEnergy
 from ..quadrature import MIDPOINT
 from .blocks import BlockList
 from .fields import FarField, NearField

@@ -202,9 +202,13 @@ class SparseTangentSpace(TangentSpace):
         return both[:size].reshape(n, m), np.concatenate([both[size:], np.zeros(len(c.edges) - rows), pull])
 
 
-def factorised(matrix: sp.sparray) -> SuperLU:
-    """LU factors; a LinAlgError says if there are none."""
+def factorised(matrix: sp.sparray, symmetric: bool = False) -> SuperLU:
+    """LU factors; a LinAlgError says if there are none.
+
+    Of a symmetric matrix pivots are those on the diagonal wherever these are not 0: they have its eigenvalues' signs.
+    """
+    how = {"permc_spec": "MMD_AT_PLUS_A", "diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
     try:
-        return splu(sp.csc_array(matrix))
+        return splu(sp.csc_array(matrix), **(how if symmetric else {}))
     except RuntimeError as error:  # SuperLU's word for a singular matrix
         raise np.linalg.LinAlgError(f"matrix is singular: {error}") from error

@@ -6,7 +6,7 @@ from mobius_flow.core import Curve, CurveError
 from mobius_flow.core.collision import thickness
 from mobius_flow.core.knots import knot, knot_type
 from mobius_flow.core.knots.closures import closed_far_away
-from mobius_flow.core.knots.ropes import ROPES
+from mobius_flow.core.knots.formulas import ROPES
 
 TYPES = {"open-figure-eight": "4_1", "open-square": "3_1#m3_1", "open-granny": "m3_1#m3_1"}
 TYPES |= {"sheet-bend": "m6_2", "bowline": "6_3"}
