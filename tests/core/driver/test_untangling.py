@@ -257,11 +257,6 @@ def test_at_rest_no_more_crossings_may_stay_than_go(gone, left, made, monkeypatc
     assert (result.last.strand_moves is not None or "strand moves" in result.message) is made
 
 
-def test_curves_at_rest_know_of_no_strand_moves() -> None:
-    assert RelaxOptions().untangle == "auto"
-    assert RelaxOptions().at_rest(knot("3_1")).untangle == "never"
-
-
 def test_what_stalls_instead_keeps_what_else_was_said() -> None:
     outcome = converged(1e-5, 1e-4).adding("one thing").stalling("another")
     assert (outcome.status, outcome.clauses) == (Status.STALLED, ("stalled: another", "one thing"))

@@ -9,16 +9,15 @@ from mobius_flow.core.curve import refine
 from mobius_flow.core.keys.key_options import Timing
 from mobius_flow.core.keys.motion import Recording
 from mobius_flow.core.keys.placement import (
-    DrawingPlane,
     Link,
     Measure,
     Placement,
     Similarity,
-    Turn,
     at,
     barycenter,
     spots,
 )
+from mobius_flow.core.keys.planes import DrawingPlane, Turn
 from mobius_flow.core.keys.recording import Kind
 from recorded_motions import around, assert_proved, at_rest, followed, iterate
 from shapes import hopf_link, lattice_knot, regular_polygon, torus_trefoil
