@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 import pytest
-from baked_curves import SHORT, again, blocks, clear, curve_of, go_on, last_frame, two_rings
+from baked_curves import SHORT, again, blocks, clear, go_on, last_frame, two_rings
 from blender_scenes import add_curve, add_trefoil, contents, evaluated, relax
 from mobius_flow.addon.curves import keyframes
 from mobius_flow.addon.curves.recorded import BakedKeys
@@ -67,16 +67,6 @@ def test_baked_apart_they_go_on_together():
         assert last_frame(obj) == 8
 
 
-def test_retimed_keys_go_on_where_they_end_now():
-    obj = add_trefoil()
-    relax(max_iterations=2)
-    curve = curve_of(obj)
-    for point in curve.keyframe_points:
-        point.co[0] = 10 * point.co[0]
-    go_on(max_iterations=2)
-    assert [point.co[0] for point in curve_of(obj).keyframe_points] == [10, 20, 30, 31, 32]
-
-
 def test_an_animation_without_motion_goes_on():
     obj = add_trefoil()
     relax(max_iterations=0)
@@ -111,18 +101,6 @@ def test_a_failure_gives_the_baked_curve_back(monkeypatch, call):
     assert not data.use_fake_user
     for k, shown in zip((1, 2, 4), points, strict=True):
         np.testing.assert_array_equal(evaluated(obj, k), shown)
-
-
-def test_to_continue_takes_the_points_that_there_are_and_clear_what_is_left():
-    obj = add_trefoil()
-    relax(max_iterations=3, vertices=40)
-    assert bpy.ops.curve.mobius_flow_continue(**SHORT, vertices=90) == {"FINISHED"}
-    assert len(obj.data.splines[0].points) == 40
-    obj.shape_key_add(name="Mine")
-    assert not bpy.ops.curve.mobius_flow_clear.poll()
-    obj.shape_key_remove(obj.data.shape_keys.key_blocks["Mine"])
-    clear()
-    assert len(obj.data.splines[0].points) == 30
 
 
 def test_a_look_into_edit_mode_edits_nothing():

@@ -12,7 +12,6 @@ from mobius_flow.addon.curves.doors import copy_of
 from mobius_flow.addon.curves.recorded import BakedKeys
 from mobius_flow.addon.curves.strands import Strands
 from mobius_flow.addon.scripting import Relaxation
-from mobius_flow.core import MobiusFlowError
 from other_kinds import KINDS, KNOT, POINTS, STROKES, THICK, TINT, add_edges, add_hair, add_loop, nodes, points
 from processes import finished
 
@@ -188,17 +187,6 @@ def test_every_verb_takes_it(kind, verb):
     assert copy.type == source.type
     bpy.context.scene.frame_set(250)
     np.testing.assert_allclose(points(copy), stored(carrier.data), atol=1e-5)
-
-
-def test_scripts_have_the_carrier_afterwards():
-    source = add_hair()
-    relaxation = Relaxation(source)
-    with pytest.raises(MobiusFlowError, match="press Relax first"):
-        relaxation.relax_further()
-    assert relaxation.relax(**FEW).certified
-    assert relaxation.relax_further(**FEW).continues
-    relaxation.clear()
-    assert [obj.name for obj in bpy.data.objects] == ["Source"]
 
 
 def empty():

@@ -9,7 +9,6 @@ from blender_scenes import add_trefoil, evaluated, relax
 from mobius_flow.addon.buttons import button, relaxing
 from mobius_flow.addon.curves import bake
 from mobius_flow.addon.curves.keyframes import all_fcurves, frames_of
-from mobius_flow.addon.curves.recorded import Recorded
 
 pytestmark = pytest.mark.usefixtures("defaults")
 EVEN = {"radius": "none", "timing": "EVEN", "length": 40, "max_iterations": 8}
@@ -71,17 +70,6 @@ def test_there_and_back_at_once(capfd):
     settings.loop, settings.length = False, 40
     assert len(frames_of(obj.data)) == count
     np.testing.assert_allclose(evaluated(obj, 15.0), shown, atol=1e-6)
-
-
-def test_a_film_that_went_on_is_timed_as_one(settings):
-    obj = add_trefoil()
-    relax(timing="EVEN", length=30, max_iterations=3)
-    bpy.ops.curve.mobius_flow_continue(max_iterations=3, timing="EVEN", length=30)
-    last = evaluated(obj, bake.scene_range([obj])[1])
-    settings.length = 100
-    assert bake.scene_range([obj]) == (1, 100)
-    np.testing.assert_array_equal(evaluated(obj, 100), last)
-    assert (np.diff(Recorded.of(obj).frames) > 0).all()
 
 
 def test_others_are_not_retimed_nor_keys_that_somebody_has_moved(settings):

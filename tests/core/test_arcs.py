@@ -2,10 +2,8 @@
 
 import numpy as np
 import pytest
-from changed_moves import change
 from mobius_flow.core import Curve, CurveError, Mesh, RelaxOptions, Status, minimize
 from mobius_flow.core.descent.task import Units
-from mobius_flow.core.driver.moves import CoarseStart
 from mobius_flow.core.knots import knot_type, overhand
 from mobius_flow.core.knots.composite import knotted_ball
 from mobius_flow.core.knots.diagrams import linking_numbers, quick_invariants
@@ -48,16 +46,6 @@ def test_overhand_arcs_are_knotted() -> None:
         assert str(knot_type(closed)) == "3_1"
 
 
-@pytest.mark.parametrize("mesh", ["adaptive", "finer", "auto"])
-def test_meshes_that_change(mesh: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    change(monkeypatch, CoarseStart, min_vertices=100)
-    arc = opened(torus_trefoil(400), 0) if mesh == "auto" else overhand(40)
-    result, _ = proved(arc, mesh=mesh, max_iterations=35 if mesh == "auto" else 25)
-    assert result.energies[-1] < result.energies[0]
-    assert result.curve.mesh.closed == (False,)
-    assert mesh != "auto" or len(result.curve) == 400
-
-
 def test_an_arc_leaves_a_ring_that_it_is_not_linked_with() -> None:
     height = np.linspace(-1.5, 1.5, 21)
     rod = np.stack([np.full(21, 0.2), 0.1 * np.sin(height + 1.5), height], axis=1)
@@ -70,17 +58,6 @@ def test_an_arc_leaves_a_ring_that_it_is_not_linked_with() -> None:
     middles = [part.mean(axis=0) for part in parts]
     radii = [np.linalg.norm(part - middle, axis=1).max() for part, middle in zip(parts, middles, strict=True)]
     assert np.linalg.norm(middles[1] - middles[0]) > sum(radii)  # balls around them do not meet
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(8))
-def test_random_mixtures(seed: int) -> None:
-    rng = np.random.default_rng(1000 + seed)
-    closed = [bool(flag) for flag in rng.integers(0, 2, 3)]
-    parts = [np.cumsum(rng.normal(size=(rng.integers(3, 8), 3)), axis=0) for _ in closed]
-    method = ("lbfgs", "cg", "flow-l2", "implicit-moebius")[seed % 4]
-    result, _ = proved(Curve.from_components(parts, closed), method=method, max_iterations=5)
-    assert np.isfinite(result.energies).all()
 
 
 def test_what_only_closed_components_have() -> None:

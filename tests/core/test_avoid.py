@@ -70,15 +70,6 @@ def test_little_is_left_to_gain_where_a_run_has_converged(half):
     assert usual.final_energy == pytest.approx(sharp.final_energy, rel=1e-3)
 
 
-def test_a_curve_stays_on_its_side_of_a_rod():
-    """A circle around a rod winds around it once in the end, as in the beginning."""
-    curve = regular_polygon(60).with_vertices(regular_polygon(60).vertices * [3.0, 0.5, 1.0] + [2.5, 0.0, 0.0])
-    result, _ = proved(curve, max_iterations=60, vertices=60, avoid=(rod(0.0, 0.0),))
-    x, y, _ = result.curve.vertices.T
-    angles = np.unwrap(np.arctan2(np.append(y, y[0]), np.append(x, x[0])))
-    assert angles[-1] - angles[0] == pytest.approx(2 * np.pi)
-
-
 def test_what_no_step_gets_past_is_named():
     stuck = NoStep.because(Contact((4,), "obstacle box"))
     assert stuck.reason == "edge 5 and obstacle box are so close that no step is free of contact"

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, Mesh, RelaxOptions, Task, minimize
 from mobius_flow.core.knots import knot
-from mobius_flow.lab import extrapolation
 from mobius_flow.lab.extrapolation import Extrapolation, extrapolated
 from shapes import regular_polygon
 from torus_energies import torus_knot_minimum
@@ -68,11 +67,3 @@ def test_pins_stay_and_ends_are_free():
     assert 1.0 < found.order < 3.0
     assert abs(found.energy - found.energies[2]) < abs(found.energies[2] - found.energies[1])
     assert found.energies[0] == pytest.approx(result.final_energy, rel=1e-3)
-
-
-def test_a_minimum_is_not_left_by_hops(monkeypatch):
-    asked: list[RelaxOptions] = []
-    monkeypatch.setattr(extrapolation, "minimize", lambda *given: asked.append(given[1]) or minimize(*given))
-    options = RelaxOptions(vertices=24, hops=3)
-    assert extrapolated(regular_polygon(24), options) is not None
-    assert [each.hops for each in asked] == [0, 0, 0]

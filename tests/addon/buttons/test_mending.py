@@ -45,17 +45,6 @@ def test_open_splines_are_closed():
         np.testing.assert_array_equal(stored(obj.data), points)
 
 
-def test_flat_curves_become_curves_in_space():
-    pair = two()
-    for obj in pair:
-        obj.data.dimensions = "2D"
-    before = [stored(obj.data) for obj in pair]
-    mend(Remedy.MAKE_3D)
-    for obj, points in zip(pair, before, strict=True):
-        assert obj.data.dimensions == "3D"
-        np.testing.assert_array_equal(stored(obj.data), points)
-
-
 def test_shared_data_becomes_ones_own():
     first, second = two()
     other = bpy.data.objects.new("Other", with_material(first).data)
@@ -156,19 +145,6 @@ def test_texts_become_curves_step_by_step():
     assert words.type == "FONT"
     mend(Remedy.MAKE_3D)
     may_be_relaxed()
-
-
-def test_no_button_for_what_has_no_lines_or_is_in_another_file(tmp_path):
-    wire("Dots", edges=False)
-    assert RELAXABLE(bpy.context).remedy is None
-    bpy.ops.mesh.primitive_cube_add()
-    bpy.context.selected_objects[0].select_set(True)
-    assert RELAXABLE(bpy.context).remedy is None
-    show(bpy.data.objects.new("Axes", None))
-    assert RELAXABLE(bpy.context).remedy is None
-    wire("Theirs")
-    show(linked(tmp_path / "library.blend", "objects", "Theirs"))
-    assert RELAXABLE(bpy.context).remedy is None
 
 
 @pytest.mark.parametrize("kind", ["object", "data", "override", "collection"])

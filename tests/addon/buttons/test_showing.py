@@ -49,14 +49,6 @@ def test_a_crossing(operator):
     assert not bpy.ops.curve.mobius_flow_show.poll(), "it was mended"
 
 
-def test_two_objects(operator):
-    first, second = add_curve([AWAY], "Away"), add_curve([[[8.0, 1, 0], [10, 1, 0], [9, 1, -3]]], "Near")
-    assert "of spline 1 of 'Near' touch or cross" in fails(operator)
-    assert bpy.ops.curve.mobius_flow_show() == {"FINISHED"}
-    assert {obj.name for obj in bpy.context.objects_in_mode} == {"Away", "Near"}
-    assert sum(map(len, selected(first))) == sum(map(len, selected(second))) == 2
-
-
 @pytest.mark.parametrize("kind", ["BEZIER", "NURBS"])
 def test_smooth_splines_have_their_nearest_points_selected(operator, kind):
     points = 3 * torus_trefoil(9).vertices

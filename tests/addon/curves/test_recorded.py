@@ -7,7 +7,7 @@ from blender_scenes import add_curve, add_hopf_link, add_trefoil, evaluated, fcu
 from families import crossed
 from mobius_flow.addon.curves import splines
 from mobius_flow.addon.curves.recorded import Recorded
-from shapes import hopf_link, torus_trefoil
+from shapes import hopf_link
 
 SAMPLED = {"sample_splines": True, "max_iterations": 0, "keyframes": "RESULT"}
 
@@ -42,16 +42,6 @@ def test_radii_are_those_of_the_keys():
     relax(max_iterations=8, fit_bevel=True)
     expected = [block.data[5].radius for block in obj.data.shape_keys.key_blocks]
     np.testing.assert_allclose(Recorded.of(obj).radii[:, 5], expected, rtol=1e-6)
-
-
-def test_a_curve_without_keys_has_one_shape():
-    obj = add_trefoil(30)
-    obj.data.splines[0].points[3].radius = 2.0
-    for each in (obj, add_curve([torus_trefoil(12).vertices], kind="NURBS")):
-        recorded = Recorded.of(each)
-        assert recorded.frames.shape == (1,)
-        np.testing.assert_allclose(recorded.points[0], evaluated(each), atol=1e-6)
-    assert Recorded.of(obj).radii[0, 3] == 2.0
 
 
 # -- smooth splines --------------------------------------------------------------------------------------------------

@@ -13,7 +13,7 @@ from mobius_flow.addon.live.drag import Drag, projected
 from mobius_flow.addon.live.run import RunState
 from mobius_flow.core import MobiusFlowError
 from modal_operator import keys
-from shapes import regular_polygon, torus_trefoil
+from shapes import torus_trefoil
 
 SIZE = 600.0
 WIDE = 12.0  # of the view, in the world
@@ -118,19 +118,6 @@ def test_what_is_beside_the_curve_or_pressed_with_a_key_is_blenders(operator):
     operator.context.window.screen.areas = [area([sidebar])]
     assert press(operator, place) == {"PASS_THROUGH"}
     assert operator.run.drag is None
-
-
-@pytest.mark.parametrize("operator", ["thread", "process"], indirect=True)
-def test_at_rest_it_waits_for_the_mouse(operator):
-    add_curve([regular_polygon(30).vertices])
-    begin(operator)
-    operator.until(lambda: at_rest(operator))
-    assert operator.run.state is RunState.RUNNING
-    place = on_curve(operator)
-    press(operator, place)
-    move(operator, 1.3 * place)
-    index = operator.run.last.index
-    operator.reach(index + 3)
 
 
 def at_rest(operator):

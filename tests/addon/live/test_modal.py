@@ -3,7 +3,6 @@
 Without a window Blender runs ``execute`` instead of ``invoke``; ``tests/window`` has the real thing.
 """
 
-import re
 import time
 from types import SimpleNamespace
 
@@ -64,18 +63,6 @@ def test_the_same_curves_as_the_headless_job(operator, scene, said):
         np.testing.assert_array_equal(keys(obj), keys(headless))
         np.testing.assert_array_equal(stored(obj.data), stored(headless.data))
         assert obj.data.bevel_depth == headless.data.bevel_depth > 0
-
-
-def test_a_start_in_contact_is_said_and_shown(operator):
-    _, torus = ring_and_torus()
-    operator.given["avoid"] = [torus]
-    torus.scale = (2, 1, 1)
-    operator.start()
-    assert operator.until(lambda: False) == {"CANCELLED"}
-    kind, said = operator.reports[-1]
-    assert kind == {"ERROR"}
-    assert re.match(r"Segment \d+ of spline 1 of 'Ring' .*'Torus' at \(", said)
-    assert [spot.member for spot in operator.run.trouble] == [0]
 
 
 def test_iterates_are_taken_together_and_the_last_is_shown(operator, monkeypatch):

@@ -129,16 +129,3 @@ def test_a_fitted_tube_is_kept_as_it_is_shown(operator, knot, radius):
     assert knot.data.bevel_depth == pytest.approx(shown, rel=COARSE)
     assert is_fitted(knot.data)
     assert Recorded.of(knot).radii[-1] == pytest.approx(1.0)
-
-
-@pytest.mark.parametrize("factor", [1.0, 0.5], ids=["asked for", "the artist's own"])
-def test_other_tubes_are_not_changed(operator, knot, factor):
-    if factor == 1.0:
-        operator.given["fit_bevel"] = False
-    else:
-        knot.data.bevel_depth *= factor
-    depth = knot.data.bevel_depth
-    operator.start()
-    operator.reach(4)
-    assert knot.data.bevel_depth == depth
-    operator.run.cancel()

@@ -3,7 +3,6 @@
 import builtins
 import os
 import sys
-from dataclasses import replace
 
 import bpy
 import numpy as np
@@ -12,7 +11,6 @@ from blender_scenes import evaluated, in_world
 from mobius_flow.addon.pictures import export, movie, rendering
 from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, relax
 from mobius_flow.core.keys.key_options import Playing
-from mobius_flow.core.keys.motion import recorded
 from processes import finished
 from shapes import hopf_link, regular_polygon, torus_trefoil
 
@@ -110,19 +108,6 @@ def test_a_film(tmp_path, tiny, iterates, capfd):
     assert (tuple(clip.size), clip.frame_duration) == (TINY, count)
     assert os.listdir(tmp_path) == ["a.mp4"]
     assert capfd.readouterr().out == ""
-
-
-def test_a_film_is_as_long_as_the_way_of_the_fastest_vertex():
-    """Here a ring that goes six times to and fro over half its width, and is then scaled as a whole."""
-    ring = regular_polygon(30)
-    offset = np.array([0.5 * np.ptp(ring.vertices, axis=0).max(), 0.0, 0.0])
-    places = [ring.vertices + (k % 2) * offset for k in range(13)]
-    places.append(50.0 * places[-1])
-    start = next(relax(ring, RelaxOptions(vertices=30)))
-    moves = (replace(start, index=k, curve=ring.with_vertices(p), path=(p,)) for k, p in enumerate(places[1:], 1))
-    motion, _ = recorded([replace(start, curve=ring), *moves])
-    assert motion.way == pytest.approx(12 * 0.5 + 0.5 * 49 / 50, rel=0.1)
-    assert Playing().timed(motion.way).timing.length == 1 + 6 + round(20 * motion.way) + 12
 
 
 @pytest.mark.parametrize("write", WRITERS)

@@ -8,7 +8,6 @@ from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
 from mobius_flow.addon.pictures import export, rendering, staging
 from mobius_flow.addon.pictures.looks import LOOKS
-from mobius_flow.core import Curve
 from mobius_flow.core.keys.key_options import Playing
 from mobius_flow.core.keys.recording import Key, Keys
 from shapes import hopf_link, regular_polygon, torus_trefoil
@@ -66,16 +65,6 @@ def test_files_with_a_stage_are_saved_without_a_warning(tmp_path, capfd):
     assert "clipboard" not in said, (
         "assets saved by bpy.data.libraries.write() are marked as copied; save them as a file"
     )
-
-
-def test_colours_run_along_a_component_by_its_length_not_by_its_points():
-    crowded = regular_polygon(400).vertices[np.r_[0:200, 200:400:20]]
-    composed(Curve(crowded), "PAPER")
-    (image,) = [each for each in bpy.data.images if each.name.endswith("Colors")]
-    row = np.array(image.pixels[:]).reshape(-1, 4)[:, :3]
-    stops = np.array(LOOKS["PAPER"].gradient)
-    half = row[round(200 / 210 * len(row))]  # after 200 of 210 points, but half of the way
-    np.testing.assert_allclose(half, 0.5 * (stops[2] + stops[3]), atol=0.05)
 
 
 def test_another_look_replaces_stage_and_materials_and_leaves_no_trace():

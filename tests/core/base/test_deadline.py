@@ -75,13 +75,6 @@ def test_what_was_reached_is_kept():
     assert result.certified
 
 
-def test_a_generous_limit_changes_nothing():
-    options = {"max_iterations": 3, "vertices": 40}
-    assert minimize(TREFOIL, RelaxOptions(time_limit=1e9, **options)).energies == (
-        minimize(TREFOIL, RelaxOptions(**options)).energies
-    )
-
-
 @pytest.mark.skipif(os.name != "posix", reason="signals")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_waits_where_what_it_raises_would_be_lost(number: signal.Signals) -> None:

@@ -106,14 +106,6 @@ def test_narrow_gaps_cost_no_more_than_can_be_afforded(gap):
     assert contains(curve, refined)
 
 
-@pytest.mark.parametrize(("count", "gap", "most"), [(1000, 3.0, 8000), (1500, 2.1, 7500)])
-def test_many_components_share_the_vertices(count, gap, most):
-    """1,500 near pentagons keep theirs: twice as many would be too many for dense matrices."""
-    pentagon = regular_polygon(5).vertices
-    link = Curve.from_components([pentagon + gap * np.array([k % 40, k // 40, 0]) for k in range(count)])
-    assert len(link) <= len(refine(link)) <= most
-
-
 def test_what_is_closed_stays_and_arcs_do_not_meet_far_away():
     rng = np.random.default_rng(21)
     parts = [rng.normal(size=(6, 3)) for _ in range(4)] + [5 + np.eye(3)]

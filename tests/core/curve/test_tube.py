@@ -116,14 +116,6 @@ def closing_twist(points, normal):
     return signed_angle(moved, np.roll(normal, -1, axis=0), np.roll(tau, -1, axis=0))
 
 
-@pytest.mark.parametrize("points", [torus_trefoil(200).vertices, writhing()[0], regular_polygon(50).vertices], ids=len)
-def test_one_curve_twists_evenly_and_at_most_half_a_turn(points):
-    twist = closing_twist(points, normals(points[None])[0])
-    lengths = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
-    np.testing.assert_allclose(twist, twist.sum() * lengths / lengths.sum(), atol=1e-9)
-    assert abs(twist.sum()) <= (np.pi + 1e-9 if np.ptp(points[:, 2]) else 1e-9)
-
-
 def test_the_self_linking_number_stays():
     """While most of a turn of writhe is lost: the twist makes up for it, and nothing jumps."""
     points = writhing()

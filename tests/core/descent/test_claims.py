@@ -146,16 +146,6 @@ def test_trefoil_is_a_minimum_with_four_flat_and_two_soft_modes(minimum):
     assert values[6] == pytest.approx(0.28, rel=0.05)
 
 
-def test_target_lengths_may_be_given_one_by_one():
-    curve = torus_trefoil(60)
-    wanted = 1e3 * curve.edge_lengths * (1 + 0.2 * np.cos(2 * np.pi * np.arange(60) / 60))
-    big = curve.with_vertices(1e3 * curve.vertices)
-    result = minimize(big, RelaxOptions(edge_lengths=wanted, vertices=60, max_iterations=60))
-    np.testing.assert_allclose(result.curve.edge_lengths, wanted, rtol=1e-8)
-    assert result.energies[-1] < result.energies[0]
-    assert RelaxOptions(edge_lengths=wanted) == RelaxOptions(edge_lengths=wanted.tolist())
-
-
 @pytest.mark.parametrize(
     ("options", "message"),
     [

@@ -48,16 +48,6 @@ def test_the_matrix_is_that_of_the_products(name: str) -> None:
         np.testing.assert_allclose((matrix @ v.ravel()).reshape(v.shape), image, atol=1e-10 * np.abs(image).max())
 
 
-def test_the_shift_is_what_makes_a_saddle_definite() -> None:
-    point, newton = POINTS["saddle"](), Newton()
-    inverse, index, shift = newton.definite(Curvature(point), 1e-4)
-    values = dense_modes(point)[0]
-    lowest = values[0]
-    assert index == np.count_nonzero(values < -1e-4) > 0
-    assert not inverse.negative
-    assert -lowest < shift < newton.factor * -lowest
-
-
 def test_the_shift_grows_where_steps_are_short(monkeypatch: pytest.MonkeyPatch) -> None:
     """Here steps are, as no vertex may move by more than a millionth; the Hessian is not assembled again."""
     curvature, shifts, shifted = Curvature(POINTS["saddle"]()), [], Curvature.shifted

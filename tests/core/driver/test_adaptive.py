@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, RelaxOptions, Status, Trajectory, minimize, relax
+from mobius_flow.core import Curve, RelaxOptions, Status, minimize, relax
 from mobius_flow.core.curve.refine import (
     SPLIT,
     Resolution,
@@ -86,14 +86,6 @@ def test_adaptive_runs_are_certified_through_changes_of_mesh(curve, energy):
     assert result.status is Status.CONVERGED
     assert result.energies[-1] == pytest.approx(energy, rel=5e-3)
     assert len(curve) == 56 or sum(not each.path for each in iterates) > 1
-
-
-def test_stages_begin_where_the_mesh_changes_even_to_the_same_size():
-    first, *_ = relax(torus_trefoil(60), RelaxOptions(max_iterations=0))
-    trajectory = Trajectory()
-    trajectory.add(first)
-    trajectory.add(replace(first, index=1))
-    assert set(trajectory.arrays()) == {"stage_000", "stage_001", "component_sizes_000", "component_sizes_001"}
 
 
 def test_another_mesh_is_another_iterate_even_of_the_same_size():

@@ -51,16 +51,6 @@ def test_a_saddle_has_its_index() -> None:
     assert found.index == result.outcome.negative_eigenvalues
 
 
-def test_an_arc_that_relax_takes_for_converged_is_at_rest() -> None:
-    """Its energy is about 0, and √E no measure of its gradient."""
-    result = minimize(half_circle(40), RelaxOptions(mesh="fixed"))
-    assert result.outcome.converged
-    found = info(result.curve)
-    assert found.rest.objective < 1e-4
-    assert found.rest.at_rest
-    assert found.type.sentence == "none: only closed curves have a knot type, and this one is open"
-
-
 def test_what_takes_too_long_is_left_out_and_what_touches_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("mobius_flow.core.driver.info.REST_UP_TO", 50)
     assert info(regular_polygon(50)).rest is not None

@@ -14,7 +14,6 @@ from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.knots import knot, overhand
 from mobius_flow.core.knots.composite import Ball
 from mobius_flow.core.solve.constraints import Barycenters, Constraints
-from shapes import opened, straight_arc
 from solids import box, plate, rod
 from tasks import wanted
 
@@ -161,14 +160,6 @@ def test_a_knotted_part_around_a_post_does_not_shrink(post, composite, monkeypat
     far = curve.with_vertices(curve.vertices / size * 3.0 + [20.0, 0.0, 0.0])
     result = minimize(*wanted(far, vertices=None, mesh="fixed", tolerance=0.2, avoid=(rod(*post),)))
     assert ("is composite" in result.message) == composite
-
-
-def test_arcs_in_links_are_not_asked_whether_they_are_composite():
-    """Linking numbers, which that takes, are those of closed components."""
-    trefoils = [opened(knot("3_1", vertices=60), 0).vertices + np.array([0.0, 0.0, 12.0 * k]) for k in range(2)]
-    curve = Curve.from_components([*trefoils, straight_arc(4).vertices + 90.0], [False, False, False])
-    result = minimize(curve, RelaxOptions(tolerance=1.0, vertices=130, mesh="fixed"))
-    assert result.status is Status.CONVERGED
 
 
 # -- open knots ------------------------------------------------------------------------------------------------------

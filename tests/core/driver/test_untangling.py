@@ -191,13 +191,6 @@ def test_arcs_between_pins_have_their_lengths_again() -> None:
     assert result.curve.edge_lengths[edges].sum() == pytest.approx(curve.edge_lengths[:12].sum())
 
 
-def test_curves_grow_after_strand_moves() -> None:
-    curve = EASY
-    result, _ = proved(curve, untangle="always", grow=1.5, max_iterations=30)
-    assert result.last.strand_moves.left == 0
-    assert result.curve.length == pytest.approx(1.5 * curve.length)
-
-
 @pytest.mark.parametrize(
     ("curve", "options", "said"),
     [

@@ -56,18 +56,6 @@ def test_second_derivatives_along_the_constraints_are_symmetric_where_arcs_are_e
         np.testing.assert_allclose(full, full.T, rtol=0, atol=1e-11 * np.abs(full).max())
 
 
-@ARC
-@pytest.mark.parametrize("n", [12, 13])
-def test_a_regular_polygon_keeps_its_symmetry_at_the_kink(energy: KPointEnergy, n: int) -> None:
-    """With n even there are opposite edges, equally far both ways round."""
-    curve = regular_polygon(n)
-    derivative = energy.value_and_derivative(curve)[1]
-    radial = np.einsum("ij,ij->i", derivative, curve.vertices)
-    np.testing.assert_allclose(radial, radial[0], rtol=0, atol=1e-12)
-    # dimensionless energies do not change along the vertices themselves
-    assert abs(radial.sum()) < 1e-11
-
-
 def test_an_energy_of_ones_own() -> None:
     """A density and a rule make an energy with its derivative, and pair the same points if all change places."""
     curve = random_polygon(11, (9, 5), 3)

@@ -30,14 +30,6 @@ def test_regular_polygons_have_energy_4_and_are_critical(n: int, dimension: int)
         assert np.abs(ENERGY.hessian_product(curve, motion)).max() < 1e-13 * n**4
 
 
-@pytest.mark.parametrize("n", [5, 30, 200])
-def test_orthogonal_circles_in_four_dimensions(n: int) -> None:
-    """Two circles of the Clifford torus: all tangents are orthogonal to each other and to the chords."""
-    polygon, zero = regular_polygon(n, 2).vertices, np.zeros((n, 2))
-    link = Curve.from_components([np.hstack([polygon, zero]), np.hstack([zero, polygon])])
-    assert ENERGY.value(link) == pytest.approx(8 + 4 * n**2 * np.tan(np.pi / n) ** 2, rel=1e-12)
-
-
 @pytest.mark.parametrize("n", [60, 400])
 def test_energy_per_length(n: int) -> None:
     curve = torus_trefoil(n)

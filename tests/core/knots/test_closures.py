@@ -30,14 +30,6 @@ def test_links_close_component_by_component():
     check_embedded(closed_far_away(both, (0.0, 0.6, 0.8)))
 
 
-def test_closures_of_components_do_not_meet_far_out():
-    """Of two arcs whose ends are at the corners of a square, and opposite ends belong together."""
-    arch = np.array([[-1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]])
-    other = arch[:, [1, 0, 2]] * [1.0, 1.0, 0.5]
-    both = Curve.from_components([arch, other], [False, False])
-    check_embedded(closed_far_away(both, (0.0, 0.0, 1.0)))
-
-
 @pytest.mark.parametrize(
     ("curve", "count", "said"),
     [

@@ -5,12 +5,11 @@ from contextlib import suppress
 import numpy as np
 import pytest
 from curve_checks import strand_distance
-from jones import jones
-from knot_diagrams import pairwise_linking, simplified
+from knot_diagrams import pairwise_linking
 from knot_type import UNKNOT, knot_invariants
 from mobius_flow.core import Curve, CurveError
 from mobius_flow.core.collision import check_embedded
-from mobius_flow.core.knots import Drawing, knot, torus_knot
+from mobius_flow.core.knots import Drawing, torus_knot
 from mobius_flow.core.knots.diagrams.projection import plane_crossings
 
 
@@ -40,13 +39,6 @@ def test_a_drawn_trefoil_is_a_trefoil_and_changed_crossings_unknot_or_mirror_it(
     assert mirrored.tau == -found.tau
     for number in (1, 2, 3):
         assert knot_invariants(drawing.lifted([number]).vertices) == UNKNOT
-
-
-@pytest.mark.parametrize("name", ["4_1", "6_2", "7_7", "8_18", "L2a1", "L4a1", "L5a1", "L6a4"])
-def test_shadows_of_alternating_braids_give_the_knot_or_link(name: str) -> None:
-    curve = knot(name)
-    found, expected = (jones(simplified(each.components)) for each in (Drawing.of(flat(curve)).lifted(), curve))
-    assert found in (expected, {-power: c for power, c in expected.items()})
 
 
 def test_components_side_by_side_and_within_each_other_are_drawn() -> None:

@@ -77,17 +77,6 @@ def test_what_is_refused(make, said: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("frequencies", "phases", "name"),
-    [((3, 2, 7), (0.7, 0.2), "5_2"), ((3, 2, 5), (1.5, 0.2), "6_1"), ((1, 1, 1), (0.7, 0.2), "0_1")],
-)
-def test_small_lissajous_knots(frequencies: tuple[int, int, int], phases: tuple[float, float], name: str) -> None:
-    found, expected = (
-        knot_invariants(curve.vertices) for curve in (lissajous_knot(frequencies, phases), smooth_knot(name))
-    )
-    assert (found.alexander, found.genus, found.rank) == (expected.alexander, expected.genus, expected.rank)
-
-
-@pytest.mark.parametrize(
     ("frequencies", "phases", "said"),
     [
         ((2, 4, 5), (0.7, 0.2), "common divisor"),

@@ -9,7 +9,6 @@ from knot_type import knot_invariants
 from mobius_flow.core import Curve
 from mobius_flow.core.base.errors import CurveError, MobiusFlowError
 from mobius_flow.core.knots import (
-    KNOTS,
     UnknownKnotError,
     braid_word,
     knot,
@@ -121,14 +120,6 @@ def test_larger_tables_are_an_extra(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "spherogram", None)
     with pytest.raises(MobiusFlowError, match=r'K11n34 is in larger .* pip install spherogram \(the extra "knots"\)'):
         knot("11n_34")
-
-
-def test_words_are_plain_tuples_also_of_mirror_images_of_mirror_images() -> None:
-    assert braid_word("granny") == KNOTS["3_1"] + (2, 2, 2)
-    assert braid_word("m4_1") == (-1, 2, -1, 2)
-    assert braid_word("mm3_1") == braid_word("3_1") == braid_word("m m 3_1")
-    assert braid_word("mmm3_1") == braid_word(5001 * "m" + "3_1") == braid_word("m3_1")
-    assert len(knot("BR[4,{1,1,1}]").mesh.component_sizes) == 3
 
 
 # Conway's C(a, b, c, …): twists by turns of the middle strands and of those on a side, crossings alternating

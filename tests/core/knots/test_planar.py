@@ -8,11 +8,11 @@ from knot_diagrams import diagram
 from knot_type import UNKNOT, knot_invariants
 from mobius_flow.core import Curve, CurveError
 from mobius_flow.core.collision import check_embedded, minimal_gap
-from mobius_flow.core.knots import HARD_UNKNOTS, braid_closure, diagram_knot, knot
+from mobius_flow.core.knots import HARD_UNKNOTS, diagram_knot, knot
 from mobius_flow.core.knots.braids import braid_diagram
 from mobius_flow.core.knots.diagrams import diagram_of, quick_invariants, views
 from mobius_flow.core.knots.diagrams.rerouting import without_nugatory
-from mobius_flow.core.knots.planar import drawn, grid_drawing
+from mobius_flow.core.knots.planar import grid_drawing
 
 RIGHT_TREFOIL = [(1, 5, 2, 4), (3, 1, 4, 6), (5, 3, 6, 2)]
 CODES = {
@@ -47,15 +47,6 @@ def test_hard_unknots(name: str) -> None:
 def rational(*twists: int) -> tuple[int, ...]:
     """The word of a 2-bridge link, in which faces lie in faces."""
     return tuple(letter for k, n in enumerate(twists) for letter in abs(n) * ((1, -2)[k % 2] * (1 if n > 0 else -1),))
-
-
-@pytest.mark.parametrize("word", [rational(*(3,) * 17), rational(*(2, -3) * 20), rational(150, 2, 1, 1, 146)])
-def test_codes_have_room_though_faces_lie_in_faces(word: tuple[int, ...]) -> None:
-    """Where drawings with convex faces have gaps of 1e-10 and less."""
-    curve = drawn(braid_diagram(word))
-    check_embedded(curve)
-    assert minimal_gap(curve)[0] > 0.5 / len(word)
-    assert quick_invariants(curve) == quick_invariants(braid_closure(word))
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import pytest
 from curve_checks import strand_distance
 from families import family
 from knot_type import knot_invariants
-from mobius_flow.core import Curve, knots
+from mobius_flow.core import knots
 from mobius_flow.core.collision import is_free
 from mobius_flow.core.curve.refine import subdivide
 from mobius_flow.core.knots import ALIASES, KNOTS, UnknownKnotError, smooth_knot
@@ -72,13 +72,6 @@ def test_corners_are_rounded_by_a_free_motion(name):
     split = subdivide(curve, np.full(curve.mesh.edges, round_.mesh.edges // curve.mesh.edges))
     assert is_free(split.mesh, split.vertices, round_.vertices)
     np.testing.assert_array_equal(round_.vertices[round_.mesh.ends], split.vertices[split.mesh.ends])
-
-
-def test_a_corner_that_holds_another_strand_stays_around_it():
-    corner = [[0, 0, 0], [10, 1, 0], [10, -1, 0]]
-    held = [[0.5, 0, -1], [0.5, 0, 1], [-5, 0, 1], [-5, 0, -1]]
-    link = Curve.from_components([corner, held])
-    assert str(knots.knot_type(knots.rounded(link))) == str(knots.knot_type(link)) == "L2a1"
 
 
 _FILE = Path(__file__).resolve().parents[3] / "tools" / "knot_shapes.py"

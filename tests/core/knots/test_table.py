@@ -4,13 +4,12 @@ from collections import defaultdict
 
 import pytest
 from braid_words import burau_alexander
-from curve_checks import strand_distance
 from families import family
 from jones import jones
 from knot_diagrams import pairwise_linking, simplified
 from knot_type import UNKNOT, knot_invariants
 from known_knots import KNOWN
-from mobius_flow.core.knots import ALIASES, KNOTS, knot, smooth_knot
+from mobius_flow.core.knots import KNOTS, knot, smooth_knot
 from mobius_flow.core.knots.braids import braid_diagram
 from mobius_flow.core.knots.diagrams import diagram_of, normalized_bracket
 from mobius_flow.core.knots.diagrams import jones as quick_jones
@@ -77,13 +76,3 @@ def test_rolfsens_names_count_crossings_and_components() -> None:
     # Determinants of two-bridge links from Conway's notation: 33, 222 and 412, 3112, 232.
     for rolfsen, determinant in (("6^2_2", 10), ("6^2_3", 12), ("7^2_1", 14), ("7^2_2", 18), ("7^2_3", 16)):
         assert sum(map(abs, quick_jones(braid_diagram(KNOTS[ROLFSEN[rolfsen]])).values())) == determinant  # alternating
-
-
-@pytest.mark.parametrize("name", family([*KNOTS, *ALIASES]))
-def test_geometry(name: str) -> None:
-    curve = knot(name)
-    lengths = curve.edge_lengths
-    assert 60 <= len(curve) <= 400
-    assert lengths.max() < 1.1 * lengths.min()
-    assert abs(curve.vertices).max() < 1.7
-    assert strand_distance(curve) > lengths.max()

@@ -70,14 +70,6 @@ def test_norm_is_as_accurate_as_asked_for(name: str, accuracy: float) -> None:
 
 
 @CURVE
-def test_gradient_against_the_exact_metric(name: str) -> None:
-    curve = centred(CURVES[name])
-    exact = MoebiusMetric().at(curve).tangent_space(Constraints.of(curve).derivative(curve))
-    u, v = spaces(name)[0].gradient(derivative(name))[0], exact.gradient(derivative(name))[0]
-    assert np.sum(u * exact.apply(v)) > 0.998 * exact.norm(u) * exact.norm(v)
-
-
-@CURVE
 def test_pseudo_inverse(name: str) -> None:
     space, dense = spaces(name)
     xi = space.constraints.apply(0.05 * np.sin(3 * CURVES[name].vertices))

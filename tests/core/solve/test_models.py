@@ -10,7 +10,7 @@ from mobius_flow.core.solve.constraints import ConstraintDerivative
 from mobius_flow.core.solve.hierarchical import moebius_inner_product
 from mobius_flow.core.solve.metrics import MoebiusMetric
 from mobius_flow.core.solve.saddle.iterative import conjugate_gradients, relative
-from mobius_flow.core.solve.saddle.models import Circulants, ComponentTransform, Parameter, Resolvents
+from mobius_flow.core.solve.saddle.models import Circulants, ComponentTransform, Resolvents
 from scipy.linalg import circulant, eigvalsh
 from shapes import chain_of_rings, graded_trefoil, regular_polygon, torus_trefoil
 
@@ -102,15 +102,6 @@ def test_transforms_are_circulant_matrices() -> None:
         column[1] += 0.5
         column[-1] += 0.5
         np.testing.assert_allclose(result[part], circulant(column) @ u[part], atol=1e-14)
-
-
-def test_waves_close_up() -> None:
-    curve = chain_of_rings(3, (30, 9, 12))
-    parameter = Parameter.of_steps(curve.mesh, curve.edge_lengths)
-    cosines, sines = parameter.waves(np.array([1.0, 2.0]))
-    np.testing.assert_allclose(cosines**2 + sines**2, 1.0)
-    first = curve.mesh.slices[0]
-    np.testing.assert_allclose(np.abs(np.fft.rfft(cosines[first, 0]))[1], 15.0)
 
 
 def test_many_components_move_as_they_should() -> None:

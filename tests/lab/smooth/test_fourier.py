@@ -43,14 +43,6 @@ def test_slopes_are_derivatives():
         assert np.abs(v - difference).max() < 0.01 * np.abs(v).max()
 
 
-def test_more_modes_do_not_change_the_curve():
-    curve = fitted()
-    np.testing.assert_allclose(
-        curve.with_modes([9, 9]).polygon([20, 20]).vertices, curve.polygon([20, 20]).vertices, rtol=0, atol=1e-14
-    )
-    assert curve.with_modes([9, 9]).with_modes([7, 5]).modes == curve.modes
-
-
 def test_curves_as_json():
     curve = fitted()
     again = FourierCurve.of_lists(json.loads(json.dumps(curve.as_lists)))

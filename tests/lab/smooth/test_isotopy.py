@@ -62,12 +62,6 @@ def test_vertices_are_as_many_as_the_curve_bends_where_it_is_slow():
     assert len(isotopy.inscribed([uneven])) < 100
 
 
-def test_polygons_far_away_are_not_held_for_the_same():
-    c = shapes()["3_1"].coefficients
-    polygon = isotopy.inscribed(c)
-    assert not isotopy.proves(c, polygon.with_vertices(polygon.vertices + 10.0))
-
-
 def test_many_vertices_out_of_order_prove_nothing():
     """They are where they should be, nearly, but the polygon turns back."""
     shape = shapes()["3_1"]

@@ -1,19 +1,16 @@
 """Groups as they act on meshes: means over them, second derivatives within them, and meshes that keep orbits."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
-from dense_stability import dense_modes, tangent_basis
+from dense_stability import tangent_basis
 from descent_contracts import point_on
-from mobius_flow.core import Curve, RelaxOptions, minimize
+from mobius_flow.core import Curve
 from mobius_flow.core.curve.refine import subdivide
 from mobius_flow.core.curve.symmetry import NO_SYMMETRY, Symmetry, symmetries
 from mobius_flow.core.descent import Point
 from mobius_flow.core.descent.hessian import lagrangian_matrix
 from mobius_flow.core.descent.second_order import Curvature
 from mobius_flow.core.driver.moves.remesh import split_edges
-from mobius_flow.core.driver.moves.rest import stability
 from mobius_flow.core.knots import smooth_knot, torus_knot
 
 RNG = np.random.default_rng(7)
@@ -113,24 +110,3 @@ def test_second_derivatives_are_those_of_symmetric_displacements(name: str) -> N
     values = np.sort(values.real[values.real < 0.9])  # of directions that break it, all are 1
     for k in np.argsort(np.diff(values))[-2:]:
         assert curvature.shifted(-0.5 * (values[k] + values[k + 1])).negative == k + 1
-
-
-def test_the_index_counts_symmetric_directions_alone() -> None:
-    at_rest = minimize(torus_knot(3, 4), RelaxOptions(symmetry="D4", vertices=160, mesh="fixed", tolerance=1e-7))
-    point = symmetric_point(at_rest.curve)
-    free = point.changing(constraints=replace(point.problem.constraints, symmetry=NO_SYMMETRY))
-    within, whole = stability(point), stability(free)
-    assert (within.index, whole.index) == (0, 2)
-    assert np.count_nonzero(dense_modes(free)[0] < -whole.zero) == 2
-    assert within.modes.values[0] > -within.zero
-    mode = within.modes.vectors[0]
-    np.testing.assert_allclose(point.problem.constraints.symmetry.mean(mode), mode, atol=1e-10)
-
-
-def test_poles_of_balanced_images_are_fixed() -> None:
-    _, symmetry = symmetric(torus_knot(2, 3, 60))
-    assert symmetry.fixes(np.zeros(3))
-    assert not symmetry.fixes(np.array([0.0, 0.0, 1.0]))  # the two-fold axes turn it over
-    rotations = symmetry.matrices[np.abs(symmetry.matrices[:, 2, 2] - 1.0) < 1e-9]
-    assert replace(symmetry, matrices=rotations).fixes(np.array([0.0, 0.0, 1.0]))
-    assert NO_SYMMETRY.fixes(np.ones(3))

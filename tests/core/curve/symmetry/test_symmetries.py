@@ -140,17 +140,6 @@ def test_subgroups_are_found_by_name() -> None:
     assert group.subgroup("C4") is None
 
 
-def test_the_best_of_several_subgroups_is_taken() -> None:
-    """A stretched torus trefoil of three two-fold axes has only one left."""
-    curve = torus_knot(2, 3, 90)
-    flip = next(each.matrix for each in symmetries(curve).elements if np.trace(each.matrix) < -0.5)
-    axis = np.linalg.eigh(flip + flip.T)[1][:, -1]
-    bent = curve.with_vertices(curve.vertices + 0.1 * np.outer(curve.vertices @ axis, axis))
-    assert symmetries(bent).name == "C2"
-    part = symmetries(bent, 0.2).subgroup("C2")
-    assert part.distance < 1e-9
-
-
 RING, COARSE = (regular_polygon(n).vertices for n in (80, 20))
 UP = np.array([0.0, 0.0, 1.0])
 

@@ -12,9 +12,9 @@ from mobius_flow.core.driver import RelaxOptions
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.energies.barrier import replaced_pairs
 from mobius_flow.core.energies.hierarchy import HierarchicalMoebiusEnergy, SampledErrors, moebius_energy
-from mobius_flow.core.energies.hierarchy.energy import Estimate, energy_error, sampled_edges, slope_error
+from mobius_flow.core.energies.hierarchy.energy import Estimate, energy_error, slope_error
 from mobius_flow.core.knots import knot
-from shapes import chain_of_rings, graded_trefoil, torus_trefoil
+from shapes import chain_of_rings, graded_trefoil
 
 CURVES = {
     "smooth": bent_trefoil(1500),
@@ -93,17 +93,6 @@ def test_standard_errors_are_those_of_samples_without_replacement(count: int) ->
     assert np.mean([each.mean for each in told]) == pytest.approx(5.0 + numbers.sum())
     variance = np.var([each.mean for each in told])
     assert np.mean([each.standard_error**2 for each in told]) == pytest.approx(variance, abs=1e-12)
-
-
-def test_each_stretch_of_a_curve_has_one_sampled_edge() -> None:
-    curve = torus_trefoil(1003)
-    edges = sampled_edges(curve, 50)
-    np.testing.assert_array_equal(edges, sampled_edges(curve, 50))
-    assert len(edges) == 50
-    assert np.all((edges * 50 // 1003 - np.arange(50)) ** 2 <= 1)
-    assert sampled_edges(curve, 2000).tolist() == list(range(1003))
-    # a field without any stretching has no slope
-    assert slope_error(HierarchicalMoebiusEnergy(), curve, np.ones((1003, 3))).bound == 0.0
 
 
 def test_the_reported_energy_says_its_error_where_it_is_not_exact(monkeypatch: pytest.MonkeyPatch) -> None:

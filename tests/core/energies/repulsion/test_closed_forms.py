@@ -51,17 +51,6 @@ def test_value_and_derivatives(corners: np.ndarray, x: np.ndarray) -> None:
         assert slope == pytest.approx(2, abs=0.05)
 
 
-@pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-9])
-def test_a_wide_plane_and_a_long_line_repel_alike(gap: float) -> None:
-    middle = TRIANGLE.mean(axis=0)
-    assert potential(TRIANGLE, middle + gap * NORMAL / np.linalg.norm(NORMAL))[0] == pytest.approx(
-        2 * np.pi / gap, rel=10 * gap + 1e-15 / gap
-    )
-    across = np.cross(B - A, [0.0, 0.0, 1.0])
-    beside = SEGMENT.mean(axis=0) + gap * across / np.linalg.norm(across)
-    assert potential(SEGMENT, beside)[0] == pytest.approx(2 * np.pi / gap, rel=10 * gap + 1e-15 / gap)
-
-
 def test_analytic_discs_end_at_singularities() -> None:
     """On the circle around x of the radius that is told, Φ has a singularity where it can be computed."""
     triangle, tau = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0.0]]), np.array([0.6, 0.0, 0.8])

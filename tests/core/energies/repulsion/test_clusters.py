@@ -72,14 +72,6 @@ def test_error_of_clusters(obstacle: Obstacle, radius: float) -> None:
     assert np.linalg.norm(found - derivative) <= 1e-3 * np.linalg.norm(derivative)
 
 
-def test_most_of_a_fine_mesh_is_seen_in_clusters() -> None:
-    curve, counts = wavy(20, 0.6), []
-    for subdivisions in (3, 4, 5):
-        schedule = Schedule.of(curve, repulsion(sphere(subdivisions)).clusters, THETA)
-        counts.append(sum(len(panels) for _, panels in (*schedule.single, *schedule.clustered)))
-    assert counts[2] < 1.2 * counts[1]
-
-
 @pytest.mark.parametrize("corners", [3, 2], ids=["triangles", "segments"])
 def test_far_clusters(corners: int) -> None:
     """Of a symmetric cluster moments of the fourth order are the first to be missed, and those of the gradient too."""

@@ -55,17 +55,6 @@ def test_segments(shape: str, gap: float) -> None:
     assert found == pytest.approx(float(reference * length), rel=1e-8)
 
 
-@pytest.mark.parametrize("shape", SHAPES)
-def test_the_work_grows_with_the_logarithm_of_the_gap(shape: str) -> None:
-    points = []
-    for gap in (1e-4, 1e-6, 1e-8):
-        _, schedule = integrated(Obstacle(TRIANGLE, [[0, 1, 2]]), curve_of(*SHAPES[shape](gap)[:2]))
-        points.append(sum(count * np.count_nonzero(panels.edge == 0) for count, panels in schedule.single))
-    before, after = np.diff(points)
-    assert after <= 1.5 * before + 10
-    assert points[-1] < 1000
-
-
 def test_an_edge_may_be_in_the_middle_of_an_obstacle() -> None:
     box = np.array([[2.0, 2, 2], [2, -2, -2], [-2, 2, -2], [-2, -2, 2]])
     obstacle = Obstacle(box, [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]])

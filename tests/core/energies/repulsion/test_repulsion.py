@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, MoebiusEnergy, Objective, OptionError
+from mobius_flow.core import Curve, MoebiusEnergy, Objective
 from mobius_flow.core.curve.obstacle import Obstacle
 from mobius_flow.core.driver.prepare import start_problem
-from mobius_flow.core.energies import ENERGIES, Bending, Weighted
+from mobius_flow.core.energies import Weighted
 from mobius_flow.core.energies.repulsion import Repulsion
 from mobius_flow.core.energies.repulsion.repulsion import OUTDATED, THETA
 from repulsion_references import potential_by_quadrature, repulsion, soup, sphere, wavy
@@ -155,13 +155,6 @@ def test_an_objective_is_the_weighted_sum_of_its_terms() -> None:
     assert heavy.value(curve) - plain.value(curve) == pytest.approx(2.5 * difference, rel=1e-9)
     np.testing.assert_allclose(heavy.clearance(curve), whole.clearance(curve), rtol=1e-9)
     np.testing.assert_allclose(heavy.stiffness(curve).toarray(), 2.5 * whole.stiffness(curve).toarray())
-
-
-def test_obstacles_have_second_derivatives_only_if_all_terms_have() -> None:
-    assert Objective.of(ENERGIES["edge"], [TRIANGLE]).without_hessian is None
-    objective = Objective.of(ENERGIES["edge"], [TRIANGLE], [Weighted(Bending())])
-    with pytest.raises(OptionError, match="'bending' has no second derivative"):
-        objective.hessian_product(over_triangle(0.1), np.zeros((6, 3)))
 
 
 @pytest.mark.parametrize("obstacle", [PLANE, LINE], ids=["plane", "line"])

@@ -15,7 +15,6 @@ from mobius_flow.core.knots.diagrams import (
     alexander,
     doubled_bracket,
     jones,
-    normalized_bracket,
     quick_invariants,
     signature,
     simplified,
@@ -76,21 +75,6 @@ def test_mirror_images_have_mirrored_polynomials() -> None:
     for polynomial in (jones, doubled_bracket):
         assert polynomial(left) == {-power: c for power, c in polynomial(right).items()}
     assert signature(left) == -signature(right)
-
-
-def test_doubles_tell_what_the_jones_polynomial_does_not() -> None:
-    one, other = braid_diagram(KNOTS["8_16"]), braid_diagram(KNOTS["10_156"])
-    assert jones(one) == jones(other)
-    assert alexander(one) == alexander(other)
-    assert doubled_bracket(one) != doubled_bracket(other)
-
-
-def test_the_bracket_by_own_crossings_is_that_of_all_orientations() -> None:
-    one = braid_diagram([1, 1, 1, 1])
-    parts = list(one.passes)
-    other = Diagram((parts[0], parts[1][::-1]), tuple(-sign for sign in one.signs))
-    assert jones(one) != jones(other)
-    assert normalized_bracket(one, one.own_writhe) == normalized_bracket(other, other.own_writhe)
 
 
 def test_what_is_too_large_is_not_computed() -> None:

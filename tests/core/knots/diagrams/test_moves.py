@@ -11,7 +11,7 @@ from mobius_flow.core.knots.braids import braid_diagram
 from mobius_flow.core.knots.diagrams import Diagram, factors, is_least, jones, shuffled_down, simplified, views
 from mobius_flow.core.knots.diagrams.codes import diagram_from_code
 from mobius_flow.core.knots.diagrams.diagram import ENDS, PIN
-from mobius_flow.core.knots.diagrams.rerouting import reduced, shortened, shuffled, without_nugatory
+from mobius_flow.core.knots.diagrams.rerouting import reduced, shortened, shuffled
 
 FACTORS = {"3_1#m5_2": [3, 5], "4_1#4_1#L2a1": [2, 4, 4], "8_19": [8]}
 NAMES = ["0_1", "3_1", "m5_2", "8_19", "10_132", "L2a1", "L6a4", "L7n1", "3_1#m4_1"]
@@ -76,16 +76,6 @@ def test_faces_tell_what_is_planar_and_pieces_what_no_crossing_joins() -> None:
     whole = braid_diagram((1, 1, 3, 3, 3))
     assert sorted((len(piece.passes), piece.crossings) for piece in whole.pieces()) == [(1, 3), (2, 2)]
     assert [piece.passes for piece in Diagram(((), ()), ()).pieces()] == [((),), ((),)]
-
-
-@pytest.mark.parametrize("letter", [3, -3])
-def test_nugatory_crossings_are_left_out(letter: int) -> None:
-    plain, with_one = braid_diagram((1, 1, 1, 2, 2, 2)), braid_diagram((1, 1, 1, 2, 2, 2, letter))
-    assert without_nugatory(with_one) == plain
-    assert without_nugatory(plain) == plain
-    between = braid_diagram((1, 1, 1, 2, -3, -3, -3))
-    assert jones(without_nugatory(between)) == jones(between)
-    assert without_nugatory(between).crossings == 6
 
 
 @pytest.mark.parametrize("name", FACTORS)
