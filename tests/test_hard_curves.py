@@ -5,13 +5,12 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from braid_words import burau_alexander
-from curve_checks import strand_distance
-from hard_curves import bent_trefoil, hard_unknot, lattice_closure, rope, spiral, unknot_word
+from hard_curves import hard_unknot, lattice_closure, rope, unknot_word
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from knot_type import UNKNOT, knot_invariants
 from mobius_flow.core.collision import check_embedded
-from mobius_flow.core.knots import KNOTS, braid_closure, knot
+from mobius_flow.core.knots import KNOTS, braid_closure
 from mobius_flow.core.knots.diagrams import quick_invariants
 
 WORDS = {name: KNOTS[name] for name in ("0_1", "3_1", "4_1", "8_19", "10_132", "L2a1", "L5a1", "L6a4")}
@@ -32,13 +31,6 @@ def test_words_are_long_reduced_and_trivial(crossings, seed):
     assert all(a != -b for a, b in pairwise(word + word[:1]))
 
 
-@pytest.mark.parametrize("turns", [0.5, 2.5])
-def test_spirals_are_unknots_with_strands_apart(turns):
-    curve = spiral(turns)
-    assert strand_distance(curve, apart=3) > min(0.5 / (2 * turns + 1), 2.5 * curve.edge_lengths.max())
-    assert knot_invariants(curve.vertices + 0.01 * curve.vertices[:, :1] ** 2 * [0, 0, 1]) == UNKNOT
-
-
 @pytest.mark.parametrize("gap", [0.2, 1e-9])
 @pytest.mark.parametrize("twists", [0.0, 3.0, -7.5])
 def test_ropes_are_unknots_with_strands_as_near_as_asked(twists, gap):
@@ -56,10 +48,3 @@ def test_lattice_polygons_turn_at_every_vertex_and_have_the_type_of_the_smooth_c
     assert np.array_equal(curve.vertices, np.round(curve.vertices))
     assert np.all(np.count_nonzero(curve.edge_vectors, axis=1) == 1)
     assert np.all(np.einsum("ij,ij->i", curve.edge_vectors, curve.edge_vectors[curve.mesh.previous]) == 0)
-
-
-def test_the_bent_trefoil_is_one():
-    curve = bent_trefoil(60)
-    check_embedded(curve)
-    assert quick_invariants(curve) == quick_invariants(knot("3_1"))
-    assert curve.edge_lengths.max() > 2.0 * curve.edge_lengths.min()

@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 import pytest
-from baked_curves import SHORT, again, blocks, clear, go_on, last_frame, two_rings
+from baked_curves import SHORT, again, blocks, clear, go_on, last_frame
 from blender_scenes import add_curve, add_trefoil, contents, evaluated, relax
 from mobius_flow.addon.curves import keyframes
 from mobius_flow.addon.curves.recorded import BakedKeys
@@ -34,37 +34,6 @@ def test_constant_thickness_is_the_least():
     further = [block.data[0].radius for block in obj.data.shape_keys.key_blocks[len(constant) :]]
     assert len(further) == 8
     assert np.ptp(further) < 1e-6
-
-
-@pytest.mark.parametrize("keyframes", ["SHAPE_KEYS", "RESULT"])
-def test_a_fitted_tube_keeps_its_radius_when_it_goes_on(keyframes):
-    obj = add_trefoil()
-    relax(max_iterations=4, fit_bevel=True)
-
-    def radius(block):
-        return obj.data.bevel_depth * block.data[0].radius
-
-    before = [radius(block) for block in obj.data.shape_keys.key_blocks]
-    go_on(max_iterations=30, fit_bevel=True, keyframes=keyframes)
-    after = [radius(block) for block in obj.data.shape_keys.key_blocks]
-    np.testing.assert_allclose(after[:5], before, rtol=1e-5)
-    assert after[-1] == pytest.approx(obj.data.bevel_depth)
-
-
-def test_baked_apart_they_go_on_together():
-    pair = two_rings()
-    for obj, count in zip(pair, (2, 5), strict=True):
-        bpy.ops.object.select_all(action="DESELECT")
-        obj.select_set(True)
-        bpy.context.view_layer.objects.active = obj
-        relax(max_iterations=count)
-    ends = [keyframes.keyed_points(obj.data)[-1] for obj in pair]
-    for obj in pair:
-        obj.select_set(True)
-    go_on(max_iterations=2)
-    for obj, end in zip(pair, ends, strict=True):
-        np.testing.assert_array_equal(evaluated(obj, 6), end)
-        assert last_frame(obj) == 8
 
 
 def test_an_animation_without_motion_goes_on():
@@ -101,17 +70,6 @@ def test_a_failure_gives_the_baked_curve_back(monkeypatch, call):
     assert not data.use_fake_user
     for k, shown in zip((1, 2, 4), points, strict=True):
         np.testing.assert_array_equal(evaluated(obj, k), shown)
-
-
-def test_a_look_into_edit_mode_edits_nothing():
-    obj = add_trefoil()
-    relax(max_iterations=4)
-    for key in (0, 3):
-        obj.active_shape_key_index = key
-        bpy.ops.object.mode_set(mode="EDIT")
-        bpy.ops.object.mode_set(mode="OBJECT")
-    again()
-    clear()
 
 
 def test_drivers_and_settings_of_the_curve_stay():

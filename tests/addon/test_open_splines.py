@@ -58,29 +58,6 @@ def test_a_smooth_open_spline_becomes_a_polygon_from_end_to_end(kind):
     assert cyclic(obj) == [False]
 
 
-@pytest.mark.parametrize("filled", [True, False])
-def test_the_mesh_of_its_tube_ends_as_the_bevel_does(filled):
-    obj = add_both()
-    obj.data.bevel_depth, obj.data.use_fill_caps = 0.05, filled
-    obj.data.materials.append(bpy.data.materials.new("Ring"))
-    obj.data.materials.append(bpy.data.materials.new("Arc"))
-    obj.data.splines[1].material_index = 1
-    relax(**SHORT)
-    sizes = [len(spline.points) for spline in obj.data.splines]
-    assert bpy.ops.curve.mobius_flow_tube_mesh(sides=8, color="strand_distance") == {"FINISHED"}
-    assert bpy.ops.object.select_all(action="DESELECT") == {"FINISHED"}
-    obj.hide_set(False)
-    obj.select_set(True)
-    assert bpy.ops.curve.mobius_flow_tube_mesh(sides=8) == {"FINISHED"}
-    mesh = bpy.context.object.data
-    assert not mesh.validate()
-    assert len(mesh.vertices) == 8 * sum(sizes)
-    slots = [polygon.material_index for polygon in mesh.polygons]
-    assert slots == [0] * 8 * sizes[0] + [1] * (8 * (sizes[1] - 1) + 2 * filled)
-    assert [len(polygon.vertices) for polygon in mesh.polygons][-1] == (8 if filled else 4)
-    assert len(mesh.shape_keys.key_blocks) > 1
-
-
 @pytest.mark.parametrize("kind", ["BEZIER", "NURBS"])
 def test_its_smooth_curve_runs_from_end_to_end(kind, capfd):
     add_both()

@@ -4,13 +4,13 @@ import bpy
 import mobius_flow
 import numpy as np
 import pytest
-from blender_scenes import add_curve, add_trefoil, contents, relax, stored
+from blender_scenes import add_curve, add_trefoil, relax, stored
 from mobius_flow import Relaxation
 from mobius_flow.addon.curves import bake
 from mobius_flow.addon.pictures import staging
 from mobius_flow.addon.properties import SETTINGS
 from mobius_flow.addon.scripting import complete
-from mobius_flow.core import MobiusFlowError, OptionError
+from mobius_flow.core import MobiusFlowError
 from mobius_flow.core.keys.recording import Kind
 from shapes import hopf_link, regular_polygon
 
@@ -68,29 +68,6 @@ def test_smooth_splines_only_if_agreed():
     with pytest.raises(MobiusFlowError, match="NURBS"):
         Relaxation(obj).relax(**SHORT)
     Relaxation(obj, sample_splines=True).relax(**SHORT)
-
-
-@pytest.mark.parametrize(
-    ("settings", "said"),
-    [
-        ({"max_iteration": 3}, "did you mean max_iterations"),
-        ({"length": "long"}, "length is 'long'; it must be a whole number"),
-        ({"length": 1}, "Length is 1"),
-        ({"timing": "EVNE"}, "did you mean EVEN"),
-        ({"method": "lbgfs"}, "did you mean lbfgs"),
-        ({"keyframes": 3}, "must be a name"),
-        ({"tolerance": float("nan")}, "tolerance"),
-        ({"fit_bevel": "yes"}, "True or False"),
-    ],
-)
-def test_settings_that_are_none(settings, said):
-    obj = add_trefoil()
-    before = contents()
-    with pytest.raises(OptionError, match=said) as error:
-        Relaxation(obj).relax(**settings)
-    assert "\n" not in str(error.value)
-    assert contents() == before
-    assert not bake.is_baked(obj.data)
 
 
 def test_what_cannot_be_relaxed():

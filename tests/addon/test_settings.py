@@ -3,12 +3,11 @@
 from dataclasses import asdict
 
 import bpy
-import numpy as np
 import pytest
-from blender_scenes import add_trefoil, relax, sentence, stored
+from blender_scenes import add_trefoil, sentence
 from mobius_flow.addon import properties
 from mobius_flow.addon.sidebar.panels import VIEW3D_PT_mobius_flow, VIEW3D_PT_mobius_flow_expert
-from mobius_flow.core import METHODS, Curve, OptionError, RelaxOptions, minimize
+from mobius_flow.core import METHODS, OptionError, RelaxOptions, minimize
 from mobius_flow.core.base.arguments import declared
 from option_values import unlike_default
 from panel_layout import shown
@@ -146,26 +145,6 @@ def test_options_that_do_not_go_together(options, said):
     with pytest.raises(RuntimeError) as error:
         bpy.ops.curve.mobius_flow_relax(**options)
     assert said in sentence(error.value)
-
-
-@pytest.mark.parametrize(
-    "options",
-    [
-        {"energy": "edge", "metric": "h2", "edge_lengths": "keep"},
-        {"method": "penalty-lbfgs", "metric": "h3-2", "penalty": 8.0},
-        {"energy": "moebius-k2", "quadrature_points": 2},
-    ],
-    ids=str,
-)
-def test_the_result_is_the_librarys(options):
-    obj = add_trefoil()
-    start = Curve.from_components([stored(obj.data).astype(np.float64)])
-    wanted = {"max_iterations": 6} | options
-    relax(keyframes="RESULT", **wanted)
-    result = minimize(start, RelaxOptions(**wanted)).curve.vertices
-    np.testing.assert_array_equal(stored(obj.data), result.astype(np.float32))
-    plain = minimize(start, RelaxOptions(max_iterations=6)).curve.vertices
-    assert not np.array_equal(stored(obj.data), plain.astype(np.float32))
 
 
 QUALITIES = properties.QUALITIES

@@ -14,7 +14,7 @@ from mobius_flow.addon import registration, translations
 from mobius_flow.addon.curves.recorded import lay_flat
 from mobius_flow.addon.live.requirements import RELAXABLE
 from mobius_flow.addon.pictures.movie import target
-from mobius_flow.addon.translations import ANY, read_po
+from mobius_flow.addon.translations import ANY
 from mobius_flow.core import MobiusFlowError
 from mobius_flow.core.base.messages import Message
 from mobius_flow.core.driver.words import named
@@ -79,31 +79,6 @@ def test_po_files_are_read_as_blenders_own_tools_read_them():
     assert {key: message.msgstr for key, message in messages.msgs.items() if key[1]} == GERMAN
 
 
-def test_po_files_of_other_tools():
-    """Strings over several lines, quotes, comments; what is empty, fuzzy or obsolete is no translation."""
-    text = """msgid ""
-msgstr "Language: de"
-
-#: panel.py:3
-msgid "a \\"b\\" "
-"c\\n"
-msgstr ""
-"ä "
-"c\\n"
-
-msgid "d"
-msgstr ""
-
-#, python-format, fuzzy
-msgid "e"
-msgstr "f"
-
-#~ msgid "g"
-#~ msgstr "h"
-"""
-    assert read_po(text) == {(ANY, 'a "b" c\n'): "ä c\n"}
-
-
 def test_broken_files_leave_their_languages_english(tmp_path, caplog):
     broken = (
         b'msgid "a"',
@@ -143,15 +118,6 @@ def test_blender_is_told_the_tables_and_to_forget_them(monkeypatch):
     assert GERMAN["*", "What stays"] == "Was bleibt"
     translations.unregister()
     assert not told
-
-
-@pytest.mark.skipif(not bpy.app.build_options.international, reason="this Blender speaks English only")
-def test_blender_speaks_german():
-    view = bpy.context.preferences.view
-    before = view.language, view.use_translate_interface
-    view.language, view.use_translate_interface = "de_DE", True
-    assert translations.iface_("Links") == "Verschlingungen"
-    view.language, view.use_translate_interface = before
 
 
 def german(text):

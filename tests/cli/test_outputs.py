@@ -38,7 +38,6 @@ ALL = [
     *SHORT,
     "--quiet",
 ]
-NAMES = ["o.txt", "r.json", "t.npz"]
 
 pytestmark = pytest.mark.usefixtures("room")
 

@@ -12,7 +12,6 @@ from mobius_flow.core.knots import knot
 from shapes import half_circle, regular_polygon, torus_trefoil
 from solids import plate
 
-BALL = Path(__file__).resolve().parents[2] / "examples/ball.obj"
 BENT = torus_trefoil(60).with_vertices(torus_trefoil(60).vertices * [1.0, 1.3, 1.1])
 SHORT = ["--vertices", "120", "--max-iterations", "4", "--quiet"]
 BOTH = ["--report", "r.json", "--trajectory", "t.npz"]

@@ -68,19 +68,6 @@ def test_lengths_stay_and_penalties_are_left_out():
     assert start.energy > penalised.energy[0] + 1.0
 
 
-def test_curves_of_some_iterates_are_kept():
-    history = alone(torus_trefoil(60), "cg", (0, 2, 99), max_iterations=3)
-    iterates = list(
-        relax(
-            torus_trefoil(60),
-            RelaxOptions(radius="none", method="cg", vertices=60, max_iterations=3, edge_lengths="keep"),
-        )
-    )
-    assert list(history.stages) == [0, 2, 3]
-    for k, curve in history.stages.items():
-        np.testing.assert_array_equal(curve.vertices, iterates[k].curve.vertices)
-
-
 TAKES_OTHER_STEPS = ({"hops": 3}, {"mesh": "finer"}, {"stability": True}, {"time_limit": 3.0}, {"untangle": "always"})
 
 

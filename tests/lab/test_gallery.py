@@ -1,6 +1,5 @@
 """A page with the results of a batch."""
 
-import os
 import sys
 
 import numpy as np
@@ -72,14 +71,6 @@ def test_curves_whose_moebius_images_are_something_else_are_shown_as_they_are(tm
     (shown,) = gallery._chosen(tmp_path, None)
     moved = not np.array_equal(shown.look().vertices, curve.vertices)
     assert moved == (options == "{}" and curve.mesh.all_closed)
-
-
-@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes with names")
-def test_a_pipe_is_no_result(results):
-    (results / "round/curve.txt").unlink()
-    os.mkfifo(results / "round/curve.txt")
-    with pytest.raises(MobiusFlowError, match=r"round/curve.txt: cannot be read: it is missing, or not a regular file"):
-        gallery._chosen(results, None)
 
 
 def test_rendered_by_blender(results, tmp_path, monkeypatch):

@@ -9,11 +9,10 @@ def draw(path, **options):
     return bpy.ops.curve.mobius_flow_draw_diagram(filepath=str(path), **options)
 
 
-@pytest.mark.parametrize(("suffix", "begin"), [(".svg", b"<svg"), (".pdf", b"%PDF"), (".tex", b"% \\usepackage{tikz}")])
-def test_selected_curves_are_drawn(suffix, begin, tmp_path):
+def test_selected_curves_are_drawn(tmp_path):
     add_trefoil()
-    assert draw(tmp_path / f"out{suffix}", arrows=True, numbers=True) == {"FINISHED"}
-    assert (tmp_path / f"out{suffix}").read_bytes().startswith(begin)
+    assert draw(tmp_path / "out.pdf", arrows=True, numbers=True) == {"FINISHED"}
+    assert (tmp_path / "out.pdf").read_bytes().startswith(b"%PDF")
 
 
 def test_links_have_colours(tmp_path):

@@ -53,14 +53,6 @@ def test_a_preset_of_the_extension_can_be_relaxed_with(path):
     assert not METHODS[options.method].comparison
 
 
-def test_options_that_a_preset_does_not_name_get_their_defaults():
-    settings = bpy.context.scene.mobius_flow
-    settings.energy, settings.stability, settings.start_frame = "edge", True, 33
-    use(SHIPPED["Animation"])
-    assert (settings.energy, settings.stability) == ("moebius", False)
-    assert settings.start_frame == 33, "how the motion is kept is none of its business"
-
-
 def test_a_preset_that_is_gone_is_refused_in_one_sentence(tmp_path):
     with pytest.raises(RuntimeError, match=r"The preset Old\.py no longer exists; choose another one"):
         bpy.ops.curve.mobius_flow_preset(filepath=str(tmp_path / "Old.py"))

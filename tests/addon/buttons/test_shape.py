@@ -61,16 +61,6 @@ def test_a_size_stays(measure):
         assert is_free(keys.mesh, a.astype(float), b.astype(float))
 
 
-def test_the_size_of_the_last_key():
-    obj = baked()
-    end = BakedKeys([obj]).curves[-1]
-    assert OPS.mobius_flow_keep_size(measure="RADIUS", reference="LAST") == {"FINISHED"}
-    keys = BakedKeys([obj])
-    np.testing.assert_allclose(keys.curves[-1].vertices, end.vertices, atol=1e-6)
-    np.testing.assert_allclose(of_keys([obj], "RADIUS"), Measure.RADIUS.of(end), rtol=1e-5)
-    np.testing.assert_array_equal(stored(obj.data), keys.frames[-1])
-
-
 def test_motions_that_cannot_be_proved_are_told_of(monkeypatch):
     obj, told = baked(), []
     monkeypatch.setattr(recorded, "is_free", lambda *_: False)

@@ -127,13 +127,6 @@ def test_what_was_a_rope_is_drawn_as_that():
     assert obj.data.bevel_depth != pytest.approx(depth, rel=1e-3)
 
 
-@pytest.mark.parametrize("kind", ["BEZIER", "NURBS"])
-def test_smooth_splines_are_fitted_as_they_are_drawn(kind):
-    data = add_curve([hopf_link(12).components[0]], kind=kind).data
-    fit()
-    assert bevel.is_fitted(data)
-
-
 @pytest.mark.parametrize("name", ["profile", "extruded", "tapered"])
 def test_other_shapes_are_refused(name):
     data = add_trefoil().data

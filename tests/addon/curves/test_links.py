@@ -9,7 +9,6 @@ from blender_scenes import (
     add_curve,
     contents,
     evaluated,
-    fcurves,
     in_world,
     relax,
     sentence,
@@ -91,23 +90,6 @@ def refused(**options):
 
 
 # -- together --------------------------------------------------------------------------------------------------------
-
-
-def test_linked_rings_stay_linked_and_are_proved_together(capfd):
-    objects = rings()
-    placed = [obj.matrix_world.copy() for obj in objects]
-    wanted = linking_number(*tangled())
-    assert abs(wanted) == 1
-    relax(vertices=80)
-    assert "'A' and 'B' converged" in (said := capfd.readouterr().out)
-    assert "proved free of contact with themselves and each other" in said
-    assert [obj.matrix_world for obj in objects] == placed
-    times = [[point.co[0] for point in fcurves(obj.data.shape_keys)[0].keyframe_points] for obj in objects]
-    assert times[0] == times[1]
-    sizes, shapes = tuple(len(stored(obj.data)) for obj in objects), world_keys(objects)
-    assert np.abs(shapes[-1] - shapes[0]).max() > 0.5
-    assert {linking_number(*np.split(shape, [sizes[0]])) for shape in shapes} == {wanted}
-    assert all(is_free(Mesh(sizes), a, b) for a, b in pairwise(shapes))
 
 
 @pytest.mark.parametrize("keyframes", ["SHAPE_KEYS", "RESULT"])

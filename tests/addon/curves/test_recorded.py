@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_curve, add_hopf_link, add_trefoil, evaluated, fcurves, relax, stored, values
+from blender_scenes import add_curve, add_hopf_link, evaluated, fcurves, relax, stored, values
 from families import crossed
 from mobius_flow.addon.curves import splines
 from mobius_flow.addon.curves.recorded import Recorded
@@ -35,13 +35,6 @@ def test_they_are_what_is_shown(changed):
     assert recorded.mesh.component_sizes == tuple(len(spline.points) for spline in obj.data.splines)
     for frame, points in zip(recorded.frames, recorded.points, strict=True):
         np.testing.assert_allclose(points, evaluated(obj, frame), atol=2e-6)
-
-
-def test_radii_are_those_of_the_keys():
-    obj = add_trefoil(60)
-    relax(max_iterations=8, fit_bevel=True)
-    expected = [block.data[5].radius for block in obj.data.shape_keys.key_blocks]
-    np.testing.assert_allclose(Recorded.of(obj).radii[:, 5], expected, rtol=1e-6)
 
 
 # -- smooth splines --------------------------------------------------------------------------------------------------

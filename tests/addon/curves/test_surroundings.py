@@ -333,23 +333,6 @@ def test_metaballs_are_one_surface():
     assert said == ["an object that its shape is made with", "animation", None]
 
 
-def test_what_is_made_with_a_relaxed_curve_moves():
-    bent, relaxed, line = cube(), ring(), ring("Line")
-    modified(bent, "CURVE", object=relaxed)
-    line.data.bevel_mode, line.data.bevel_object = "OBJECT", relaxed
-    assert unsteady([bent, line], []) is None
-    assert unsteady([bent], [relaxed]).startswith("'Cube' is moved by the modifier 'Curve'")
-    assert unsteady([line], [relaxed]).startswith("'Line' is moved by an object that its shape is made with")
-
-
-def test_a_curve_must_keep_its_place_only_where_it_avoids_something():
-    relaxed = moving(ring())
-    assert unsteady([], [relaxed]) is None
-    assert unsteady([cube()], [relaxed]).startswith(
-        "'Ring' is moved by animation, and curves that avoid something must"
-    )
-
-
 # -- what is near ----------------------------------------------------------------------------------------------------
 
 

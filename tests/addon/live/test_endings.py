@@ -1,6 +1,5 @@
 """However a run in a window ends, what is not kept is as it was before, and the last words say why."""
 
-import gc
 import re
 
 import bpy
@@ -225,14 +224,6 @@ def test_a_worker_that_dies_loses_nothing(operator):
     assert operator.run.failed
     assert operator.reports[-1][0] == {"WARNING"}
     assert bpy.context.object.data.shape_keys is not None
-
-
-def test_what_is_set_aside_is_not_purged(operator):
-    before = begin(operator, film)
-    bpy.ops.outliner.orphans_purge(do_recursive=True)
-    gc.collect()
-    operator.event("ESC")
-    assert everything() == before
 
 
 def test_undo_of_something_else_does_not_end_a_run(operator):

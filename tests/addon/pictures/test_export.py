@@ -89,15 +89,6 @@ def test_a_link_has_a_colour_for_each_component(tmp_path):
     assert export.write_blend(tmp_path / "flat.blend", iterates_of(flat, max_iterations=0))
 
 
-def test_a_picture(tmp_path, tiny, iterates, capfd):
-    assert export.write_still(tmp_path / "a.png", iterates)
-    image = bpy.data.images.load(str(tmp_path / "a.png"))
-    assert tuple(image.size) == TINY
-    assert np.ptp(np.array(image.pixels[:])[::4]) > 0.1
-    assert capfd.readouterr().out == ""
-    assert os.listdir(tmp_path) == ["a.png"]
-
-
 def test_a_film(tmp_path, tiny, iterates, capfd):
     seen = []
     assert export.write_movie(tmp_path / "a.mp4", iterates, lambda *counts: seen.append(counts))

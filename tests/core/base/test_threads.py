@@ -1,7 +1,6 @@
 """BLAS threads: one while the library works, and the caller's whenever it does not."""
 
 import sys
-import threading
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from types import FrameType
@@ -9,7 +8,6 @@ from types import FrameType
 import pytest
 import threadpoolctl
 from mobius_flow.core import Iterate, RelaxOptions, minimize, relax
-from mobius_flow.core.base.threads import BLAS
 from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.driver.info import info, measure
 from mobius_flow.core.energies.density import Partials, PointPairs
@@ -132,30 +130,3 @@ def test_every_entrance_bounds_the_pools(entrance: str) -> None:
     finally:
         sys.setprofile(before)
     assert seen == {1}
-
-
-def test_threads_of_the_caller_may_overlap() -> None:
-    """The last of them gives the pools back, whichever it is, and the number that they had before the first."""
-    entered, leave = threading.Barrier(2), threading.Event()
-
-    def other() -> None:
-        with BLAS.bounded():
-            entered.wait()
-            leave.wait()
-            assert threads() == {1}
-
-    for first in ("main", "other"):
-        leave.clear()
-        thread = threading.Thread(target=other)
-        with BLAS.bounded():
-            thread.start()
-            entered.wait()
-            if first == "other":
-                leave.set()
-                thread.join()
-                assert threads() == {1}
-        if first == "main":
-            assert threads() == {1}
-            leave.set()
-            thread.join()
-        assert threads() == {OWN}

@@ -1,7 +1,5 @@
 """Batches on clusters: the default one, and one whose processes are started by hand."""
 
-import os
-import re
 import socket
 import sys
 import time
@@ -11,7 +9,7 @@ from pathlib import Path
 import pytest
 from mobius_flow.cli import main
 from mobius_flow.core import write_curve
-from processes import finished, listening, running
+from processes import finished, running
 from shapes import regular_polygon
 
 distributed = pytest.importorskip("distributed")
@@ -82,57 +80,6 @@ def test_a_worker_that_is_killed_costs_no_row(port, rings, tmp_path, rows_of):
     assert complained == ""
     assert [row["name"] for row in rows_of(out)] == [f"ring{k}" for k in range(8)]
     assert {path.name for path in out.iterdir()} == {*(f"ring{k}" for k in range(8)), "results.csv", "results.parquet"}
-
-
-@pytest.mark.slow
-def test_a_scheduler_that_is_killed_costs_no_result(port, rings, tmp_path, rows_of):
-    out = tmp_path / "out"
-    words = ["batch", str(rings), "-o", str(out), "--vertices", "60", "--tolerance", "1e-9"]
-    program = [sys.executable, "-m", "mobius_flow", *words, "--scheduler", f"tcp://127.0.0.1:{port}"]
-    with cluster(port, 1, tmp_path) as processes, running(program) as process:
-        wait_for_one(out)
-        processes[0].kill()
-        said = process.communicate()
-    assert said == ("", "mobius-flow: the Dask scheduler is lost; give the same command again to go on\n")
-    assert process.returncode == 2
-    done = {row["name"]: row for row in rows_of(out)}
-    assert 0 < len(done) < 8
-    assert "failed" not in {row["status"] for row in done.values()}
-    assert main(words) == 0
-    rows = {row["name"]: row for row in rows_of(out)}
-    assert len(rows) == 8
-    assert [rows[name] for name in done] == list(done.values()), "what was done is not done again"
-    assert not list(out.glob(".*"))
-
-
-@pytest.mark.slow
-def test_it_works_beside_snappy_and_listens_on_loopback_alone(port, rings, tmp_path):
-    """The commands of the documents, with nannies, where SnapPy is installed in place of python-snappy."""
-    manual = (Path(__file__).parents[3] / "docs/batch.md").read_text(encoding="utf-8")
-    commands = re.findall(r"^    python -m mobius_flow.lab.batch.dask (.*?) *#", manual, re.MULTILINE)
-    assert len(commands) == 2
-    (tmp_path / "planted").mkdir()
-    (tmp_path / "planted/snappy.py").write_text("Manifold = None\n")
-    (tmp_path / "tmp").mkdir()
-    environment = os.environ | {"PYTHONPATH": str(tmp_path / "planted")}
-    broken = finished([sys.executable, "-c", "import distributed"], env=environment)
-    assert "has no attribute 'compress'" in broken.stderr, "it is mended there: ours may go"
-    batch = ["batch", str(rings), "-o", str(tmp_path / "out"), "--scheduler", f"tcp://127.0.0.1:{port}"]
-    places = ["--port", str(port)], ["--local-directory", str(tmp_path / "dask")]
-    words = [each.replace("HEAD:8786", f"127.0.0.1:{port}").split() for each in commands]
-    lines = [command(*each, *place) for each, place in zip(words, places, strict=True)]
-    program = [sys.executable, "-m", "mobius_flow", *batch, "--vertices", "60"]
-    with ExitStack() as stack:
-        processes = [stack.enter_context(running(line, env=environment)) for line in lines]
-        processes.append(stack.enter_context(running(program, env=environment | {"TMPDIR": str(tmp_path / "tmp")})))
-        heard: list[set[str]] = [set(), set(), set()]
-        while processes[-1].poll() is None:
-            heard = [was | listening(process) for was, process in zip(heard, processes, strict=True)]
-        out, error = processes[-1].communicate()
-        assert "\n✓ 8 runs      8 converged\n" in out
-        assert error == "8 runs\n"
-    assert heard == [{"127.0.0.1"}, {"127.0.0.1"}, set()]
-    assert os.listdir(tmp_path / "tmp") == []
 
 
 ORPHAN = """

@@ -25,7 +25,6 @@ psutil = pytest.importorskip("psutil")  # which Dask needs
 PROGRAM = [sys.executable, "-m", "mobius_flow", "batch"]
 QUICK = ["--vertices", "12", "--max-iterations", "0"]
 OTHERWISE = ["--vertices", "24", "--max-iterations", "0"]  # by which results are to be replaced
-OLD = time.time() - 1e6
 
 
 @pytest.fixture(scope="module")
