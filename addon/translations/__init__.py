@@ -9,7 +9,6 @@ table of knots has no hyperlinks.
 """
 
 import json
-import logging
 import re
 from collections.abc import Callable, Iterable
 from functools import partial
@@ -26,7 +25,7 @@ CONTEXT = "Möbius Flow"  # of all but tooltips, which Blender looks up without 
 ANY = "*"  # what Blender calls the context of entries that have none
 
 Table = dict[tuple[str, str], str]
-_ENTRY = re.compile(r'(?:msgctxt (".*")\n)?msgid (".*"(?:\n".*")*)\nmsgstr (".*"(?:\n".*")*)')
+_ENTRY = re.compile(r'^(?:msgctxt (".*")\n)?msgid (".*")\nmsgstr (".*")$', re.MULTILINE)
 
 
 def _said(gettext: Callable[[str, str], str], template: str, **values: Any) -> str:
@@ -62,45 +61,18 @@ def unregister() -> None:
 
 
 def tables(folder: Path) -> dict[str, Table]:
-    """Read the ``.po`` files of a folder, named by Blender's codes of languages: ``de`` serves for de_AT, too.
-
-    A file that cannot be read leaves its language in English, and a warning in the log.
-    """
-    found = {}
-    for path in sorted(folder.glob("*.po")):
-        try:
-            found[path.stem] = read_po(path.read_text(encoding="utf-8"))
-        except (OSError, ValueError) as error:
-            logging.getLogger(__name__).warning("%s is not used: %s", path, error)
-    return found
+    """Read the ``.po`` files of a folder, named by Blender's codes of languages: ``de`` serves for de_AT, too."""
+    return {path.stem: read_po(path.read_text(encoding="utf-8")) for path in sorted(folder.glob("*.po"))}
 
 
 def read_po(text: str) -> Table:
-    """Read a PO file into what Blender takes: translations by context and original.
-
-    Entries are separated by blank lines. The header is left out, and so are entries that are empty, fuzzy or obsolete.
-
-    Raises
-    ------
-    ValueError
-        If an entry is malformed, or there twice; the message quotes it.
+    """Read a PO file, each text of which is on one line, into what Blender takes: translations by context and original.
 
     Examples
     --------
     >>> read_po('msgctxt "Möbius Flow"\\nmsgid "Links"\\nmsgstr "Verschlingungen"')
     {('Möbius Flow', 'Links'): 'Verschlingungen'}
     """
-    table: Table = {}
-    for entry in re.split(r"\n\s*\n", text):
-        lines = [line for line in map(str.strip, entry.split("\n")) if line and not line.startswith("#")]
-        found = _ENTRY.fullmatch("\n".join(lines))
-        if lines and found is None:
-            raise ValueError(f"not an entry of a PO file without plurals:\n{entry}")
-        # PO quotes as JSON does
-        quoted = found.groups("") if found is not None else ("", "", "")
-        context, original, translation = ("".join(map(json.loads, each.splitlines())) for each in quoted)
-        if (key := (context or ANY, original)) in table:
-            raise ValueError(f"there twice:\n{entry}")
-        if original and translation and not re.search("^#,.*fuzzy", entry, re.MULTILINE):
-            table[key] = translation
-    return table
+    # PO quotes as JSON does
+    entries = [map(json.loads, (context or f'"{ANY}"', *words)) for context, *words in _ENTRY.findall(text)]
+    return {(context, original): said for context, original, said in entries if original}
