@@ -5,12 +5,12 @@ from types import ModuleType
 import bpy
 
 from . import settings, translations
-from .buttons import adding, drawing, film, mending, outputs, presets, relaxing, shape
+from .buttons import adding, drawing, film, mending, outputs, presets, relaxing, running, shape
 from .live import handlers, overlay
 from .sidebar import menus, panels
 
 # presets go into the head of the panel; the sub-panels follow in the order they are shown
-_MODULES = (relaxing, mending, shape, outputs, film, adding, drawing, presets, menus, panels)
+_MODULES = (relaxing, running, mending, shape, outputs, film, adding, drawing, presets, menus, panels)
 # everything else to register
 _PARTS = (translations, settings, presets, menus, handlers, overlay)
 

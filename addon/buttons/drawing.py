@@ -19,7 +19,8 @@ from ...core.knots import Drawing, knot_type
 from ...core.knots.inscribed import averaged
 from ..curves.strands import Strands, read_link
 from ..live import overlay
-from ..live.requirements import Condition, selected_curves
+from ..live.requirements import Condition
+from ..live.selection import selected_curves
 from ..translations import iface_, rpt_
 from .adding import OBJECT_MODE, AddsKnot
 

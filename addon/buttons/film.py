@@ -11,7 +11,8 @@ from ...core.base.messages import Message
 from ...core.driver.words import named, time_left
 from ..curves.recorded import drawn_radius
 from ..live.modal import clear_status
-from ..live.requirements import FILMABLE, Condition, idle, shown_curves
+from ..live.requirements import FILMABLE, Condition, idle
+from ..live.selection import shown_curves
 from ..pictures import staging
 from ..pictures.movie import CHOICES, Filming, is_rendering, play, target
 from ..scripting import Relaxation

@@ -13,7 +13,8 @@ from ..curves import bake
 from ..curves.doors import show_instead
 from ..curves.moving import deforms
 from ..curves.splines import Splines, sampled, shape, write_points
-from ..live.requirements import Remedy, closable, convertible, idle, needing, selected_curves
+from ..live.requirements import Remedy, closable, idle, needing
+from ..live.selection import convertible, selected_curves
 from .button import Button
 
 _MENDED: dict[Remedy, Callable[[bpy.types.Object], object]] = {}

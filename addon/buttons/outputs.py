@@ -21,7 +21,8 @@ from ..curves.recorded import Recorded, in_world
 from ..curves.sizes import placement
 from ..curves.splines import depth, length, read, stretch
 from ..curves.surroundings import TUBE_OF
-from ..live.requirements import READABLE, selected_curves
+from ..live.requirements import READABLE
+from ..live.selection import selected_curves
 from ..pictures.materials import vertex_colours
 from ..translations import rpt_
 from .adding import check_length

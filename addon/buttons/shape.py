@@ -14,20 +14,8 @@ from ...core.keys.paper import PAPERS
 from ...core.keys.placement import Measure
 from ..curves import bake, pins, recorded, surroundings
 from ..curves.bevel import fit_tubes
-from ..live.requirements import (
-    CLEARABLE,
-    FITTABLE,
-    PAINTABLE,
-    PINNABLE,
-    READABLE,
-    RELAXABLE,
-    UNEDITED,
-    Condition,
-    avoided,
-    curves_at_hand,
-    idle,
-    selected_curves,
-)
+from ..live.requirements import CLEARABLE, FITTABLE, PAINTABLE, PINNABLE, READABLE, RELAXABLE, UNEDITED, Condition, idle
+from ..live.selection import avoided, curves_at_hand, selected_curves
 from ..pictures.materials import colour_components
 from ..properties import MEASURE_ITEMS
 from ..translations import rpt_

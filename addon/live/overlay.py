@@ -18,8 +18,8 @@ from ..curves import pins
 from ..engine.rest import plot
 from ..translations import iface_
 from . import registry
-from .requirements import curves_at_hand
 from .run import LiveRun
+from .selection import curves_at_hand
 
 _LINE = 2.0  # this and other sizes in pixels, at the usual scale of the interface
 _FONT = 0  # Blender's own

@@ -17,17 +17,9 @@ from ..curves.moving import unsteady
 from ..curves.splines import length
 from ..live import registry
 from ..live.modal import unseen
-from ..live.requirements import (
-    ENTERABLE,
-    Remedy,
-    avoided,
-    closable,
-    curves_at_hand,
-    relaxed_together,
-    selected_curves,
-    shown_curves,
-)
+from ..live.requirements import ENTERABLE, Remedy, closable
 from ..live.run import RunState
+from ..live.selection import avoided, curves_at_hand, relaxed_together, selected_curves, shown_curves
 from ..pictures import staging
 from ..pictures.icons import labels
 from ..properties import QUALITIES, shown, timing

@@ -9,7 +9,7 @@ from mobius_flow.addon.curves import pins
 from mobius_flow.addon.curves.recorded import BakedKeys
 from mobius_flow.addon.curves.splines import box
 from mobius_flow.addon.curves.surroundings import Surroundings
-from mobius_flow.addon.live.requirements import avoided
+from mobius_flow.addon.live.selection import avoided
 from mobius_flow.core import Curve, MoebiusEnergy, RelaxOptions, minimize
 from mobius_flow.core.collision.embedded import clears
 from mobius_flow.core.knots import torus_knot

@@ -6,7 +6,7 @@ import bpy
 import pytest
 from blender_scenes import add_curve, linked, sentence
 from mobius_flow.addon.curves.surroundings import warning
-from mobius_flow.addon.live.requirements import avoided
+from mobius_flow.addon.live.selection import avoided
 from shapes import regular_polygon
 
 

@@ -8,7 +8,8 @@ import pytest
 pytest.importorskip("bpy")
 
 from mobius_flow.addon.live import registry
-from mobius_flow.addon.live.run import KeyChoice, Refresh
+from mobius_flow.addon.live.refresh import Refresh
+from mobius_flow.addon.live.run import KeyChoice
 from mobius_flow.core import MobiusFlowError
 from processes import PATIENCE
 
