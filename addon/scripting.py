@@ -24,7 +24,8 @@ from ..core.keys.placement import Measure
 from ..core.ropes import SeparateOptions, TightenOptions
 from .curves import bake, bevel, doors, sizes
 from .curves.recorded import BakedKeys
-from .curves.session import Report, Session
+from .curves.report import Report
+from .curves.session import Session
 from .curves.splines import SOURCE, Reference, depth, radii, stretch
 from .curves.strands import KINDS
 from .curves.surroundings import Surroundings

@@ -4,93 +4,42 @@ A plain class: a blocking operator runs it, a modal one hands it the iterates of
 What it knows lives here and never in the file.
 """
 
-from collections import Counter
 from collections.abc import Callable, Sequence
-from contextlib import ExitStack, suppress
-from dataclasses import dataclass, replace
+from contextlib import suppress
+from dataclasses import replace
 from functools import cached_property
-from typing import Any
 
 import bpy
 import numpy as np
 from scipy.spatial import cKDTree
 
 from ...core import Curve, Hand, Iterate, Mesh, Obstacle, Outcome, RelaxOptions, Task, WithOutcome
-from ...core.base import CurveError, FloatArray, Message, MobiusFlowError, OptionError, Place, Sentence
+from ...core.base import CurveError, FloatArray, Message, MobiusFlowError, OptionError
 from ...core.collision import is_rope
 from ...core.driver.prepare import rope_radius
-from ...core.driver.words import in_blenders_words, named, spline_names
+from ...core.driver.words import in_blenders_words
 from ...core.keys.contact_map import contact_forces
 from ...core.keys.key_options import Course, KeyOptions
 from ...core.keys.motion import Recording
-from ...core.keys.placement import Frame, Measure, Placement, Spot, spots
-from ...core.keys.recording import Key, Keys, Kind, Proof
+from ...core.keys.placement import Measure
+from ...core.keys.recording import Key, Keys, Proof
 from ...core.keys.tube import eased, rope_radii
 from ...core.ropes import SeparateOptions, Tightened, TightenOptions
 from ..engine.worker import begun
 from . import bake, bevel, doors, pins
 from .goals import Goals
-from .member import Member
+from .group import Group
+from .report import Report
 from .sizes import placement
 from .splines import coordinates, stretch
-from .strands import read_link
 from .surroundings import NOTHING, Surroundings
-
-
-@dataclass(frozen=True)
-class Report:
-    """What a finished session did."""
-
-    names: tuple[str, ...]  # the objects' names
-    outcome: Outcome  # how the relaxation ended
-    keys: int  # number of keys of the relaxed curves; 1 without animation
-    kinds: Counter[Kind]  # how many new ones there are of each kind
-    continues: bool  # whether the first of them is the last of those that were there
-    replaced: int  # number of keys that were there before, and are not any more
-    last_frame: float  # scene frame of the last key, or the last one on the way back
-    scene_range: tuple[int, int] | None  # first and last frame of the animation with its rests, if there is one
-    # whether every motion shown was proved free of contact, of each curve with itself, of all with each other, and
-    # with what they avoid
-    certified: bool
-    radius: float | None  # radius of the tube in the world if it was fitted
-    modified: bool  # whether modifiers change what is shown: proofs are about the curves themselves
-    avoided: tuple[str, ...]  # names of the objects that were avoided
-
-    @property
-    def sentence(self) -> Message:
-        # only the relaxed curves, and what they avoid, are examined
-        alone = Message("proved free of contact with itself")
-        proof = alone if len(self.names) == 1 else Message("proved free of contact with themselves and each other")
-        if self.avoided:
-            proof = Message("{proof}, and with {avoided}", proof=proof, avoided=named(self.avoided))
-        if self.modified:
-            proof = Message("{proof}, before modifiers", proof=proof)
-        if not self.certified:
-            proof = Message("NOT proved free of contact everywhere")
-        facts: dict[str, Any] = {"names": named(self.names), "outcome": self.outcome.message, "proof": proof}
-        if self.keys == 1:
-            return Message("{names} {outcome}; {proof}", **facts)
-        count = self.keys - self.continues
-        if self.continues:
-            said = Message("1 new key") if count == 1 else Message("{count} new keys", count=count)
-        else:
-            said = Message("{count} keys", count=count)
-            if self.replaced:
-                said = Message("{keys} in place of {count}", keys=said, count=self.replaced)
-        if self.kinds[Kind.STEP] < count:
-            mixed = "{keys} ({steps} iterates, {moves} strand moves, {meshes} changes of mesh, {added} in between)"
-            names = ("steps", "moves", "meshes", "added")
-            said = Message(mixed, keys=said, **{name: self.kinds[kind] for name, kind in zip(names, Kind, strict=True)})
-        facts |= {"keys": said, "frame": self.last_frame}
-        return Message("{names} {outcome}; {keys} up to frame {frame:g}, {proof}", **facts)
-
 
 # what is to be written: the keys, and for each of them its scene frame, how far the relaxation has come there, and the
 # radius of the tube, in the common space of `Link`, if it is fitted
 Prepared = tuple[Keys, FloatArray, Course, FloatArray | None]
 
 
-class Session:
+class Session(Group):
     """A relaxation of curve objects as one link, in the world; a single object is one, too.
 
     `requirements` accept the objects, and their transforms are evaluated. They show stand-ins until all is written, or
@@ -123,7 +72,7 @@ class Session:
         self._too_thick = False  # whether a bevel of the artist's meets itself at the start
         self._repinned = False  # whether a hand has left pins
         try:
-            self._begin(objects)
+            self.begin(objects, self._key_options, self._continues)
             self.goals = Goals(goals, self.curve)
             held = tuple(sorted({*pinned, *pins.pinned_vertices(objects, self.curve.mesh)}))
             obstacles, tangents = surroundings.obstacles, pin_tangents and bool(held)
@@ -157,14 +106,6 @@ class Session:
         measure = key_options.keep_size or (Measure.LENGTH if stays else Measure.RADIUS)
         self.motion = Recording(self.link, first, measure, size, not animated)
 
-    def _begin(self, objects: Sequence[bpy.types.Object]) -> None:
-        """Show stand-ins for curve objects, and read the link that they form."""
-        self.members = [Member(obj, self._continues) for obj in objects]
-        self._shown: tuple[Curve, Frame, float | None] | None = None
-        for member in self.members:
-            member.begin()
-        self.curve, self.link = read_link(objects)
-
     def reopen(self) -> None:
         """Go on after `discard`; raises MobiusFlowError if the curves are not as they were at first."""
         changed = Message("{names} changed since the relaxation ended; relax anew", names=self.title)
@@ -173,7 +114,7 @@ class Session:
         if len(objects) < len(self.members) or self.surroundings.lost():
             raise MobiusFlowError(changed)
         try:
-            self._begin(objects)
+            self.begin(objects, self._key_options, self._continues)
             placed = zip(link.placements, self.link.placements, strict=False)
             same = link.counts == self.link.counts and all(a.equals(b) for a, b in placed)
             if not (same and self.curve.mesh == curve.mesh and np.array_equal(self.curve.vertices, curve.vertices)):
@@ -209,21 +150,6 @@ class Session:
             self.discard()
             raise
 
-    # -- its objects -------------------------------------------------------------------------------------------------
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        return tuple(member.name for member in self.members)
-
-    @property
-    def title(self) -> str:
-        return named(self.names)
-
-    @property
-    def objects(self) -> list[bpy.types.Object]:
-        """Those that are still there."""
-        return [obj for member in self.members if (obj := member.object) is not None]
-
     def lost(self) -> Message | None:
         """Say what was done to one of the objects, or to what they avoid, that makes it impossible to go on.
 
@@ -234,31 +160,6 @@ class Session:
             if reason is None and not placement(member.object).equals(member.placement):
                 reason = Message("'{name}' was moved against the others", name=member.name)
         return reason or self.surroundings.lost()
-
-    def hide(self) -> None:
-        """Show the originals for a moment, because the file is being saved or something is undone."""
-        for member in self.members:
-            member.hide()
-
-    def resume(self) -> None:
-        for member in self.members:
-            member.resume()
-        if self._shown is not None:
-            shown, self._shown = self._shown, None
-            self._move(*shown)
-
-    def discard(self) -> bool:
-        """Show the originals for good, unless somebody else changed something; return whether all is as it was."""
-        restored: list[bool] = []
-        with ExitStack() as everything:
-            # close curves that may just have been opened for editing, and reopen them afterwards
-            if mode := next((obj.mode for obj in self.objects if obj.mode != "OBJECT"), None):
-                bpy.ops.object.mode_set(mode="OBJECT")
-                everything.callback(bpy.ops.ed.undo_push, message="Relaxation Ended")
-                everything.callback(bpy.ops.object.mode_set, mode=mode)
-            for member in self.members:  # each of them, even if one fails
-                everything.callback(lambda each: restored.append(each.discard()), member)
-        return all(restored)
 
     # -- its motion --------------------------------------------------------------------------------------------------
 
@@ -278,20 +179,6 @@ class Session:
         words = [in_blenders_words(each, self._spline_names) for each in outcome.clauses]
         self.outcome = replace(outcome, clauses=tuple(words))
 
-    @property
-    def _spline_names(self) -> list[Message]:
-        return spline_names([member.drawn for member in self.members], self.link.counts)
-
-    def reworded(self, error: CurveError) -> CurveError:
-        """The core's error, with the splines named by their objects; those about options use the names of options."""
-        if isinstance(error, OptionError):
-            return error
-        return CurveError(Sentence("{reason}", reason=in_blenders_words(str(error), self._spline_names)), error.place)
-
-    def spots(self, place: Place | None, curve: Curve) -> list[Spot]:
-        """The spots on the objects of a place on the link, or on the same link with other vertices."""
-        return [] if place is None else spots(place, curve, self.link)
-
     def at(self, frame: float) -> Key:
         """The shape that a scene frame would have if this were the end."""
         return self.motion.at(frame, self._key_options.timing)
@@ -299,27 +186,9 @@ class Session:
     def show(self, there: Key | None = None) -> None:
         """Show a shape, by default the last iterate with the pins that a hand left, its tube as thick as at a key."""
         key = self.motion.shown if there is None else there
-        self._move(self.motion.start, key.points, self._radii(Keys((key,), 0))[0] if self._fits else None)
+        self.move(self.motion.start, key.points, self._radii(Keys((key,), 0))[0] if self._fits else None)
         if there is None:
             self._repin()
-
-    def _move(self, start: Curve, frame: Frame, radius: float | None) -> None:
-        """Move all points, (n, 3) in each object's own coordinates; ``start``: the start with as many vertices.
-
-        Tubes that are to be fitted are given the radius, in the common space.
-        """
-        if self._shown is None or self._shown[0].mesh != start.mesh:
-            self._make_polygons(start)
-        self._shown = start, frame, radius
-        for member, vertices, scale in zip(self.members, self.link.slices(start.mesh), self.link.scales, strict=True):
-            own = radius / scale if radius is not None and member.fits(self._key_options) else None
-            member.move(frame[vertices], own)
-
-    def _make_polygons(self, refined: Curve) -> None:
-        """Give all splines the points of the refined link; their positions are left open."""
-        parts = zip(self.members, self.link.split(self.curve), self.link.split(refined), strict=True)
-        for member, drawn, part in parts:
-            member.make_polygons(drawn, part)
 
     def _repin(self) -> None:
         """Let the points where the last iterate, which may have fewer vertices, has pins be the pinned ones."""
@@ -329,25 +198,6 @@ class Session:
         seen = self.link.to_stored(last.curve.mesh, self.motion.size.of(last.curve.vertices))
         places = self.link.to_common(last.curve.mesh, seen)[list(last.pins)]
         pins.pin_only(self.objects, [int(np.linalg.norm(shown - place, axis=1).argmin()) for place in places])
-
-    @property
-    def in_view(self) -> Curve | None:
-        """The link where it is shown now, which for a single object may be elsewhere; None if there is none."""
-        if self._shown is None or len(self.objects) < len(self.members):
-            return None
-        start, frame, _ = self._shown
-        parts = zip(self._placements, self.link.slices(start.mesh), strict=True)
-        return start.with_vertices(np.concatenate([each.to_world(frame[s].astype(np.float64)) for each, s in parts]))
-
-    def unmoved(self, component: int, point: FloatArray) -> FloatArray:
-        """Where a point in view, shape (3,), would be on a component if no object had been moved."""
-        number = int(np.searchsorted(np.cumsum(self.link.counts), component, side="right"))
-        local = self._placements[number].to_local(point[None])
-        return np.asarray(self.link.placements[number].to_world(local)[0])
-
-    @property
-    def _placements(self) -> list[Placement]:
-        return [Placement.from_matrix(obj.matrix_world) for obj in self.objects]
 
     # -- its keys ----------------------------------------------------------------------------------------------------
 
@@ -412,7 +262,7 @@ class Session:
         assert self.outcome is not None, "what is written has ended"
         keys, frames, course, radii = prepared
         options, mesh, objects = self._key_options, self.motion.start.mesh, self.objects
-        self._make_polygons(self.motion.start)
+        self.make_polygons(self.motion.start)
         self._repin()
         for member, vertices, scale in zip(self.members, self.link.slices(mesh), self.link.scales, strict=True):
             own = None if radii is None else radii / scale

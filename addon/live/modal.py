@@ -7,7 +7,7 @@ import numpy as np
 
 from ...core import Status
 from ...core.base import Message
-from ..curves.session import Report
+from ..curves.report import Report
 from ..curves.splines import stretch
 from ..translations import iface_, rpt_
 from . import registry

@@ -18,7 +18,8 @@ from ...core import CurveError, Iterate, MobiusFlowError, Outcome, Status
 from ...core.base import FloatArray, Message, Place
 from ...core.driver import TimeLeft
 from ...core.keys.placement import Spot
-from ..curves.session import Prepared, Report, Session
+from ..curves.report import Report
+from ..curves.session import Prepared, Session
 from ..curves.splines import digest
 from ..engine.rest import Target, target_of
 from ..engine.worker import Worker, WorkerError
