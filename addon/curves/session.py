@@ -243,7 +243,9 @@ class Session(Group):
         last, mesh = self.motion.last, self.motion.start.mesh
         assert last is not None, "it has ended"
         curve, points = last.curve, self.motion.size.undone(self.link.to_world(mesh, self.motion.shown.points))
-        forces = contact_forces(curve, outcome.struts, min(last.radius))[cKDTree(curve.vertices).query(points)[1]]
+        forces = contact_forces(curve, outcome.struts, min(last.radius or (0.0,)))[
+            cKDTree(curve.vertices).query(points)[1]
+        ]
         struts, middles = np.array(outcome.struts).reshape(-1, 3), curve.vertices[curve.mesh.tails]
         edges, middles = struts[:, :2].astype(np.intp), middles + 0.5 * curve.edge_vectors
         owner = np.searchsorted(np.cumsum(self.link.counts), curve.mesh.edge_component[edges[:, 0]], side="right")
