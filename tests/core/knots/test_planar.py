@@ -44,11 +44,6 @@ def test_hard_unknots(name: str) -> None:
     assert knot_invariants(curve.vertices) == UNKNOT
 
 
-def rational(*twists: int) -> tuple[int, ...]:
-    """The word of a 2-bridge link, in which faces lie in faces."""
-    return tuple(letter for k, n in enumerate(twists) for letter in abs(n) * ((1, -2)[k % 2] * (1 if n > 0 else -1),))
-
-
 @pytest.mark.parametrize(
     ("code", "said"),
     [
