@@ -132,21 +132,6 @@ def test_the_expert_panel_shows_what_artists_might_set():
     assert "Sobolev Gradients for the Möbius Energy" in expert.bl_description
 
 
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        ({"penalty": 5.0}, "penalty is 5.0; the method keeps lengths and has no penalty"),
-        ({"quadrature_points": 2, "metric": "l2"}, "metric 'l2' has no such rule"),
-        ({"method": "penalty-cg", "stability": True}, "penalises lengths"),
-    ],
-)
-def test_options_that_do_not_go_together(options, said):
-    add_trefoil()
-    with pytest.raises(RuntimeError) as error:
-        bpy.ops.curve.mobius_flow_relax(**options)
-    assert said in sentence(error.value)
-
-
 QUALITIES = properties.QUALITIES
 
 

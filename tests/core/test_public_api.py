@@ -10,7 +10,6 @@ import pytest
 import scipy.sparse as sp
 from mobius_flow import core
 from mobius_flow.core import (
-    METHODS,
     Curve,
     Iterate,
     Mesh,
@@ -236,16 +235,6 @@ def test_a_call_that_does_not_fit_is_pythons_own_error_and_numpys_numbers_are_nu
 )
 def test_values_show_as_a_line(value, said):
     assert repr(value) == said
-
-
-def test_results_show_as_a_line():
-    found = minimize(TREFOIL, SHORT)
-    (history,) = compare(TREFOIL, ["cg"], SHORT, 60.0)
-    assert repr(found).startswith("<Result: iteration_limit after 0 iterations, objective ")
-    assert repr(found.last).startswith("<Iterate 0: objective ")
-    for value in (found, found.last, found.outcome, history, info(TREFOIL), knots.knot_type(TREFOIL), METHODS["lbfgs"]):
-        assert len(repr(value)) < 250
-        assert "\n" not in repr(value)
 
 
 def test_what_is_public_has_a_docstring() -> None:

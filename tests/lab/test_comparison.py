@@ -10,7 +10,6 @@ from mobius_flow.core.driver.moves import CoarseStart
 from mobius_flow.core.knots import knot
 from mobius_flow.lab.compare.comparison import compare
 from shapes import torus_trefoil
-from tasks import wanted
 
 # evening its edges out costs energy, and their lengths cost a penalised method much to begin with
 UNEVEN = Curve(np.delete(torus_trefoil(80).vertices, slice(1, 40, 2), axis=0))
@@ -37,15 +36,6 @@ def test_methods_are_compared_as_they_are():
     usual = minimize(torus_trefoil(60), RelaxOptions(radius="none", vertices=60, mesh="fixed", edge_lengths="keep"))
     assert history.status == "converged"
     assert history.gradient_norm[-1] > 1e3 * usual.last.gradient_norm
-
-
-def test_tasks_are_compared_with_their_pins():
-    pins = {"pins": (3, 20, 41), "pin_tangents": True}
-    task, options = wanted(
-        torus_trefoil(60), **pins, vertices=100, max_iterations=4, edge_lengths="keep", radius="none"
-    )
-    (history,) = compare(task, ["lbfgs"], options, 60.0)
-    assert history.energy == minimize(task, options).energies
 
 
 def test_methods_are_compared_in_several_metrics():

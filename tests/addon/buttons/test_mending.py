@@ -6,10 +6,10 @@ import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_curve, add_trefoil, contents, evaluated, linked, relax, show, stored
-from mended_curves import SHAPE, call, may_be_relaxed, mend, relax_once, two, with_material
+from mended_curves import SHAPE, call, may_be_relaxed, mend, two, with_material
 from mobius_flow.addon.buttons import mending
 from mobius_flow.addon.live.requirements import POLYGONS, RELAXABLE, UNEDITED, Remedy
-from modal_operator import keys, splines_of
+from modal_operator import splines_of
 
 
 def test_every_remedy_has_its_words():
@@ -57,20 +57,6 @@ def test_shared_data_becomes_ones_own():
     np.testing.assert_array_equal(stored(first.data), stored(data))
     may_be_relaxed()
     assert other.data.shape_keys is None
-
-
-def test_baked_curves_keep_their_keys_when_they_are_parted():
-    first = relax_once()
-    other = show(bpy.data.objects.new("Other", first.data))
-    first.select_set(False)
-    written = keys(first)
-    mend(Remedy.SINGLE_USER)
-    np.testing.assert_array_equal(keys(first), written)
-    np.testing.assert_array_equal(keys(other), written)
-    assert bpy.ops.curve.mobius_flow_clear() == {"FINISHED"}
-    assert other.data.shape_keys is None
-    np.testing.assert_array_equal(keys(first), written)
-    assert evaluated(first, 2).shape == evaluated(first, 1).shape
 
 
 def test_edited_curves_are_left_as_they_were_edited():

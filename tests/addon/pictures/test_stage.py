@@ -5,7 +5,7 @@ from itertools import product
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_curve, add_trefoil, drawn, relax
+from blender_scenes import add_curve, drawn, relax
 from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
 from mobius_flow.addon.curves import surroundings
@@ -139,18 +139,6 @@ def test_an_object_that_something_moves_is_in_sight(scene):
     staging.set_up(scene, [obj])
     assert (scene.frame_current, scene.frame_subframe) == (17, 0.5)
     see(scene, [obj], range(1, 41, 3))
-
-
-def test_a_curve_without_keys_has_a_camera_at_rest_and_is_not_seen_from_its_edge(scene):
-    obj = add_trefoil()
-    obj.data.bevel_depth = 0.1
-    staging.set_up(scene, [obj])
-    see(scene, [obj], [1])
-    assert scene.camera.animation_data is None
-    t = np.linspace(0, 2 * np.pi, 60, endpoint=False)
-    staging.set_up(scene, [add_curve([np.stack([np.cos(t), 0 * t, np.sin(t)], axis=1)])])
-    bpy.context.view_layer.update()
-    assert abs(scene.camera.matrix_world.col[2][1]) > 0.7
 
 
 def test_the_floor_is_level_and_the_curve_lies_across_the_picture():

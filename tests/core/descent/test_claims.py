@@ -74,12 +74,6 @@ def test_the_papers_method_is_section_6_and_nothing_else():
     assert abs(with_barrier - result.energies[0]) > 1.0
 
 
-def test_the_papers_method_reaches_equal_edges():
-    """Though first trials, which contact alone bounds, are hundreds of times longer than steps near rest."""
-    result = minimize(torus_trefoil(120), RelaxOptions(method="paper", tolerance=1e-3, max_iterations=40))
-    assert result.status is Status.CONVERGED
-
-
 @pytest.fixture(scope="module")
 def minimum():
     return minimize(torus_trefoil(120), RelaxOptions(method="trust-region", tolerance=1e-11, vertices=120))

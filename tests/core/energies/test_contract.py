@@ -204,26 +204,6 @@ def test_far_from_the_origin(energy: Term) -> None:
 
 
 @ENERGY
-@given(seed=st.integers(0, 999), shift=st.integers(1, 23))
-@settings(max_examples=5, deadline=None)
-def test_the_same_curve_in_other_arrays(energy: Term, seed: int, shift: int) -> None:
-    """Another first vertex or direction, other orders of components, more dimensions."""
-    curve, link = wound(seed), CURVES["link"]
-    value, derivative = energy.value_and_derivative(curve)
-    scale = np.abs(derivative).max() + 1e-30
-    rolled_value, rolled = energy.value_and_derivative(curve.with_vertices(np.roll(curve.vertices, shift, axis=0)))
-    assert rolled_value == pytest.approx(value, rel=1e-11, abs=1e-11)
-    np.testing.assert_allclose(rolled, np.roll(derivative, shift, axis=0), rtol=0, atol=1e-10 * scale)
-    lifted_value, lifted = energy.value_and_derivative(Curve(np.hstack([curve.vertices, np.zeros((24, 2))])))
-    assert lifted_value == pytest.approx(value, rel=1e-12)
-    np.testing.assert_allclose(lifted, np.hstack([derivative, np.zeros((24, 2))]), rtol=0, atol=1e-10 * scale)
-    turned = energy.value(curve.with_vertices(curve.vertices[::-1]))
-    assert (turned == pytest.approx(value, rel=1e-10)) is not is_one_sided(energy)
-    parts = [link.components[k] for k in (2, 0, 1)]
-    assert energy.value(Curve.from_components(parts)) == pytest.approx(energy.value(link), rel=1e-12)
-
-
-@ENERGY
 def test_arcs(energy: Term) -> None:
     """They do not depend on place, size and direction either; straight ones have no energy if it is a Möbius energy."""
     if is_moebius_invariant(energy):

@@ -9,7 +9,7 @@ from mobius_flow.core.base.errors import OptionError
 from mobius_flow.core.descent.hessian import lagrangian_hessian
 from mobius_flow.core.energies import KPointEnergy, Rule, moebius_kpoint
 from mobius_flow.core.energies.barrier import exact
-from mobius_flow.core.energies.density import ArcDensity, IshizekiNagasawaDensity, TangentPointDensity
+from mobius_flow.core.energies.density import TangentPointDensity
 from mobius_flow.core.energies.edge_pairs import EdgePairs
 from mobius_flow.core.energies.kpoint import EDGE_ENERGY, VERTEX_ENERGY
 from shapes import hopf_link, regular_polygon
@@ -54,17 +54,6 @@ def test_second_derivatives_along_the_constraints_are_symmetric_where_arcs_are_e
         columns = [lagrangian_hessian(point)(b.reshape(curve.vertices.shape)).ravel() for b in basis.T]
         full = basis.T @ np.array(columns).T
         np.testing.assert_allclose(full, full.T, rtol=0, atol=1e-11 * np.abs(full).max())
-
-
-def test_an_energy_of_ones_own() -> None:
-    """A density and a rule make an energy with its derivative, and pair the same points if all change places."""
-    curve = random_polygon(11, (9, 5), 3)
-    v = np.random.default_rng(3).normal(size=curve.vertices.shape)
-    turned = Curve.from_components([part[::-1] for part in curve.components])
-    for density in (ArcDensity(), IshizekiNagasawaDensity(), TangentPointDensity(2.0, 4.5)):
-        energy = KPointEnergy("mine", "three points", density, Rule.gauss(3))
-        assert derivative_slope(energy, curve, v, largest=1e-3) == pytest.approx(2, abs=0.01)
-        assert energy.value(turned) == pytest.approx(energy.value(curve), rel=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -50,15 +50,6 @@ class Height:
         return self.value(curve), np.full_like(curve.vertices, 1.0) * [0.0, 0.0, 1.0]
 
 
-@pytest.mark.parametrize("weight", [0.5, -0.5])
-def test_an_object_of_ones_own_is_a_term(weight: float) -> None:
-    """Without stiffness its weight may have any sign."""
-    options = RelaxOptions(terms=((Height(), weight),), vertices=40, max_iterations=3)
-    result = minimize(torus_trefoil(40), options)
-    assert result.certified
-    assert all(np.diff(result.energies) < 0.0)
-
-
 def test_capabilities_are_those_of_all_terms() -> None:
     plain, bent = Objective.of(MoebiusEnergy()), Objective.of(MoebiusEnergy(), further=[Weighted(Bending())])
     own = Objective.of(MoebiusEnergy(), further=[Weighted(Height())])

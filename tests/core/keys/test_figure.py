@@ -1,8 +1,6 @@
 """Figures of diagrams: gaps that nothing touches, the views that are best to see, and files that others read."""
 
 import re
-import shutil
-import subprocess
 import zlib
 from xml.etree import ElementTree
 
@@ -143,17 +141,6 @@ def test_pdf_has_its_objects_where_it_says():
     content = zlib.decompress(made[made.index(b"stream\n") + 7 :][:length]).decode()
     assert content.count("\nS\n") == len(SHEET.strokes)
     assert content.count("BT ") == len(SHEET.labels)
-
-
-@pytest.mark.skipif(shutil.which("pdflatex") is None, reason="needs TeX")
-def test_tikz_compiles(tmp_path):
-    (tmp_path / "figure.tex").write_bytes(PAPERS[".tex"](SHEET))
-    page = r"\documentclass{article}\usepackage{tikz}\begin{document}\input{figure}\end{document}"
-    (tmp_path / "page.tex").write_text(page, encoding="utf-8")
-    words = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "page.tex"]
-    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False)
-    assert done.returncode == 0, done.stdout[-2000:]
-    assert "Missing character" not in (tmp_path / "page.log").read_text(encoding="latin-1")
 
 
 def test_signs_that_fonts_of_texts_lack_are_set_as_mathematics():

@@ -50,14 +50,6 @@ def test_impossible_radii(major: float, minor: float | None) -> None:
         torus_knot(2, 3, major=major, minor=minor)
 
 
-def test_the_trivial_braid_is_a_set_of_circles() -> None:
-    curve = braid_closure([], strands=3)
-    assert len(curve.mesh.component_sizes) == 3
-    for part in curve.components:
-        assert np.ptp(np.linalg.norm(part, axis=1)) == pytest.approx(0.0, abs=1e-12)
-    assert set(pairwise_linking(curve.components).values()) == {0}
-
-
 @given(word=st.lists(st.integers(-4, 4).filter(bool), max_size=12), strands=st.integers(5, 6))
 @settings(max_examples=12, deadline=None)
 def test_components_and_linking_numbers_are_those_of_the_word(word: list[int], strands: int) -> None:

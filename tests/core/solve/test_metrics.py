@@ -173,16 +173,6 @@ class Own(WithoutRule):
         return SparseInnerProduct(10.0 * METRICS["l2"].at(curve).matrix)
 
 
-def test_a_metric_of_ones_own_is_an_object_as_an_energy_is():
-    """Ten times the metric is a gradient of a tenth, and so a norm that is √10 times as small."""
-    options = {"method": "flow-moebius", "vertices": 40, "max_iterations": 0}
-    own, usual = (
-        minimize(torus_trefoil(40), RelaxOptions(metric=metric, **options)).last.gradient_norm
-        for metric in (Own(), METRICS["l2"])
-    )
-    assert own == pytest.approx(usual / np.sqrt(10.0), rel=1e-9)
-
-
 def test_a_metric_beside_a_method_that_names_another_is_refused():
     with pytest.raises(OptionError, match=r"flow-l2 and metric h2 contradict each other; .* choose method flow-h2"):
         start_problem(torus_trefoil(20), RelaxOptions(method="flow-l2", metric="h2"))

@@ -102,12 +102,6 @@ def test_what_meets_itself_is_not_covered(c):
     assert covering.cover(arcs, arcs) is None
 
 
-@pytest.mark.parametrize(("gap", "covered"), [(0.0, False), (1e-6, False), (0.003, True)])
-def test_a_double_point_that_is_resolved(gap, covered):
-    arcs = covering.CurveArcs.of(DOUBLE_POINT + gap * np.outer([0, 1, 0], [0, 0, 1j]))
-    assert (covering.cover(arcs, arcs) is not None) == covered
-
-
 @pytest.mark.parametrize(
     "c", [CIRCLE[:, :2], CIRCLE[0], np.empty((0, 3)), CIRCLE * np.nan, np.where(CIRCLE, np.inf, 0)]
 )

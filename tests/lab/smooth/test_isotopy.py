@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from fourier_curves import CIRCLE, CUSPS, DOUBLE_POINT, DUAL_CIRCLE, fitted, values
+from fourier_curves import CIRCLE, CUSPS, DOUBLE_POINT, DUAL_CIRCLE, values
 from mobius_flow.core import Curve, CurveError, Mesh
 from mobius_flow.core.knots.inscribed import equal_steps, is_isotopic
 from mobius_flow.core.knots.shapes import shapes
@@ -52,14 +52,6 @@ def test_polygons_need_not_be_inscribed_exactly():
     noise = np.random.default_rng(3).normal(size=polygon.vertices.shape)
     assert isotopy.proves(c, polygon.with_vertices(polygon.vertices + 1e-4 * noise))
     assert not isotopy.proves(c, polygon.with_vertices(polygon.vertices + 0.3 * noise))
-
-
-def test_vertices_are_as_many_as_the_curve_bends_where_it_is_slow():
-    """And not as if it were everywhere as fast as anywhere and turned as nowhere else."""
-    c = shapes()["3_1"].coefficients[0]
-    t = np.arange(1024) / 1024
-    uneven = fitted(values(c, t + 0.9 * np.sin(2.0 * np.pi * t) / (2.0 * np.pi)).real, 120)
-    assert len(isotopy.inscribed([uneven])) < 100
 
 
 def test_many_vertices_out_of_order_prove_nothing():

@@ -1,11 +1,11 @@
-"""Pinned ends, and a goal to morph into."""
+"""A goal to morph into."""
 
 import os
 
 import bpy
 import numpy as np
 from case import Steps, picture, until
-from hands import addon, button, core, entry, here, key, move, open_panels, open_sidebar, region, window
+from hands import core, entry, here, move, open_sidebar, region, window
 from scene import (
     add,
     clear,
@@ -14,7 +14,6 @@ from scene import (
     keys,
     latest,
     obj,
-    points,
     undone,
 )
 
@@ -22,61 +21,6 @@ CIRCLE = np.stack([np.cos(t := 2 * np.pi * np.arange(24) / 24), np.sin(t), 0 * t
 FILE = os.path.join(os.environ["ROOM"], "morphed.blend")
 MODULE = "bl_ext.user_default.mobius_flow"
 LENGTH = 40  # of the way of a morph there and back
-
-
-def pinned_ends() -> Steps:
-    """An overhand arc, pinned in Edit Mode and relaxed by clicks: its ends stay, and its knot stays on."""
-    open_panels("surroundings")
-    clear()
-    add("Arc", core("knots").overhand(100).vertices, cyclic=False)
-    with here():
-        bpy.ops.curve.mobius_flow_fit_tube()
-        bpy.ops.ed.undo_push(message="Arc added")
-    arc = points()[:, :3]
-    window().scene.mobius_flow.length = 100
-    window().scene.mobius_flow_panel.quality = "PREVIEW"
-    yield from open_sidebar()
-    yield from look_down()
-    yield from picture("pins-1-arc")
-    yield from key("TAB")
-    yield from until(lambda: bpy.context.mode == "EDIT_CURVE", "Edit Mode")
-    for k, point in enumerate(obj().data.splines[0].points):
-        point.select = k in (0, len(arc) - 1)
-    with here():
-        bpy.ops.ed.undo_push(message="Selected")
-    yield from button("curve.mobius_flow_pin")
-    yield from until(lambda: pinned() == 2, "the ends to be pinned")
-    yield from picture("pins-2-pinned", differs_from="pins-1-arc")
-    yield from undone(lambda: pinned() == 0, "Pin")
-    assert bpy.context.mode == "EDIT_CURVE"
-    yield from key("Z", ctrl=True, shift=True)
-    yield from until(lambda: pinned() == 2, "redo")
-    yield from key("TAB")
-    yield from until(lambda: bpy.context.mode == "OBJECT", "Object Mode")
-    yield from button("curve.mobius_flow_relax")
-    yield from is_("done")
-    assert pinned() == 2
-    for frame in addon("curves.keyframes").keyed_points(obj().data):
-        np.testing.assert_array_equal(frame[[0, -1]], arc[[0, -1]])
-    assert not obj().data.splines[0].use_cyclic_u
-    yield from look_down()
-    yield from picture("pins-3-relaxed", differs_from="pins-2-pinned")
-    yield from button("curve.mobius_flow_unpin")
-    yield from until(lambda: pinned() == 0, "the ends to be let go")
-
-
-def look_down() -> Steps:
-    """Look at the arc from above, and leave room for the sidebar."""
-    with here():
-        bpy.ops.view3d.view_axis(type="TOP")
-        bpy.ops.view3d.view_selected()
-        for _ in range(2):
-            bpy.ops.view3d.zoom(delta=-1)
-    yield
-
-
-def pinned() -> int:
-    return int(addon("curves.pins").count(obj().data))
 
 
 def morphed() -> Steps:
@@ -166,4 +110,4 @@ def chosen() -> Steps:
     yield from until(lambda: latest() is not last, "the run")
 
 
-PARTS = (pinned_ends, morphed)
+PARTS = (morphed,)

@@ -6,9 +6,8 @@ from collections.abc import Generator
 import bpy
 import numpy as np
 from case import Steps, picture, until
-from hands import button, click, entry, found, here, key, open_sidebar, window
+from hands import button, click, entry, found, key, window
 from scene import (
-    clear,
     endless,
     in_world,
     is_,
@@ -146,30 +145,7 @@ def baked() -> Steps:
     yield from picture("baking-9-undone")
 
 
-def smooth() -> Steps:
-    """A Bézier circle is sampled after asking, and undo brings it back."""
-    clear()
-    with here():
-        bpy.ops.curve.primitive_bezier_circle_add()
-        for point in obj().data.splines[0].bezier_points:
-            point.co[2] = 0.3 * point.co[0] ** 2
-        bpy.ops.ed.undo_push(message="Circle")
-    before = [point.co[:] for point in obj().data.splines[0].bezier_points]
-    yield from open_sidebar()
-    yield from button("curve.mobius_flow_relax")
-    assert run() is None, "nothing happens before the answer"
-    yield from picture("smooth-1-asked")
-    yield from key("RET", over=(window().width // 2, window().height // 2))
-    yield from until(lambda: run() is not None, "the answer")
-    yield from is_("done")
-    assert obj().data.splines[0].type == "POLY"
-    assert len(points()) >= 48
-    yield from picture("smooth-2-relaxed")
-    yield from undone(lambda: obj().data.splines[0].type == "BEZIER", "the run")
-    assert np.array_equal([point.co[:] for point in obj().data.splines[0].bezier_points], before)
-
-
-PARTS = (buttons, esc_and_enter, baked, smooth)
+PARTS = (buttons, esc_and_enter, baked)
 
 
 def pressed(operator: str, name: str) -> Steps:
