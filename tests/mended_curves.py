@@ -1,7 +1,7 @@
 """Curves that are refused, and what takes that out of the way."""
 
 import bpy
-from blender_scenes import add_curve, add_trefoil, relax
+from blender_scenes import add_curve
 from mobius_flow.addon.live.requirements import RELAXABLE, Remedy
 from shapes import torus_trefoil
 
@@ -34,8 +34,3 @@ def two(**options: object) -> list[bpy.types.Object]:
 def with_material(obj: bpy.types.Object) -> bpy.types.Object:
     obj.data.materials.append(bpy.data.materials.new("Gold"))
     return obj
-
-
-def relax_once() -> bpy.types.Object:
-    add_trefoil()
-    return relax(max_iterations=3)
