@@ -3,8 +3,6 @@
 Data that already has such keys gets the new ones after the last.
 """
 
-from collections.abc import Iterator
-from itertools import chain
 from typing import Any
 
 import bpy
@@ -14,7 +12,7 @@ from ...core.base import FloatArray
 from ...core.keys.key_options import Timing
 from ...core.keys.placement import Frame
 from ...core.keys.recording import Keys
-from .fcurves import LINEAR, collections, draw_line, new_action
+from .fcurves import LINEAR, draw_line, new_action, own_fcurves
 from .splines import key_points, read
 from .splines import radii as spline_radii
 
@@ -104,7 +102,7 @@ def there_and_back(frames: FloatArray, values: FloatArray, timing: Timing) -> tu
 
 def frames_of(data: bpy.types.Curve) -> FloatArray:
     """The frames at which the keys of curve data are passed, on the way back too, (k,)."""
-    curve = next(fcurves_of(data.shape_keys))
+    curve = fcurves_of(data.shape_keys)[0]
     return read(curve.keyframe_points, "co", 2)[:, 0].astype(np.float64)
 
 
@@ -116,18 +114,12 @@ def retime(curve: bpy.types.FCurve, old: FloatArray, new: FloatArray, timing: Ti
     draw_line(curve, frames, values, int(read(curve.keyframe_points, "interpolation", dtype=np.int32)[0]))
 
 
-def all_fcurves() -> Iterator[bpy.types.FCurve]:
-    """Yield the F-curves of all actions in the file."""
-    for action in bpy.data.actions:
-        yield from chain.from_iterable(collections(action))
-
-
-def fcurves_of(block: bpy.types.ID) -> Iterator[bpy.types.FCurve]:
+def fcurves_of(block: bpy.types.ID) -> Any:
     """The F-curves of a datablock that has an action: those of its own slot.
 
     Since 4.4 Blender puts keys of an object into the action of its curve, if that has one, and the other way round.
     """
-    return chain.from_iterable(_own_collections(block))
+    return own_fcurves(block.animation_data)
 
 
 def count_own(block: bpy.types.ID) -> int | None:
@@ -135,32 +127,13 @@ def count_own(block: bpy.types.ID) -> int | None:
     animation = block.animation_data
     if animation is None or animation.action is None or animation.nla_tracks or _MARK not in animation.action:
         return None
-    return sum(len(fcurves) for fcurves in _own_collections(block))
-
-
-def own_action(block: bpy.types.ID) -> None:
-    """Give a datablock that shares its action with others, such as the one it was copied from, an action of its own."""
-    animation = block.animation_data
-    slot = animation.action_slot.identifier if hasattr(animation.action, "slots") else None
-    animation.action = action = animation.action.copy()
-    if slot is not None:
-        for other in [each for each in action.slots if each.identifier != slot]:
-            action.slots.remove(other)
-        animation.action_slot = action.slots[0]
+    return len(own_fcurves(animation))
 
 
 def animated(data: bpy.types.Curve) -> list[bpy.types.ID]:
     """The datablocks that have actions: shape keys first, and the curve itself."""
     owners = [owner for owner in (data.shape_keys, data) if owner is not None]
     return [owner for owner in owners if owner.animation_data is not None and owner.animation_data.action is not None]
-
-
-def _own_collections(block: bpy.types.ID) -> Iterator[Any]:
-    animation = block.animation_data
-    if not hasattr(animation, "action_slot"):  # Blender 4.3 and before
-        yield from collections(animation.action)
-    elif animation.action_slot:
-        yield from collections(animation.action, [animation.action_slot])
 
 
 def add_keys(
@@ -171,12 +144,8 @@ def add_keys(
     What is not there is made: the F-curve, and an action of this name.
     """
     if not (block.animation_data and block.animation_data.action):
-        animation = block.animation_data_create()
-        animation.action = action = new_action(name, block.id_type, block.name)
-        action[_MARK] = True
-        if hasattr(animation, "action_slot"):
-            animation.action_slot = action.slots[0]
-    (fcurves,) = _own_collections(block)
+        new_action(name, block.id_type, block.name, block.animation_data_create())[_MARK] = True
+    fcurves = fcurves_of(block)
     curve = fcurves.find(path, index=axis) or fcurves.new(path, index=axis)
     points, first = curve.keyframe_points, len(curve.keyframe_points)
     if first:

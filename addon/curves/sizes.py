@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 
 from ...core.keys.placement import Placement, Similarity
-from .fcurves import collections, draw_line, new_action
+from .fcurves import draw_line, new_action, own_fcurves
 
 _NAME = "Keep Size"
 _MARK = "mobius_flow_sizes"  # custom property of the actions made here
@@ -21,17 +21,14 @@ def drive(obj: bpy.types.Object, sizes: Sequence[Similarity]) -> None:
     release(obj)
     if all(size.is_identity for size in sizes):
         return
-    action = new_action(_NAME, "OBJECT", _NAME)
-    action[_MARK] = True
-    (fcurves,) = collections(action)
+    keeper = obj.constraints.new("ACTION")
+    keeper.name = _NAME
+    new_action(_NAME, "OBJECT", _NAME, keeper)[_MARK] = True
+    fcurves = own_fcurves(keeper)
     places = np.arange(float(len(sizes)))
     for axis in range(3):
         draw_line(fcurves.new("location", index=axis), places, np.array([size.shift[axis] for size in sizes]))
         draw_line(fcurves.new("scale", index=axis), places, np.array([size.factor for size in sizes]))
-    keeper = obj.constraints.new("ACTION")
-    keeper.name, keeper.action = _NAME, action
-    if hasattr(keeper, "action_slot"):  # not in Blender 4.3 and before
-        keeper.action_slot = action.slots[0]
     keeper.mix_mode, keeper.use_eval_time = "AFTER_FULL", True
     keeper.frame_start, keeper.frame_end = 0, len(sizes) - 1
     curve = keeper.driver_add("eval_time")
@@ -80,7 +77,7 @@ def placement(obj: bpy.types.Object) -> Placement:
     shown = Placement.from_matrix(obj.matrix_world)
     for keeper in filter(is_own, obj.constraints):
         if keeper.influence and not keeper.mute:
-            (fcurves,) = collections(keeper.action)
+            fcurves = own_fcurves(keeper)
             place = keeper.eval_time * keeper.frame_end
             shift = np.array([fcurves.find("location", index=axis).evaluate(place) for axis in range(3)])
             linear = shown.linear / fcurves.find("scale", index=0).evaluate(place)
