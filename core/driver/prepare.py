@@ -240,7 +240,8 @@ def check_foreign(problem: Problem, start: Curve, options: RelaxOptions) -> None
                 change = term.hessian_product(curve, direction)
             except TypeError as error:  # NumPy's, of functions for real numbers alone
                 raise OptionError(f"{name} has no second derivative by complex steps: {error}") from None
-            _check_slope(f"the derivative of {name}", _derivative_of(term), change, curve, direction)
+            derivative_at = lambda at, term=term: term.value_and_derivative(at)[1]  # noqa: E731
+            _check_slope(f"the derivative of {name}", derivative_at, change, curve, direction)
     if isinstance(options.metric, Metric):
         products = random.T @ problem.inner_product(curve).apply(random)
         norms, name = np.diagonal(products), options.metric.name
@@ -249,10 +250,6 @@ def check_foreign(problem: Problem, start: Curve, options: RelaxOptions) -> None
         if not np.abs(products - products.T).max() <= 1e-6 * norms.max():
             told = f"⟨u, v⟩ = {products[0, 1]:.6g} and ⟨v, u⟩ = {products[1, 0]:.6g}"
             raise OptionError(f"metric {name!r} has {told} for some u and v; they must be equal")
-
-
-def _derivative_of(term: Term) -> Callable[[Curve], FloatArray]:
-    return lambda curve: term.value_and_derivative(curve)[1]
 
 
 def _check_slope(

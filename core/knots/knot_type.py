@@ -218,7 +218,9 @@ def type_of_diagram(diagram: Diagram, effort: Effort = DEFAULT_EFFORT) -> KnotTy
     every = [each for piece in pieces for each in piece]
     names: set[str] = set()
     if 0 < prod(len(each.names) for each in every) <= effort.names:
-        sums = [[_sum(chosen) for chosen in product(*(each.names for each in piece))] for piece in pieces]
+        chosen = (product(*(each.names for each in piece)) for piece in pieces)
+        knotted = [[[name for name in each if name != "0_1"] for each in ways] for ways in chosen]
+        sums = [["#".join(sorted(each, key=_order)) or "0_1" for each in ways] for ways in knotted]
         names = {" ⊔ ".join(sorted(parts, key=_order)) for parts in product(*sums)}
     evidence = dict.fromkeys(reason for each in every for reason in each.evidence)
     if len(evidence) > 1:
@@ -236,10 +238,6 @@ def _is_enough(diagram: Diagram) -> bool:
 def _complete(factor: Diagram) -> int:
     """Crossings up to which the table has all types."""
     return KNOTS_TO if len(factor.passes) == 1 else LINKS_TO
-
-
-def _sum(names: tuple[str, ...]) -> str:
-    return "#".join(sorted((name for name in names if name != "0_1"), key=_order)) or "0_1"
 
 
 def _order(name: str) -> tuple[int, str]:
@@ -276,15 +274,10 @@ def _factor_type(factor: Diagram, effort: Effort) -> KnotType:
         if len(names) > 1:
             compare(signature, SIGNATURE)
         if names and factor.crossings <= effort.doubled and (len(names) > 1 or factor.crossings > KNOTS_TO):
-            compare(_doubled, DOUBLED)
+            compare(doubled_bracket, DOUBLED)
         if names and factor.crossings > KNOTS_TO:
             compare(floer, FLOER)
     names = [name for name in names if name in known] if known else names
     if not names and not known and (larger := names_by_census(factor)):
         return KnotType(larger, False, factor, (CENSUS,))
     return KnotType(tuple(names), factor.crossings <= complete or bool(known), factor, tuple(evidence))
-
-
-def _doubled(knot: Diagram) -> Key | None:
-    found = doubled_bracket(knot)
-    return None if found is None else key(found)

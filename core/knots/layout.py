@@ -82,24 +82,18 @@ def relaxed(piece: Diagram) -> tuple[FloatArray, list[IntArray]]:
         if sum(sum(pieces[dart // 2] for dart in face) ** 2 for face in piece.faces) > 4e6:
             break  # pairs of vertices: where faces have hundreds of edges, strands stay on the grid
         moved = at_rest(charged(piece, edges, spans / spans.mean()), x, tolerance)
-        if not _is_drawing(piece, moved, edges):
+        # it is a drawing if edges cross nowhere, and come to crossings in the order of the diagram
+        rest = iter(edges)
+        curve = Curve.from_components([moved[np.concatenate([next(rest)[:-1] for _ in p])] for p in piece.passes])
+        around = np.array([[edges[dart // 2][-2 if dart % 2 else 1] for dart in darts] for darts in piece.darts])
+        leave = moved[around] - moved[: len(around), None]
+        angles = np.arctan2(leave[..., 1], leave[..., 0])
+        turns = (np.roll(angles, -1, axis=1) - angles) % (2.0 * np.pi)
+        crossed = plane_crossings(curve.mesh, curve.vertices, -1e-6).turn  # but for ends, which meet at crossings
+        if len(crossed) or turns.sum(axis=1).max() >= 6.5 or turns.min() <= 0.1:
             break
         x, paths = moved, [moved[edge] for edge in edges]
     return x, edges
-
-
-def _is_drawing(piece: Diagram, x: FloatArray, edges: list[IntArray]) -> bool:
-    """Whether edges cross nowhere, and come to crossings in the order of the diagram."""
-    rest = iter(edges)
-    parts = [x[np.concatenate([next(rest)[:-1] for _ in part])] for part in piece.passes]
-    curve = Curve.from_components(parts)
-    around = np.array([[edges[dart // 2][-2 if dart % 2 else 1] for dart in darts] for darts in piece.darts])
-    leave = x[around] - x[: len(around), None]
-    angles = np.arctan2(leave[..., 1], leave[..., 0])
-    turns = (np.roll(angles, -1, axis=1) - angles) % (2.0 * np.pi)
-    ends = 1e-6  # of segments: they meet at crossings
-    crossing = plane_crossings(curve.mesh, curve.vertices, -ends).turn
-    return bool(not len(crossing) and (turns.sum(axis=1) < 6.5).all() and turns.min() > 0.1)
 
 
 class ChargedStrands(NamedTuple):

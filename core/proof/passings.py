@@ -91,7 +91,13 @@ def passings(before: Placed, after: Placed, beads: IntArray, tails: IntArray, fr
             boxes = boxes - boxes[0, 0, 0]  # the first end is where it was recorded
             seen = places + np.einsum("tkca,tam->tkcm", boxes, cells)
             for time, sign in _contacts(places, boxes, cells, four, from_start):
-                where = _where(*((1.0 - time) * seen[0] + time * seen[1]))
+                # a point of one edge that the other has too, or the middle of what they share if they are parallel
+                x, y = (1.0 - time) * seen[0] + time * seen[1]
+                e, f, d = x[1] - x[0], y[1] - y[0], x[0] - y[0]
+                normal, part = np.cross(e, f), np.clip((y - x[0]) @ e / max(float(e @ e), 1e-300), 0.0, 1.0).mean()
+                if normal @ normal > 1e-20 * (e @ e) * (f @ f):
+                    part = np.cross(f, d) @ normal / (normal @ normal)
+                where = x[0] + min(max(float(part), 0.0), 1.0) * e
                 found.append((0, (a, b), tuple(moved), time, sign, tuple(where)))
     result = np.array(found, dtype=PASSING)
     return result[np.argsort(result["time"], kind="stable")]
@@ -202,14 +208,3 @@ def _moment(time: Time) -> float:
         value = sum(c * (1.0 - middle) ** (len(q) - 1 - k) * middle**k for k, c in enumerate(q))
         low, high = (low, middle) if (value > 0) == rising else (middle, high)
     return (i + 0.5 * (low + high) * (j - i)) / m
-
-
-def _where(x: FloatArray, y: FloatArray) -> FloatArray:
-    """A point of an edge that the other, which meets it, has too; edges are their ends, shape (2, m)."""
-    e, f, d = x[1] - x[0], y[1] - y[0], x[0] - y[0]
-    normal = np.cross(e, f)
-    if normal @ normal > 1e-20 * (e @ e) * (f @ f):
-        part = np.cross(f, d) @ normal / (normal @ normal)
-    else:  # the middle of what they share, if they are parallel
-        part = np.clip((y - x[0]) @ e / max(float(e @ e), 1e-300), 0.0, 1.0).mean()
-    return np.asarray(x[0] + min(max(float(part), 0.0), 1.0) * e)

@@ -88,12 +88,26 @@ def doubtful(
         if halvings:
             middle = 0.5 * (a + b)
             left, a, b = np.tile(left, 2), np.concatenate([a, middle]), np.concatenate([middle, b])
-        for plane in SEGMENT_PLANES if len(vertices) == 4 else TRIANGLE_PLANES:
+        for kind, k, other in SEGMENT_PLANES if len(vertices) == 4 else TRIANGLE_PLANES:
             if not left.size:
                 return vertices[:, left]
             here, along = differences[:, :, left], edges[:, :, left]
             t = 0.5 * (a + b)[:, None]
-            normal = _normal(*plane, *((1 - t) * p[0] + t * p[1] for p in (here, along)))
+            # the direction of the plane halfway, pointing from y to x
+            chords, spans = ((1 - t) * p[0] + t * p[1] for p in (here, along))
+            if kind == "chord":
+                normal = chords.sum(axis=0)
+            elif kind == "ends":
+                normal = chords[k]
+            elif kind == "line":
+                c, e = chords[k], spans[other]
+                part = np.einsum("pm,pm->p", c, e) / np.maximum(np.einsum("pm,pm->p", e, e), np.finfo(np.float64).tiny)
+                normal = c - part[:, None] * e
+            elif chords.shape[-1] == 2:  # no vector product
+                normal = np.zeros_like(chords[0])
+            else:
+                normal = np.cross(spans[k], spans[other])
+                normal *= np.sign(np.einsum("pm,pm->p", normal, chords.sum(axis=0)))[:, None]
             # whether ⟨n, x_i − y_j⟩, linear in time, is certainly positive at times a and b for all corners
             value = np.einsum("tcpm,pm->tcp", here, normal)
             error = SIEVE_ROUNDING * np.einsum("tcpm,pm->tcp", np.abs(here), np.abs(normal))
@@ -114,19 +128,3 @@ def doubtful(
             errors[p + q + r] += SIEVE_ROUNDING * np.einsum("pm,pm->p", u, permanent)
         left = left[~((sums > errors).all(axis=0) | (sums < -errors).all(axis=0))]
     return vertices[:, left]
-
-
-def _normal(kind: str, k: int, other: int, differences: FloatArray, edges: FloatArray) -> FloatArray:
-    """The direction of a plane, see `SEGMENT_PLANES`, pointing from y to x; shape (pairs, m)."""
-    if kind == "chord":
-        return np.asarray(differences.sum(axis=0))
-    if kind == "ends":
-        return np.asarray(differences[k])
-    if kind == "line":
-        c, e = differences[k], edges[other]
-        along = np.einsum("pm,pm->p", c, e) / np.maximum(np.einsum("pm,pm->p", e, e), np.finfo(np.float64).tiny)
-        return np.asarray(c - along[:, None] * e)
-    if differences.shape[-1] == 2:  # no vector product
-        return np.zeros_like(differences[0])
-    normal = np.cross(edges[k], edges[other])
-    return np.asarray(normal * np.sign(np.einsum("pm,pm->p", normal, differences.sum(axis=0)))[:, None])

@@ -64,14 +64,22 @@ class Simplices:
         """Areas or lengths; shape (f,)."""
         return frozen(0.5 * norm(self.normals) if self.are_triangles else norm(self.sides[0]))
 
-    def potential(self, index: IntArray, x: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Φ and ∇Φ of the simplices ``index``, shape (k,), each at its own points x, shape (3, k, points)."""
-        seen = self.corners[:, :, index, None] - x
+    def potential(self, index: IntArray, at: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Φ and ∇Φ of the simplices ``index``, shape (k,), each at its own points, shape (3, k, points)."""
+        seen = self.corners[:, :, index, None] - at
         form = _triangle_form(seen, self.normals[:, index, None]) if self.are_triangles else _segment_form(*seen)
         square, d, slope_of_square, slope_of_d = form
-        value, by_square, by_d = _arctangent_quotient(square, d)
+        # g = atan2(N, D)/N, ∂g/∂N² = (D/(N² + D²) − g)/(2N²) and ∂g/∂D = −1/(N² + D²), from N² > 0 and D
+        n, inverse = np.sqrt(square), 1.0 / (square + d * d)
+        value = arctan2(n, d) / n
+        by_square = (d * inverse - value) / (2.0 * square)
+        # there series replace quotients by N², of which second derivatives lose six digits
+        flat = (d.real > 0.0) & (square.real < 1e-3 * d.real**2)
+        x, y = d[flat], square[flat] / d[flat] ** 2
+        value[flat] = polyval(y, _VALUE) / x
+        by_square[flat] = polyval(y, _SLOPE) / x**3
         factor = ((4.0 if self.are_triangles else 2.0) * self.sizes)[index, None]
-        return factor * value, factor * (by_square * slope_of_square + by_d * slope_of_d)
+        return factor * value, factor * (by_square * slope_of_square - inverse * slope_of_d)
 
     def reach(self, index: IntArray, x: FloatArray, tau: FloatArray) -> FloatArray:
         """Radii of discs |z| < reach in which z ↦ Φ(x + z τ) is analytic; x and unit vectors τ of shape (3, k).
@@ -117,19 +125,6 @@ def _triangle_form(corners: FloatArray, normal: FloatArray) -> Form:
     slope += c * ((ra * rb + ab) / rc + ra + rb)
     square = np.maximum(n * n, (CONTACT * width**3) ** 2)
     return square, ra * rb * rc + ab * rc + bc * ra + ca * rb, -2.0 * n * normal, -slope
-
-
-def _arctangent_quotient(square: FloatArray, d: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """g = atan2(N, D)/N, ∂g/∂N² = (D/(N² + D²) − g)/(2N²) and ∂g/∂D = −1/(N² + D²), from N² > 0 and D."""
-    n, inverse = np.sqrt(square), 1.0 / (square + d * d)
-    value = arctan2(n, d) / n
-    by_square = (d * inverse - value) / (2.0 * square)
-    # there series replace quotients by N², of which second derivatives lose six digits
-    flat = (d.real > 0.0) & (square.real < 1e-3 * d.real**2)
-    x, y = d[flat], square[flat] / d[flat] ** 2
-    value[flat] = polyval(y, _VALUE) / x
-    by_square[flat] = polyval(y, _SLOPE) / x**3
-    return value, by_square, -inverse
 
 
 def _quotient(numerator: FloatArray, denominator: FloatArray) -> FloatArray:

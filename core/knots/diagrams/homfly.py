@@ -10,7 +10,7 @@ of circles that come apart.  Whatever makes a diagram smaller is done before.
 from collections.abc import Mapping
 from functools import lru_cache
 
-from .diagram import Diagram, Pass
+from .diagram import Diagram
 from .rerouting import simplified
 
 Polynomial = Mapping[tuple[int, int], int]  # powers of v and z to coefficients, which are not 0
@@ -65,25 +65,22 @@ def _homfly(diagram: Diagram) -> Polynomial:
     sign = diagram.signs[crossing]
     flipped = tuple(tuple((c, over != (c == crossing)) for c, over in part) for part in diagram.passes)
     changed = Diagram(flipped, tuple(-s if c == crossing else s for c, s in enumerate(diagram.signs)))
-    one, other = _homfly(simplified(changed)), _homfly(simplified(_smoothed(diagram, crossing)))
+    # its strands turned into each other as their orientations let them
+    (k, i), (m, j) = (
+        (k, i) for k, part in enumerate(diagram.passes) for i, each in enumerate(part) if each[0] == crossing
+    )
+    here, there = diagram.passes[k], diagram.passes[m]
+    parts = [part for n, part in enumerate(diagram.passes) if n not in (k, m)]
+    if k == m:
+        parts += [here[:i] + here[j + 1 :], here[i + 1 : j]]
+    else:
+        parts.append(here[:i] + there[j + 1 :] + there[:j] + here[i + 1 :])
+    smoothed = Diagram(tuple(parts), diagram.signs).without({crossing})
+    one, other = _homfly(simplified(changed)), _homfly(simplified(smoothed))
     both = {(v + 2 * sign, z): value for (v, z), value in one.items()}
     for (v, z), value in other.items():
         both[v + sign, z + 1] = both.get((v + sign, z + 1), 0) + sign * value
     return {powers: value for powers, value in both.items() if value}
-
-
-def _smoothed(diagram: Diagram, crossing: int) -> Diagram:
-    """The diagram whose strands, at a crossing, turn into each other as their orientations let them."""
-    (k, i), (m, j) = (
-        (k, i) for k, part in enumerate(diagram.passes) for i, each in enumerate(part) if each[0] == crossing
-    )
-    one, other = diagram.passes[k], diagram.passes[m]
-    parts: list[tuple[Pass, ...]] = [part for n, part in enumerate(diagram.passes) if n not in (k, m)]
-    if k == m:
-        parts += [one[:i] + one[j + 1 :], one[i + 1 : j]]
-    else:
-        parts.append(one[:i] + other[j + 1 :] + other[:j] + one[i + 1 :])
-    return Diagram(tuple(parts), diagram.signs).without({crossing})
 
 
 def _times(a: Polynomial, b: Polynomial) -> Polynomial:
