@@ -10,7 +10,7 @@ from ..base.errors import OptionError
 from ..base.plugins import Table
 from .barrier import Barrier
 from .density import Density
-from .energy import Assembled, Energy, Stiff, Term, TwiceDifferentiable, is_moebius_invariant
+from .energy import Energy, Stiff, Term, TwiceDifferentiable, is_moebius_invariant
 from .kpoint import EDGE_ENERGY, TANGENT_POINT_ENERGY, VERTEX_ENERGY, KPointEnergy, moebius_kpoint
 from .moebius import MoebiusEnergy
 from .objective import Objective, Weighted

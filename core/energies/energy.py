@@ -6,7 +6,6 @@ import scipy.sparse as sp
 
 from ..base.types import FloatArray
 from ..curve import Curve
-from .edge_pairs import EdgePairIndices
 from .quadrature import Rule
 
 
@@ -31,13 +30,6 @@ class TwiceDifferentiable(Term, Protocol):
 
     def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
         """D²E v for a vector ``v`` of shape (n, m), without forming the matrix; shape (n, m)."""
-
-
-class Assembled(TwiceDifferentiable, Protocol):
-    """One whose second derivative is as cheap as a few products, so that it is factorised."""
-
-    def hessian(self, curve: Curve) -> FloatArray:
-        """D²E, symmetric, shape (n·m, n·m); rows and columns in the order of ``vertices.ravel()``."""
 
 
 @runtime_checkable
@@ -94,13 +86,6 @@ class Energy(Term, Protocol):
     @property
     def contains_midpoint_pairs(self) -> bool:
         """Whether it contains the midpoint energies that the barrier replaces; then it has `leaving_out`."""
-
-
-class WithMidpointPairs(Energy, Protocol):
-    """An energy that the barrier replaces in part."""
-
-    def leaving_out(self, pairs: EdgePairIndices) -> Energy:
-        """The same without some pairs of edges."""
 
 
 @runtime_checkable

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple, cast
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 import scipy.sparse as sp
@@ -10,7 +10,7 @@ import scipy.sparse as sp
 from ..base import FloatArray, OptionError, checked_fields
 from ..curve import Curve, Obstacle
 from .barrier import Barrier, replaced_pairs
-from .energy import Approximate, Assembled, Confining, Energy, LocalTerm, Stiff, Term, WithMidpointPairs, scale_exponent
+from .energy import Approximate, Confining, Energy, LocalTerm, Stiff, Term, scale_exponent
 from .moebius import MoebiusEnergy
 from .pull import Pull
 from .repulsion import Repulsion
@@ -110,7 +110,7 @@ class Objective:
         """Second derivative of an assembled one, symmetric, (n·m, n·m), in the order of ``vertices.ravel()``."""
         self._check_hessian()
         energy, *local = self._summands(curve)
-        matrix = cast(Assembled, energy.term).hessian(curve)
+        matrix: FloatArray = cast(Any, energy.term).hessian(curve)
         for term, weight in local:
             part = cast(LocalTerm, term).sparse_hessian(curve).tocoo()
             matrix[part.coords] += weight * part.data
@@ -137,7 +137,7 @@ class Objective:
         """The terms, energy first; energy that the barrier takes away is never added: rounding would grow like 1/g²."""
         energy, barrier = self.energy, self.barrier
         if barrier is not None and barrier.replaces_midpoint:
-            energy = cast(WithMidpointPairs, energy).leaving_out(replaced_pairs(curve))
+            energy = cast(Any, energy).leaving_out(replaced_pairs(curve))
             barrier = replace(barrier, left_out=True)
         return (Weighted(energy), *(() if barrier is None else [Weighted(barrier)]), *self.further)
 

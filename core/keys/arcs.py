@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from ..base import CurveError, FloatArray
 from ..collision import check_embedded
 from ..curve import Curve, arc_lengths
-from ..knots.diagrams.projection import plane_crossings, project, rotation
+from ..knots.diagrams.projection import frames, plane_crossings, project
 from ..knots.drawings import Drawing
 from ..knots.inscribed import rounded
 from ..knots.layout import upright
@@ -44,15 +44,12 @@ def seen(curves: Sequence[Curve], trials: int = 200, seed: int = 20231) -> list[
         points = np.ldexp(curve.vertices, -power)  # where products of coordinates neither overflow nor vanish
         smooth.append(rounded(Curve(np.pad(points, ((0, 0), (0, 3 - curve.dimension))), curve.mesh)))
     middles = [each.vertices - each.vertices.mean(axis=0) for each in smooth]
-    rng = np.random.default_rng(seed)
-    # turned by about 0.02 radians, so that nothing special is seen
-    flattest = np.linalg.svd(np.concatenate(middles), full_matrices=False)[2] + 0.02 * rng.normal(size=(3, 3))
     fewer = max(5, min(trials, 100_000 // sum(map(len, smooth))))
     found: list[tuple[FloatArray, list[Drawing | None]]] = []
-    for frame in (flattest, *rng.normal(size=(fewer, 3, 3))):
-        found.append((rotation(frame)[:, :2], []))
+    for axes in frames(np.concatenate(middles), fewer + 1, np.random.default_rng(seed)):
+        found.append((axes[:, :2], []))
         for curve, middle in zip(smooth, middles, strict=True):
-            points, mesh = middle @ rotation(frame), curve.mesh
+            points, mesh = middle @ axes, curve.mesh
             view = project(mesh, points, plane_crossings(mesh, points, 1e-9), mesh.ends.ravel(), 1e-9)
             if view is None:
                 found[-1][1].append(None)

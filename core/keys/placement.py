@@ -42,13 +42,8 @@ class Measure(Enum):
             return curve.length
         if self is Measure.BOX:
             return float(np.ptp(curve.vertices, axis=0).max())
-        away = np.square(curve.midpoints - barycenter(curve)).sum(axis=1) + curve.edge_lengths**2 / 12
+        away = np.square(curve.midpoints - curve.barycenter).sum(axis=1) + curve.edge_lengths**2 / 12
         return float(np.sqrt(curve.edge_lengths @ away / curve.length))
-
-
-def barycenter(curve: Curve) -> FloatArray:
-    """The centre of gravity of a curve's edges; shape (m,)."""
-    return np.asarray(curve.edge_lengths @ curve.midpoints / curve.length)
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +60,7 @@ class Similarity:
     @classmethod
     def giving(cls, measure: Measure, size: float, curve: Curve) -> "Similarity":
         """The one about its barycenter that gives a curve a size."""
-        center = barycenter(curve)
+        center = curve.barycenter
         return cls.about(np.pad(center, (0, 3 - len(center))), size / measure.of(curve))
 
     def after(self, other: "Similarity") -> "Similarity":

@@ -9,7 +9,6 @@ from ..base.errors import CurveError
 from ..base.messages import Message
 from ..base.types import FloatArray
 from ..curve import Curve
-from .placement import barycenter
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,12 +26,12 @@ class Turn:
         """
         if not curve.length:
             raise CurveError("All points of the curves are the same; move them apart")
-        away = curve.midpoints - barycenter(curve)
+        away = curve.midpoints - curve.barycenter
         # those of the curve's inertia
         axes = np.linalg.eigh((curve.edge_lengths[:, None] * away).T @ away)[1][:, ::-1].T
         signs = (np.array(each)[:, None] for each in product((1.0, -1.0), repeat=3))
         turned = [(sign * wanted).T @ axes for sign in signs]
-        return cls(max([each for each in turned if np.linalg.det(each) > 0.0], key=np.trace), barycenter(curve))
+        return cls(max([each for each in turned if np.linalg.det(each) > 0.0], key=np.trace), curve.barycenter)
 
     def of(self, points: FloatArray) -> FloatArray:
         return np.asarray(self.center + (points - self.center) @ self.rotation.T)

@@ -19,7 +19,7 @@ from ..curve import Curve, Mesh, refine
 from ..curve.obstacle import Obstacle
 from ..curve.pins import NOWHERE, Pins, holds
 from ..knots.diagrams.diagram import Diagram
-from ..knots.diagrams.projection import rotation
+from ..knots.diagrams.projection import frames, rotation
 from ..knots.diagrams.rerouting import (
     Strand,
     StrandMove,
@@ -233,9 +233,9 @@ def worth(curve: Curve, least: int = 0, seed: int = 20231, count: int = 4) -> tu
     if curve.dimension != 3 or len(curve) > MOST_VERTICES:
         return 0, 0
     held = holds(curve.mesh, curve.mesh.ends.ravel())
-    frames = _frames(curve, np.random.default_rng(seed), count)
+    axes = frames(curve.vertices - curve.vertices.mean(axis=0), count, np.random.default_rng(seed))
     try:
-        seen = [drawing.diagram for _, drawing in _draw_clear(curve.mesh, curve.vertices, frames, held)]
+        seen = [drawing.diagram for _, drawing in _draw_clear(curve.mesh, curve.vertices, axes, held)]
     except UnclearError:
         return 0, 0
     crossings = left = min(diagram.crossings for diagram in seen)
@@ -254,10 +254,9 @@ def _best_view(
     curve: Curve, held: BoolArray, rng: np.random.Generator, reached: int | None, count: int = 24
 ) -> tuple[FloatArray, PlaneDrawing] | None:
     """The frame from which moves lead to the fewest crossings, and what is seen; None if not to fewer than now."""
-    frames = (
-        _frames(curve, rng, count) if reached is None else [rotation(each) for each in rng.normal(size=(count, 3, 3))]
-    )
-    views = _draw_clear(curve.mesh, curve.vertices, frames, held)
+    middle = curve.vertices - curve.vertices.mean(axis=0)
+    axes = frames(middle, count, rng) if reached is None else map(rotation, rng.normal(size=(count, 3, 3)))
+    views = _draw_clear(curve.mesh, curve.vertices, axes, held)
     best, least = None, math.inf if reached is None else reached
     for frame, drawing in sorted(views, key=lambda each: each[1].diagram.crossings):
         left = simplified(drawing.diagram, WORK)
@@ -266,13 +265,6 @@ def _best_view(
         if shows_least(left):
             break
     return best
-
-
-def _frames(curve: Curve, rng: np.random.Generator, count: int) -> list[FloatArray]:
-    """Frames of views: from where the curve is flattest, turned by a little, and at random."""
-    middle = curve.vertices - curve.vertices.mean(axis=0)
-    flattest = np.linalg.svd(middle / np.abs(middle).max(), full_matrices=False)[2] + 0.02 * rng.normal(size=(3, 3))
-    return [rotation(each) for each in (flattest, *rng.normal(size=(count - 1, 3, 3)))]
 
 
 def _draw_clear(

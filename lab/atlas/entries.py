@@ -13,15 +13,18 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from ... import __version__
 from ...cli.options import flags
 from ...cli.terminal import one_line
 from ...core import CurveError, MobiusFlowError, read_curve
 from ...core.base.errors import counted
+from ...core.base.types import FloatArray
 from ...core.collision.gap import thickness
-from ...core.curve import writhe_and_crossings
-from ...core.curve.symmetry import standing, symmetries
+from ...core.curve import Curve, writhe_and_crossings
+from ...core.curve.symmetry import SymmetryGroup, symmetries
+from ...core.curve.symmetry.group import multiplication, order_of
 from ...core.knots import KNOTS, knot_type
 from ...core.knots.names import table_name
 from ...core.proof import stages, verify
@@ -238,3 +241,27 @@ def _command(row: Row) -> str:
         name, file = "FILE", f"  # SHA-256 of FILE: {one_line(row.input_sha256)}"
     words = [name, "--starts", str(row.start), *seed, *flags(json.loads(row.options)), "--extrapolate"]
     return shlex.join(["mobius-flow", "batch", *words, "-o", "results"]) + file
+
+
+def standing(curve: Curve, group: SymmetryGroup) -> FloatArray:
+    """The rotation, shape (3, 3), that turns a curve's axis of highest order into the third axis.
+
+    Without one of order three or more it is the direction in which the curve extends least. The second axis is one of
+    order two if there is one across, and otherwise points to where the curve is farthest away.
+    """
+    points, axes = curve.vertices - group.centre, []
+    table = multiplication(group.matrices)
+    for number, matrix in enumerate(group.matrices):
+        order, sign = order_of(table, number), np.linalg.det(matrix)
+        turn = Rotation.from_matrix(sign * matrix).as_rotvec()
+        if order > 2 or (order == 2 and sign > 0.0):  # no reflection in a plane or a point
+            axes.append((order, turn / np.linalg.norm(turn)))
+    order, up = max(axes, key=lambda each: each[0], default=(1, points[0]))
+    if order < 3:
+        up = np.linalg.svd(points, full_matrices=False)[2][2]
+    flat = points - np.outer(points @ up, up)
+    twofold = [axis for order, axis in axes if order == 2 and abs(axis @ up) < 0.1]  # a right angle
+    far = max([*twofold, *(-axis for axis in twofold)], key=lambda axis: float((flat @ axis).max()), default=None)
+    second = flat[np.linalg.norm(flat, axis=1).argmax()] if far is None else far - (far @ up) * up
+    second = second / np.linalg.norm(second)
+    return np.array([np.cross(second, up), second, up])

@@ -8,7 +8,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from ...base import CurveError, FloatArray, IntArray, check_number, checked
 from .. import Curve, Mesh, check_closed
@@ -207,27 +206,3 @@ def _closed(
 
 def _has(elements: Sequence[Isometry], one: Isometry) -> bool:
     return any(np.linalg.norm(each.matrix - one.matrix) < DISTINCT for each in elements)
-
-
-def standing(curve: Curve, group: SymmetryGroup) -> FloatArray:
-    """The rotation, shape (3, 3), that turns a curve's axis of highest order into the third axis.
-
-    Without one of order three or more it is the direction in which the curve extends least. The second axis is one of
-    order two if there is one across, and otherwise points to where the curve is farthest away.
-    """
-    points, axes = curve.vertices - group.centre, []
-    table = multiplication(group.matrices)
-    for number, matrix in enumerate(group.matrices):
-        order, sign = order_of(table, number), np.linalg.det(matrix)
-        turn = Rotation.from_matrix(sign * matrix).as_rotvec()
-        if order > 2 or (order == 2 and sign > 0.0):  # no reflection in a plane or a point
-            axes.append((order, turn / np.linalg.norm(turn)))
-    order, up = max(axes, key=lambda each: each[0], default=(1, points[0]))
-    if order < 3:
-        up = np.linalg.svd(points, full_matrices=False)[2][2]
-    flat = points - np.outer(points @ up, up)
-    twofold = [axis for order, axis in axes if order == 2 and abs(axis @ up) < 0.1]  # a right angle
-    far = max([*twofold, *(-axis for axis in twofold)], key=lambda axis: float((flat @ axis).max()), default=None)
-    second = flat[np.linalg.norm(flat, axis=1).argmax()] if far is None else far - (far @ up) * up
-    second = second / np.linalg.norm(second)
-    return np.array([np.cross(second, up), second, up])

@@ -22,17 +22,24 @@ def views(curve: Curve, count: int, seed: int = 20217, clear: float = 1e-9) -> I
     _, power = np.frexp(np.abs(curve.vertices).max())
     points = np.ldexp(curve.vertices, -power)  # where products of coordinates neither overflow nor vanish
     middle = points - points.mean(axis=0)
-    # turned by about 0.02 radians, so that nothing special is seen
-    flattest = np.linalg.svd(middle, full_matrices=False)[2] + 0.02 * rng.normal(size=(3, 3))
     none, mesh = True, curve.mesh
-    for each in (flattest, *rng.normal(size=(count - 1, 3, 3))):
-        turned = middle @ rotation(each)
+    for axes in frames(middle, count, rng):
+        turned = middle @ axes
         found = project(mesh, turned, plane_crossings(mesh, turned, clear), np.empty(0, dtype=np.intp), clear)
         if found is not None:
             none = False
             yield found.diagram
     if none:
         raise CurveError("strands touch, or nearly do: no view of the curve shows which one is in front")
+
+
+def frames(middle: FloatArray, count: int, rng: np.random.Generator) -> list[FloatArray]:
+    """Rotations to the axes of views: from where points, (n, 3) around 0, are flattest, turned a little; then random.
+
+    It is turned by about 0.02 radians, so that nothing special is seen.
+    """
+    flattest = np.linalg.svd(middle, full_matrices=False)[2] + 0.02 * rng.normal(size=(3, 3))
+    return [rotation(each) for each in (flattest, *rng.normal(size=(count - 1, 3, 3)))]
 
 
 def rotation(frame: FloatArray) -> FloatArray:

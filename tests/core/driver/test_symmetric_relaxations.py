@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError, Iterate, OptionError, RelaxOptions, Task, minimize
 from mobius_flow.core.curve.measures import bending
-from mobius_flow.core.curve.symmetry import Symmetry, standing, symmetries
+from mobius_flow.core.curve.symmetry import Symmetry, symmetries
 from mobius_flow.core.driver.moves.balance import moebius_image
 from mobius_flow.core.knots import knot, smooth_knot, torus_knot
+from mobius_flow.lab.atlas.entries import standing
 from mobius_flow.lab.extrapolation import extrapolated
 from shapes import half_circle, regular_polygon
 from tasks import proved

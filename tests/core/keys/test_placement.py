@@ -14,7 +14,6 @@ from mobius_flow.core.keys.placement import (
     Placement,
     Similarity,
     at,
-    barycenter,
     spots,
 )
 from mobius_flow.core.keys.planes import DrawingPlane, Turn
@@ -81,10 +80,10 @@ def test_a_turned_curve_has_the_wanted_axes(seed):
     turn = Turn.onto(curve, wanted)
     turned = Curve(turn.of(curve.vertices))
     assert np.linalg.det(turn.rotation) == pytest.approx(1.0)
-    along = (turned.midpoints - barycenter(turned)) @ wanted.T  # without products of inertia, the longest axis first
+    along = (turned.midpoints - turned.barycenter) @ wanted.T  # without products of inertia, the longest axis first
     inertia = (turned.edge_lengths[:, None] * along).T @ along
     np.testing.assert_allclose(inertia, np.diag(np.sort(np.diag(inertia))[::-1]), atol=1e-9)
-    np.testing.assert_allclose(barycenter(turned), barycenter(curve), atol=1e-12)
+    np.testing.assert_allclose(turned.barycenter, curve.barycenter, atol=1e-12)
     homogeneous = np.pad(curve.vertices, ((0, 0), (0, 1)), constant_values=1.0)
     np.testing.assert_allclose((homogeneous @ turn.matrix.T)[:, :3], turned.vertices, atol=1e-12)
     # a half turn about an axis leads to the same axes: none of them is nearer
@@ -137,7 +136,7 @@ def test_sizes_scale_see_neither_places_nor_vertices_on_edges_and_can_be_given(m
     assert measure.of(refine(big, 70)) == pytest.approx(measure.of(big))
     same = given(measure.of(big), small, measure)
     assert measure.of(same) == pytest.approx(measure.of(big))
-    np.testing.assert_allclose(barycenter(same), barycenter(small), atol=1e-12)
+    np.testing.assert_allclose(same.barycenter, small.barycenter, atol=1e-12)
     own = Similarity.giving(measure, measure.of(big), big)
     assert own.of(big.vertices) is big.vertices  # bit for bit
 
@@ -178,7 +177,7 @@ def test_a_motion_is_shown_in_one_size_and_its_keys_are_the_iterates(measure, in
         if key.kind is Kind.STEP:
             each = iterates[int(key.time)].curve
             assert measure.of(curve) == pytest.approx(size, rel=1e-6)
-            np.testing.assert_allclose(barycenter(curve), barycenter(each), atol=1e-5)
+            np.testing.assert_allclose(curve.barycenter, each.barycenter, atol=1e-5)
             assert in_points or np.array_equal(key.points, each.vertices.astype(np.float32))
     assert in_points == all(key.size.is_identity for key in keys.keys)
     np.testing.assert_allclose(motion.shown.points, shown[-1].vertices, atol=1e-6)

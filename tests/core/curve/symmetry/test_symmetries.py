@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError, OptionError
-from mobius_flow.core.curve.symmetry import SymmetryGroup, standing, symmetries
+from mobius_flow.core.curve.symmetry import SymmetryGroup, symmetries
 from mobius_flow.core.curve.symmetry.group import schoenflies
 from mobius_flow.core.knots import smooth_knot, torus_knot
+from mobius_flow.lab.atlas.entries import standing
 from scipy.spatial.transform import Rotation
 from shapes import chain_of_rings, half_circle, regular_polygon
 
