@@ -26,14 +26,6 @@ def torus_knot(n: int, p: int = 2, q: int = 3) -> FloatArray:
     return np.stack([radius * np.cos(p * t), radius * np.sin(p * t), np.sin(q * t)], axis=1)
 
 
-def tangle(n: int) -> FloatArray:
-    """A smooth closed curve that winds everywhere."""
-    rng, k = np.random.default_rng(3), np.arange(1, 25)
-    t = 2 * np.pi * np.outer(np.arange(n), k) / n
-    a, b = rng.normal(size=(2, len(k), 3))
-    return np.cos(t) @ a + np.sin(t) @ b
-
-
 def ribbon(n: int) -> list[FloatArray]:
     """Two strands a third of an edge apart, twisted around each other."""
     middle = torus_knot(n // 2)
@@ -84,7 +76,7 @@ def curves(sizes: Sequence[int]) -> None:
     for n in sizes:
         repetitions = 5 if n < 5000 else 1
         knots = {"torus knot (2,3)": [torus_knot(n)], "torus knot (7,9)": [torus_knot(n, 7, 9)]}
-        for name, components in {**knots, "tangle": [tangle(n)], "ribbon": ribbon(n)}.items():
+        for name, components in {**knots, "ribbon": ribbon(n)}.items():
             curve = Curve.from_components(components)
             mesh, start, step = curve.mesh, curve.vertices, field(curve.vertices, 6)
             contact = free_motion(mesh, start, start + step).time

@@ -3,10 +3,8 @@
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 from processes import finished
-from soak import flow
 
 BENCHMARKS = Path(__file__).resolve().parents[1] / "benchmarks"
 ARGUMENTS = {
@@ -18,7 +16,6 @@ ARGUMENTS = {
     "resolution": ["3_1"],
     "rope": ["4_1", "--vertices", "80", "--iterations", "20"],
     "seeded_runs": ["different", "--save", "runs.json"],
-    "soak": ["--count", "2"],
     "untangling": ["culprit"],
     "speed": ["--sizes", "60,80", "--solver", "hierarchical"],
 }
@@ -39,7 +36,7 @@ def test_it_runs(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     done = run(name, *ARGUMENTS[name])
     assert done.returncode == 0, done.stdout + done.stderr
-    few = {"seeded_runs": 0, "soak": 1, "untangling": 2, "resolution": 3, "hops": 3, "rope": 3, "knots": 6}
+    few = {"seeded_runs": 0, "untangling": 2, "resolution": 3, "hops": 3, "rope": 3, "knots": 6}
     least = few.get(name, 5)  # a title, and a line for each of four curves
     assert len(done.stdout.splitlines()) >= least
 
@@ -49,9 +46,3 @@ def test_collisions_with_an_obstacle_are_measured():
     done = run("collision", "obstacle", "60")
     assert done.returncode == 0, done.stderr
     assert len(done.stdout.splitlines()) > 3
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(30))
-def test_random_flows_among_obstacles(seed):
-    assert flow(np.random.default_rng([2, seed]), "world") in ("ok", "refused")
