@@ -79,3 +79,13 @@ def test_on_a_common_mesh_both_are_ropes_as_their_own_corners_allow(count):
     radius = np.array([0.9 * min(bending_radii(each).min() for each in (x, y))])
     for curve in refined_alike(x, y, (0.37,)):
         assert is_rope(curve.mesh, curve.vertices, curve.vertices, radius)
+
+
+def test_about_an_axis_ends_stay():
+    arc = Curve(np.random.default_rng(3).normal(size=(9, 3)), Mesh((9,), (False,)))
+    start, end = arc.vertices[[0, -1]]
+    axis = (end - start) / np.linalg.norm(end - start)
+    turned = arc.with_vertices(start + Rotation.from_rotvec(1.3 * axis).apply(arc.vertices - start))
+    best = alignments(arc, turned, Freedom(axis=axis, fixed=start))[0]
+    assert best.distance < 1e-6
+    assert np.allclose(best.moved(arc.vertices, 1.0), turned.vertices)

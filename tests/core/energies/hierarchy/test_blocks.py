@@ -81,3 +81,11 @@ def test_clusters_halve_their_parents_and_are_parts_of_a_component_or_whole_ones
     leaves = tree.leaves()
     assert np.all((tree.stop - tree.start)[leaves] <= 4)
     np.testing.assert_array_equal(np.append(tree.start[leaves], curve.mesh.edges), np.append(0, tree.stop[leaves]))
+
+
+def test_size_of_the_list_is_linear() -> None:
+    one, twice = (BlockList.of(torus_trefoil(n), 0.25, 4) for n in (5_000, 10_000))
+    assert len(twice.first) < 2.3 * len(one.first)
+    assert len(twice.near[0]) < 2.3 * len(one.near[0])
+    many, single = (BlockList.of(c, 0.5, 4) for c in (scattered_rings(2_000, 5, spread=60.0), torus_trefoil(10_000)))
+    assert len(many.first) < 50 * len(single.first)
