@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve
+from mobius_flow.core import Curve, Mesh
 from mobius_flow.core.collision import is_rope
 from mobius_flow.core.curve.alignment import Alignment, Freedom, alignments
 from mobius_flow.core.curve.measures import bending_radii
