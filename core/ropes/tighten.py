@@ -20,9 +20,11 @@ from ..base.threads import BLAS
 from ..collision import thickness
 from ..curve import Curve
 from ..descent.task import Task
-from ..driver import Outcome, Relaxation, RelaxOptions, Result, Status, finish, relax
-from ..driver.prepare import rope_radius
+from ..driver import Outcome, Relaxation, RelaxOptions, Result, Status, finish
+from ..driver.prepare import rope_radius, start_problem
 from ..driver.relax import within
+from ..driver.run import Run, iterates
+from ..energies.rope import Rope
 from ..io.trajectory import Iterate
 from .pulled_rope import GAP, PulledRope
 
@@ -135,12 +137,18 @@ def tightening(task: Task, options: TightenOptions, others: Sequence[Curve] = ()
 
 def _tightened(starts: Sequence[tuple[Task, float]], coarse: int, wanted: TightenOptions) -> Relaxation:
     rng, count = np.random.default_rng(wanted.seed), max(wanted.starts, len(starts))
-    loosely = RelaxOptions(mesh="fixed", untangle="never", tolerance=1e-2, max_iterations=500)
+    loosely = RelaxOptions(mesh="fixed", untangle="never", tolerance=1e-2, max_iterations=200)
     trials = list[tuple[PulledRope, list[Iterate]]]()
     for k in range(count):
         start, unit = starts[k % len(starts)]
         ends = tuple(start.curve.mesh.ends.ravel().tolist())
-        flow = relax(replace(start, pins=ends), replace(loosely, radius=unit, vertices=len(start.curve)))
+        options = replace(loosely, radius=unit, vertices=len(start.curve))
+        problem = start_problem(replace(start, pins=ends), options)
+        assert problem.objective.rope is not None, "it has a radius"
+        # strands that keep away from each other from afar find shorter shapes, for which there is less to do, too
+        far = Rope(problem.objective.rope.radius, weight=0.5, reach=5.0)
+        run = Run(replace(problem, objective=problem.objective.having(Rope, far)), start.curve, options)
+        flow = iterates(run, ())
         rope = PulledRope(next(flow), unit)
         if k == 0 and len(starts) == 1:
             yield rope.last
@@ -156,10 +164,14 @@ def _tightened(starts: Sequence[tuple[Task, float]], coarse: int, wanted: Tighte
         return round(len(trial[0].curve) / coarse), trial[0].promise
 
     if trials:
-        trials = sorted(trials, key=rank)[:3]  # which on few vertices are not told apart
-        for rope, way in trials if coarse < wanted.vertices else ():
+        several = list[tuple[PulledRope, list[Iterate]]]()  # shapes, as starts often come to the same one
+        for trial in sorted(trials, key=rank):
+            if not several or abs(trial[0].promise / several[-1][0].promise - 1.0) > 1e-3:
+                several.append(trial)
+        several = several[:3]  # which on few vertices are not told apart
+        for rope, way in several if coarse < wanted.vertices and len(several) > 1 else ():
             way += [*rope.doubled(), *rope.pulled(wanted.vertices)]
-        rope, way = min(trials, key=rank)
+        rope, way = min(several, key=rank)
         yield from way
     while (before := len(rope.curve)) < wanted.vertices:
         yield from rope.doubled()

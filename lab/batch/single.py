@@ -133,8 +133,8 @@ def _tightened(job: Job, task: Task, options: RelaxOptions, trajectory: Trajecto
     """The shortest rope from all starts: those of a name, or stirred ones."""
     others = list[Curve]()
     for number in range(2, job.tight + 1) if job.file is None else ():
-        with suppress(CurveError):
-            others.append(start(job.name, number, options.seed + number)[1])
+        with suppress(CurveError):  # the fourth is drawn anew by every seed; hopped curves are far too thin for ropes
+            others.append(start(job.name, min(number, 4), options.seed + number)[1])
     wanted = TightenOptions(
         vertices=400 if options.vertices is None else options.vertices,
         starts=job.tight,
