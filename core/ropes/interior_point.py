@@ -210,7 +210,7 @@ class InteriorPoint:
             ).all():
                 self._depth *= 4.0
             inverse, start = LinearOperator(matrix.shape, definite.solve, dtype=float), np.ones(len(free))
-            found = eigsh(matrix, negative, metric, sigma=-self._depth, OPinv=inverse, tol=1e-2, v0=start)
+            found = eigsh(matrix, negative, metric, sigma=-self._depth, OPinv=inverse, tol=1e-4, v0=start)
             lowest, modes = found[0][found[0] < 0.0], found[1][:, found[0] < 0.0]
             self._depth = max(1e-3, 1.1 * -float(lowest.min(initial=0.0)))
 

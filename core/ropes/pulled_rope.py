@@ -79,10 +79,9 @@ class PulledRope:
         yield self.last
 
     def spread(self, flow: Relaxation) -> Iterator[Iterate]:
-        """The rope along a flow that spreads it out, unless it is tight, or has ends, over which strands could slip."""
-        if not self.is_tight and self.curve.mesh.all_closed:
-            for iterate in flow:
-                yield from self.follow(iterate.path, iterate.gradient_norm, iterate.step_size)
+        """The rope along a flow that spreads it out."""
+        for iterate in flow:
+            yield from self.follow(iterate.path, iterate.gradient_norm, iterate.step_size)
 
     def thinned(self, count: int) -> Iterator[Iterate]:
         """As few vertices, as far as the way of the others onto the chords of their neighbours is proved."""

@@ -20,12 +20,13 @@ from ..base.threads import BLAS
 from ..collision import thickness
 from ..curve import Curve
 from ..descent.task import Task
-from ..driver import Outcome, Relaxation, RelaxOptions, Result, Status, finish
+from ..driver import Outcome, Relaxation, RelaxOptions, Result, Status, finish, relax
 from ..driver.prepare import rope_radius, start_problem
 from ..driver.relax import within
 from ..driver.run import Run, iterates
 from ..energies.rope import Rope
 from ..io.trajectory import Iterate
+from ..knots import knot_type
 from .pulled_rope import GAP, PulledRope
 
 COARSE = 100  # vertices that find the shape, up to twice as many
@@ -127,33 +128,43 @@ def tightening(task: Task, options: TightenOptions, others: Sequence[Curve] = ()
         raise CurveError(
             f"the curve is {away:.3g} from the origin, too far for ropes of radius {unit:.3g}; move it there"
         )
+    if unknot := knot_type(start.curve).names == ("0_1",):  # the flow that undoes it needs its own mesh
+        start = task.refined()
+        starts = [(start, 0.9 * thickness(start.curve))]
     if not start.curve.mesh.all_closed:  # which are not scaled until they fit
         starts[0] = start, min(unit, 0.9 * thickness(start.curve))
-    work = BLAS.bounding(_tightened(starts, coarse, options))
+    work = BLAS.bounding(_tightened(starts, coarse, unknot, options))
     if options.time_limit is None:
         return work
     return within(TimeLimit(options.time_limit, used=time.perf_counter() - began), work)
 
 
-def _tightened(starts: Sequence[tuple[Task, float]], coarse: int, wanted: TightenOptions) -> Relaxation:
+def _tightened(starts: Sequence[tuple[Task, float]], coarse: int, unknot: bool, wanted: TightenOptions) -> Relaxation:
     rng, count = np.random.default_rng(wanted.seed), max(wanted.starts, len(starts))
-    loosely = RelaxOptions(mesh="fixed", untangle="never", tolerance=1e-2, max_iterations=200)
+    closed = starts[0][0].curve.mesh.all_closed
+    loosely = RelaxOptions(mesh="fixed", untangle="never", tolerance=1e-2, max_iterations=2000)
     trials = list[tuple[PulledRope, list[Iterate]]]()
     for k in range(count):
         start, unit = starts[k % len(starts)]
         ends = tuple(start.curve.mesh.ends.ravel().tolist())
-        options = replace(loosely, radius=unit, vertices=len(start.curve))
-        problem = start_problem(replace(start, pins=ends), options)
-        assert problem.objective.rope is not None, "it has a radius"
-        # strands that keep away from each other from afar find shorter shapes, for which there is less to do, too
-        far = Rope(problem.objective.rope.radius, weight=0.5, reach=5.0)
-        run = Run(replace(problem, objective=problem.objective.having(Rope, far)), start.curve, options)
-        flow = iterates(run, ())
+        if unknot:
+            flow = relax(
+                start, replace(loosely, radius=unit, vertices=len(start.curve))
+            )  # whose moves bring it to the circle
+        else:
+            options = replace(loosely, radius=unit, vertices=len(start.curve))
+            problem = start_problem(replace(start, pins=ends), options)
+            assert problem.objective.rope is not None, "it has a radius"
+            # strands that keep away from each other from afar find shorter shapes, for which there is less to do, too
+            far = Rope(problem.objective.rope.radius, weight=0.5, reach=5.0)
+            problem = replace(problem, objective=problem.objective.having(Rope, far))
+            flow = iterates(Run(problem, start.curve, options), ())
         rope = PulledRope(next(flow), unit)
+        loose = closed and (unknot or not rope.is_tight)  # over ends strands could slip
         if k == 0 and len(starts) == 1:
             yield rope.last
         stirred = rope.stirred(rng) if k >= len(starts) else ()
-        steps = chain(rope.spread(flow), rope.thinned(coarse), stirred, rope.pulled(wanted.vertices))
+        steps = chain(rope.spread(flow) if loose else (), rope.thinned(coarse), stirred, rope.pulled(wanted.vertices))
         if count == 1:
             yield from steps
         else:

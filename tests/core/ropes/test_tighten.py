@@ -94,7 +94,7 @@ def test_newton_steps_turn_negative_curvature_round(loose):
     right -= right.mean(axis=0)  # hardly anything holds the rope as a whole
     expected = modes @ (modes.T @ right.ravel() / np.abs(eigenvalues))
     found = point._factorised(hessian)(right).ravel()
-    assert np.abs(found - expected).max() < 1e-4 * np.abs(expected).max()
+    assert np.abs(found - expected).max() < 1e-3 * np.abs(expected).max()
 
 
 def run(curve, **settings):
