@@ -12,9 +12,10 @@ from ...core.base import FloatArray, Message
 from ...core.keys.key_options import Course, KeyOptions, Output, Timing
 from ...core.keys.placement import Similarity
 from . import keyframes
-from .keyframes import animated, count_own, fcurves_of
+from .fcurves import draw_line
+from .keyframes import animated, count_own, fcurves_of, there_and_back
 from .sizes import drive
-from .splines import Splines, key_points, shape
+from .splines import Splines, key_points, read, shape
 
 _RECORD = "mobius_flow_bake"  # custom property of curve data
 
@@ -87,7 +88,10 @@ def retime(data: bpy.types.Curve, timing: Timing) -> bool:
     timing.check_keys(len(old))
     new = timing.frames(_course(data))
     for curve in [curve for owner in animated(data) for curve in fcurves_of(owner)]:
-        keyframes.retime(curve, old, new, timing)
+        points = curve.keyframe_points
+        places, kinds = read(points, "co", 2).astype(np.float64), read(points, "interpolation", dtype=np.int32)
+        way = places[: np.searchsorted(places[:, 0], old[-1] + 1e-3)]  # frames nearer than that are one
+        draw_line(curve, *there_and_back(np.interp(way[:, 0], old, new), way[:, 1], timing), int(kinds[0]))
     record["frames"], record["loop"] = new.tolist(), timing.loop
     record["holds"] = [timing.hold_start, timing.hold_start - 1 if timing.loop else timing.hold_end]
     return True

@@ -12,7 +12,7 @@ from ...core.base import FloatArray
 from ...core.keys.key_options import Timing
 from ...core.keys.placement import Frame
 from ...core.keys.recording import Keys
-from .fcurves import LINEAR, draw_line, new_action, own_fcurves
+from .fcurves import LINEAR, new_action, own_fcurves
 from .splines import key_points, read
 from .splines import radii as spline_radii
 
@@ -104,14 +104,6 @@ def frames_of(data: bpy.types.Curve) -> FloatArray:
     """The frames at which the keys of curve data are passed, on the way back too, (k,)."""
     curve = fcurves_of(data.shape_keys)[0]
     return read(curve.keyframe_points, "co", 2)[:, 0].astype(np.float64)
-
-
-def retime(curve: bpy.types.FCurve, old: FloatArray, new: FloatArray, timing: Timing) -> None:
-    """Let the keys of an F-curve be passed at new frames instead of old ones, and perhaps again on the way back."""
-    places = read(curve.keyframe_points, "co", 2).astype(np.float64)
-    there = places[: np.searchsorted(places[:, 0], old[-1] + 1e-3)]  # frames nearer than that are one
-    frames, values = there_and_back(np.interp(there[:, 0], old, new), there[:, 1], timing)
-    draw_line(curve, frames, values, int(read(curve.keyframe_points, "interpolation", dtype=np.int32)[0]))
 
 
 def fcurves_of(block: bpy.types.ID) -> Any:

@@ -189,21 +189,19 @@ def face_camera(objects: Sequence[bpy.types.Object], camera: bpy.types.Object) -
 
 def _turn(objects: Sequence[bpy.types.Object], wanted: FloatArray) -> int:
     turn = Turn.onto(_shape(objects), wanted)
-    why = None
     for obj in objects:
         if mover := what_moves(obj):
-            why = why or Message("'{name}' is moved by {mover}", name=obj.name, mover=mover)
-        elif obj.parent and not any(obj in each.children_recursive for each in objects):
+            sentence = "'{name}' is moved by {mover}; remove that first"
+            raise MobiusFlowError(Message(sentence, name=obj.name, mover=mover))
+        if obj.parent and not any(obj in each.children_recursive for each in objects):
             # whether a location, rotation and scale under the parent give the turned object; angles of matrices that
             # Blender has rounded count as right to 1e-5
             matrix, own = (np.array(each, dtype=np.float64)[:3, :3] for each in (obj.matrix_world, obj.matrix_basis))
             columns = np.linalg.solve(matrix @ np.linalg.inv(own), turn.rotation @ matrix)
             columns /= np.linalg.norm(columns, axis=0)
             if not np.allclose(columns.T @ columns, np.eye(3), atol=1e-5):
-                uneven = "'{name}' would change its shape, as its parent's scale is uneven"
-                why = why or Message(uneven, name=obj.name)
-    if why:
-        raise MobiusFlowError(Message("{why}; remove that first", why=why))
+                sentence = "'{name}' would change its shape, as its parent's scale is uneven; remove that first"
+                raise MobiusFlowError(Message(sentence, name=obj.name))
     for obj in objects:
         suspend(obj)
     there = {obj: Matrix(turn.matrix.tolist()) @ obj.matrix_world for obj in objects}

@@ -110,18 +110,24 @@ def strike(scene: bpy.types.Scene) -> None:
 
 
 def renew(scene: bpy.types.Scene, look: str = "") -> None:
-    """Set up a scene's stage again, if it has one, in its own look or one of `LOOKS`.
+    """Set up a scene's stage again, if it has one, as it is or in another look; in the look named it is left alone.
 
     Curves that are gone, or no longer curves, are left out.
     """
     collection = own_stage(scene)
-    if collection is None:
+    if collection is None or look == collection.get(_LOOK):
         return
     objects = [obj for obj in kept(collection, _SHOWN) if obj.name in scene.objects]
     camera_used, world_used = (block is not None and STAGE in block for block in (scene.camera, scene.world))
     with suppress(CurveError):
-        look = look or collection.get(_LOOK, ON_STAGE)
-        set_up(scene, objects, camera_used, world_used, look, bool(kept(collection, HIDDEN)))
+        set_up(
+            scene,
+            objects,
+            camera_used,
+            world_used,
+            look or collection.get(_LOOK, ON_STAGE),
+            bool(kept(collection, HIDDEN)),
+        )
 
 
 def kept(collection: bpy.types.Collection, which: str) -> list[bpy.types.Object]:

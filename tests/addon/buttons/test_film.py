@@ -42,6 +42,9 @@ def test_a_film_in_a_look_is_that_of_the_stage(scene, tmp_path):
     OPS.mobius_flow_set_up_stage()
     curve = bpy.context.object.data
     assert curve.materials[0].name == "Dark Studio 6"
+    eye = scene.camera
+    Filming(scene, str(tmp_path / "film.mp4"), "STUDIO").finish()
+    assert scene.camera == eye, "a stage in that look, which somebody may have changed, stays"
     OPS.mobius_flow_render_film(filepath=str(tmp_path / "film.mp4"), look="PAPER")
     pale = scene.world.node_tree.nodes["Background"].inputs["Color"].default_value
     assert tuple(pale)[:3] == pytest.approx((0.36, 0.39, 0.43))
