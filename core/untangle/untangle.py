@@ -188,7 +188,7 @@ def _choose(
         if shortest_route(diagram, strand, len(strand.inner)) is None:
             continue
         way = plane.way(strand)
-        if way is not None and len(way.route) < len(strand.inner):
+        if way is not None:
             each = Lead(rope, drawing, StrandMove(diagram, strand, way.route), way)
             own = set(each.vertices.tolist())
             if each.count > 3 and not any(2 * len(other & own) > len(other | own) for other in left_alone):

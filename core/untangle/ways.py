@@ -56,9 +56,10 @@ class Plane:
         self.points, self.pieces, self.edges = points, pieces, edges
         self.first = np.searchsorted(edges, np.arange(edges[-1] + 2))  # piece of each edge of the diagram
         # gates: from triangles to their neighbours, through sides that have the triangles on their left
-        inside = triangles.neighbors.ravel() >= 0
-        self.leave, self.enter = np.repeat(np.arange(len(corners)), 3)[inside], triangles.neighbors.ravel()[inside]
-        self.triangles, gates = len(corners), gates[:, inside]
+        leave, enter = np.repeat(np.arange(len(corners)), 3), triangles.neighbors.ravel()
+        order = np.lexsort((enter, leave))
+        order = order[enter[order] >= 0]
+        self.leave, self.enter, gates = leave[order], enter[order], gates[:, order]
         self.middle = points[gates].mean(axis=0)
         # the piece that is crossed through each gate, and the dart, if there are any
         self.piece, self.dart = np.full((2, len(self.leave)), -1)
@@ -72,6 +73,8 @@ class Plane:
         # farther from the curve a way is shorter
         self.length = (1.0 + np.minimum(0.02 / np.maximum(room, 0.01) ** 2, 3.0))[self.enter]
         self.length *= sum(np.linalg.norm(self.middle - center[each], axis=1) for each in (self.leave, self.enter))
+        rows = np.searchsorted(self.leave, np.arange(len(corners) + 1))
+        self.graph = sp.csr_array((self.length, self.enter, rows), shape=(len(corners), len(corners)))
 
     def place(self, edge: int, share: float) -> tuple[int, float]:
         """The piece at a share of an edge of the diagram, and the place of its middle on the curve."""
@@ -85,7 +88,7 @@ class Plane:
         return int(pieces[k]), self.drawing.wrapped(edge, float(at))
 
     def way(self, strand: Strand, crossing: float = 100.0) -> Way | None:
-        """The best way for a strand, whose own pieces cost nothing; None if there is none.
+        """The best way for a strand, whose own pieces cost nothing; None if there is none that crosses fewer others.
 
         It may be so many faces longer to cross one strand less.
         """
@@ -96,27 +99,27 @@ class Plane:
         )
         if begin == goal:
             return None
-        far = 1e6 * self.face
-        # or circles that nothing crosses
-        price = np.where(self.edges < len(self.drawing.at), crossing * self.face, far)
+        # circles that nothing crosses are not crossed either, and other sides than pieces cost nothing
+        price = np.append(np.where(self.edges < len(self.drawing.at), crossing * self.face, np.inf), 0.0)
         for edge in (first, last):
-            price[self.first[edge] : self.first[edge + 1]] = far
-        for a, b in [(self.first[edge], self.first[edge + 1]) for edge in strand.inner[:-1]]:
-            price[a:b] = 0.0
+            price[self.first[edge] : self.first[edge + 1]] = np.inf
+        for edge in strand.inner[:-1]:
+            price[self.first[edge] : self.first[edge + 1]] = 0.0
         price[begin + 1 : self.first[first + 1]] = 0.0
         price[self.first[last] : goal] = 0.0
-        price = np.where(self.piece >= 0, price[self.piece], 0.0)
-        graph = sp.csr_array((price + self.length, (self.leave, self.enter)), shape=(self.triangles, self.triangles))
+        self.graph.data = self.length + price[self.piece]
         starts, goals = (self.leave[self.piece == each] for each in (begin, goal))
         if not len(starts) or not len(goals):
             return None
-        distance, before, _ = dijkstra(graph, indices=starts, return_predecessors=True, min_only=True)
+        most = crossing * self.face * len(strand.inner)
+        distance, before, _ = dijkstra(self.graph, indices=starts, return_predecessors=True, min_only=True, limit=most)
         way = [int(goals[np.argmin(distance[goals])])]
-        if not distance[way[0]] < far:
+        if np.isinf(distance[way[0]]):
             return None
         while before[way[-1]] >= 0:
             way.append(int(before[way[-1]]))
-        gates = [int(np.flatnonzero((self.leave == a) & (self.enter == b))[0]) for b, a in pairwise(way)][::-1]
+        count, here = self.graph.shape[0], np.array(way[::-1])
+        gates = np.searchsorted(self.leave * count + self.enter, here[:-1] * count + here[1:])
         tips = [self.points[self.pieces[each]].mean(axis=0) for each in (begin, goal)]
-        route = [int(self.dart[gate]) for gate in gates if price[gate] > 0.0]
+        route = self.dart[gates[price[self.piece[gates]] > 0.0]].tolist()
         return Way((start, end), np.array([tips[0], *self.middle[gates], tips[1]]), route)
