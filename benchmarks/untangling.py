@@ -85,7 +85,7 @@ def made(case: str, seed: int) -> Curve:
 
         random.seed(seed)
         link = Link(diagram_from_code(Path(name).read_text(encoding="utf-8")).planar_code)
-        link.backtrack(num_steps=60, prob_type_1=0.2, prob_type_2=0.3)
+        link.backtrack(60, prob_type_1=0.2, prob_type_2=0.3)
         return Curve.of(link)
     return read_curve(case) if Path(case).exists() else knot(case)
 

@@ -40,7 +40,7 @@ class Plane:
         chains = list(drawing.chains())
         pieces = np.array([ends for _, chain in chains for ends in pairwise(chain)])
         edges = np.repeat([edge for edge, _ in chains], [len(chain) - 1 for _, chain in chains])
-        for _ in range(8):  # pieces that are no sides are halved
+        for _ in range(16):  # pieces that are no sides are halved
             triangles = Delaunay(points)
             corners, key = triangles.simplices.astype(np.int64), np.array([len(points), 1])
             gates = np.stack([np.roll(corners, -1, axis=1), np.roll(corners, -2, axis=1)]).reshape(2, -1)
