@@ -5,8 +5,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...collision.motion import walk
-from ...curve import SPLIT, affordable_pieces, graded_spacing, spans
+from ...collision.motion import Contact, walk
+from ...curve import SPLIT, affordable_pieces, at_edges, graded_spacing, spans
 from ...descent import Leg, NoStep, Point, Step, Units, attempt, leg, on_target
 from ...energies.components import energy_scale
 from ..move import Change, Event, Move
@@ -28,6 +28,7 @@ class Grow(Move):
     edges_per_gap: float = 2.0  # packed curves bend as tightly as strands are near, and twice as many of ropes: evenly
     most: int = FinerMesh.most  # vertices, unless there are more already
     _energy: float = field(default=math.inf, init=False)  # after the last event
+    _in_the_way: Contact | None = field(default=None, init=False)  # of the last motion that failed, if it was contact
 
     def __post_init__(self) -> None:
         self._longest, self._enough = self.fastest, self.settled
@@ -43,12 +44,21 @@ class Grow(Move):
         left = float(np.log(self.run.options.grow / self.run.iterate.grown))
         reached = abs(left) <= 1e-9  # rounding
         if not (reached or problem.obstacles or len(problem.constraints.pins)):
-            # nothing is in the way: scale the whole curve about its barycenter
-            start, factor = self.run.iterate.curve, float(np.exp(left))
-            scaled = start.with_vertices(start.barycenter + factor * (start.vertices - start.barycenter))
-            constraints = problem.constraints.scaled(factor, problem.mesh)
-            end = replace(problem, constraints=constraints).at_curve(scaled)
-            return Change((Step((leg(point, end),), 0.0, None),), self._resolved(end))
+            # nothing is in the way but a rope itself, of which shorter legs tell more: scale about the barycenter
+            start, legs = self.run.iterate.curve, list[Leg]()
+
+            def scaled(place: float, stride: float) -> Leg | None:
+                factor = float(np.exp(np.copysign(min(place + stride, abs(left)), left)))
+                curve = start.with_vertices(start.barycenter + factor * (start.vertices - start.barycenter))
+                grown = replace(problem, constraints=problem.constraints.scaled(factor, problem.mesh))
+                found = leg(legs[-1].end if legs else point, grown.at_curve(curve))
+                self._in_the_way = found.proof.contact
+                return found if found.open else None
+
+            for _, found in walk(scaled, abs(left), abs(left), self.slowest):
+                legs.append(found)
+            if legs:
+                return Change((Step(tuple(legs), 0.0, None),), self._resolved(legs[-1].end))
         # motions wait until it is almost at rest; arcs may have practically no energy
         before, self._energy = self._energy, point.energy
         scale = energy_scale(problem.mesh, point.energy)
@@ -73,7 +83,10 @@ class Grow(Move):
             base, space = point.changing(constraints=constraints), point.tangent_space
             aim, most = base.vertices - space.pseudo_inverse(base.residual), point.energy + self.rise * scale
             found = attempt(base, aim, np.zeros_like(base.residual), lambda end: end.energy <= most, space)
-            return found if isinstance(found, Leg) else None
+            if isinstance(found, Leg):
+                return found
+            self._in_the_way = found.in_the_way or self._in_the_way
+            return None
 
         longest, shortest = min(abs(left), self._longest), min(self.slowest, abs(left), *slack)
         for change, found in walk(changed, abs(left), longest, shortest):
@@ -83,9 +96,11 @@ class Grow(Move):
         self._enough *= self.later
         if not isinstance(event, Outcome):
             return event
-        return event.stalling(
-            "every motion that changes the lengths as requested causes contact or costs too much energy"
-        )
+        if self._in_the_way is None:
+            return event.stalling("every motion that changes the lengths as requested costs too much energy")
+        told = "every motion that changes the lengths as requested brings {contact} too near, or costs too much energy"
+        place = at_edges(point.curve.with_vertices(point.placed), self._in_the_way.edges)
+        return replace(event.stalling(told, contact=self._in_the_way.message), place=place)
 
     def summarised(self, outcome: Outcome) -> Outcome:
         """The outcome with a clause on how far lengths have come, if they were to change."""

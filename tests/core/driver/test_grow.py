@@ -7,10 +7,11 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, Mesh, OptionError, RelaxOptions, Status, minimize, relax
+from mobius_flow.core.collision import thickness
 from mobius_flow.core.curve.pins import Pins
 from mobius_flow.core.curve.refine import SPLIT
 from mobius_flow.core.driver.prepare import start_problem
-from mobius_flow.core.knots import knot
+from mobius_flow.core.knots import knot, torus_knot
 from mobius_flow.core.solve.constraints import Constraints
 from shapes import regular_polygon, torus_trefoil
 from solids import box, plate, rod
@@ -51,6 +52,20 @@ def test_a_rope_is_packed_as_one():
     assert result.last.grown == pytest.approx(3.0)
     assert result.last.radius == (0.1,)
     assert np.abs(result.curve.vertices).max() < 1.5 - 0.1
+
+
+def test_a_rope_grows_twentyfold_and_shrinks_until_it_is_in_its_own_way():
+    """It stays as thin; a circle's edges become as short as arcs of the radius need them."""
+    trefoil = torus_knot(2, 3, 30)
+    grown, iterates = proved(
+        trefoil, grow=20.0, radius=0.95 * thickness(trefoil), vertices=30, mesh="fixed", max_iterations=1
+    )
+    assert grown.last.grown == pytest.approx(20.0)
+    assert len(iterates[1].path) > 1, "no proof reaches that far at once"
+    shrunk, _ = proved(regular_polygon(12), grow=0.1, radius=0.5, vertices=12, mesh="fixed")
+    assert shrunk.last.grown == pytest.approx(0.5 / np.cos(np.pi / 12), rel=0.02)
+    assert "edge 1 and edge 2 too near, or costs too much energy" in shrunk.message
+    assert shrunk.outcome.place is not None
 
 
 def test_edges_are_split_as_strands_come_near_unless_the_mesh_is_fixed():
