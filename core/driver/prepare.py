@@ -88,22 +88,27 @@ def rope_radius(task: Task, options: RelaxOptions) -> FloatArray | None:
             told = f"radius is for curves in the plane and in space, not in R^{curve.dimension}; leave it out"
             raise OptionError(told)
         if len(given) not in (1, components):
-            raise OptionError(f"radius has {len(given)} numbers; give one, or {components}, one for each component")
+            told = f"radius has {len(given)} numbers; give one, or one for each component, of which there "
+            raise OptionError(told + ("is one" if components == 1 else f"are {components}"))
         radius = np.broadcast_to(given, components).astype(np.float64)
         found = rope_motion(curve.mesh, curve.vertices, curve.vertices, radius, task.obstacles)
         if found.proved and _has_room(curve, radius):
             return radius
-        sharpest = int(bending_radii(curve).argmin())
-        place = at_edges(curve, found.contact.edges).position if found.contact else tuple(curve.vertices[sharpest])
+        contact, sharpest = found.contact, int(bending_radii(curve).argmin())
+        place = at_edges(curve, contact.edges).position if contact else tuple(curve.vertices[sharpest])
+        why = Message("it bends too sharply")
+        if contact and contact.obstacle:
+            why = Message("{obstacle} is in the way", obstacle=contact.obstacle)
+        elif contact and curve.mesh.disjoint(*contact.edges):
+            why = Message("strands are too near to each other")
         kept = rope_radius(task, replace(options, radius="keep"))
-        thin = (
-            "the curve is no rope of radius {radius:.4g}: strands are too near to each other, or it bends too sharply, "
-            "near {place}; it is one of radius {kept:.4g}, so give a smaller radius, or more room"
-        )
+        remedy = Message("make more room there")
+        if kept is not None:
+            less = "it is one of radius {kept:.4g}, so give a smaller radius, or more room"
+            remedy = Message(less, kept=kept.min())
+        thin = "the curve is no rope of radius {radius:.4g}: {why} near {place}; {remedy}"
         raise CurveError(
-            Message(
-                thin, radius=radius.max(), place=written(np.array(place)), kept=0.0 if kept is None else kept.min()
-            ),
+            Message(thin, radius=radius.max(), why=why, place=written(np.array(place)), remedy=remedy),
             Place((), place),  # vertices of the refined curve mean nothing to the user
         )
     bends, parts = bending_radii(curve), list[FloatArray]()

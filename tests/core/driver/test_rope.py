@@ -149,15 +149,22 @@ def test_a_given_radius_does_not_give_way() -> None:
 @pytest.mark.parametrize(
     ("options", "error", "said"),
     [
-        ({"radius": 1.0}, CurveError, r"no rope of radius 1: strands .*, near \("),
+        ({"radius": 1.0}, CurveError, r"no rope of radius 1: it bends too sharply near \("),
         ({"radius": 1e6}, CurveError, "it is one of radius"),
-        ({"radius": (0.1, 0.2)}, OptionError, "radius has 2 numbers; give one, or 1"),
+        ({"radius": (0.1, 0.2)}, OptionError, "give one, or one for each component, of which there is one"),
         ({"radius": 0.1, "method": "penalty-lbfgs"}, OptionError, "radius needs lengths that stay"),
     ],
 )
 def test_what_cannot_be(options: dict[str, object], error: type[Exception], said: str) -> None:
     with pytest.raises(error, match=said):
         minimize(knot("4_1", 60), RelaxOptions(**options))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("heights", "why"), [((0.05, 1.0), "obstacle is in the way"), ((0.4, 0.5), "strands are too")])
+def test_why_a_radius_is_refused(heights: tuple[float, float], why: str) -> None:
+    rings = [regular_polygon(40).vertices + np.array([0, 0, z]) for z in heights]
+    with pytest.raises(CurveError, match=f"{why}.*one of radius"):
+        minimize(Task(curve=Curve.from_components(rings), obstacles=(WALL,)), RelaxOptions(radius=0.1))
 
 
 TRIANGLE = Curve([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]])
