@@ -56,3 +56,11 @@ def test_parameters_are_those_of_moebius_images_too():
     own, other = (parameters(curve)[0] for curve in (polygon, image))
     by_length, elsewhere = (arc_steps(curve.vertices) for curve in (polygon, image))
     assert np.abs(own - other).max() < 0.1 * np.abs(by_length - elsewhere).max()
+
+
+def test_more_modes_do_not_change_the_curve():
+    curve = fitted()
+    np.testing.assert_allclose(
+        curve.with_modes([9, 9]).polygon([20, 20]).vertices, curve.polygon([20, 20]).vertices, rtol=0, atol=1e-14
+    )
+    assert curve.with_modes([9, 9]).with_modes([7, 5]).modes == curve.modes
