@@ -81,8 +81,8 @@ class Lead:
         return np.asarray(self.begin + (vertices - self.begin) % self.size)
 
 
-def lead(rope: ElasticRope, leads: Sequence[Lead]) -> bool:
-    """Lead strands all at once as far as they can go; return whether nothing was in the way."""
+def lead(rope: ElasticRope, leads: Sequence[Lead]) -> None:
+    """Lead strands all at once as far as they can go."""
     rest = np.ones(rope.mesh.size, dtype=bool)
     rest[np.concatenate([each.vertices for each in leads])] = False
     for each in leads:
@@ -119,7 +119,6 @@ def lead(rope: ElasticRope, leads: Sequence[Lead]) -> bool:
             break
     for hold in (1.0, 1.0, 0.7, 0.4, 0.2, 0.05):
         rope.step(springs(1.0, 1.0, hold, landed=True))
-    return free
 
 
 def _meets_itself(points: FloatArray) -> bool:

@@ -81,7 +81,6 @@ def untangled(
     reached: int | None = None
     held: BoolArray = holds(curve.mesh, np.concatenate([pins, curve.mesh.ends.ravel()]))
     rope: ElasticRope | None = None
-    blocked = False
     try:
         for _ in range(6):  # from different views, as long as moves lead to fewer crossings
             found = _best_view(curve, held, rng, reached)
@@ -103,8 +102,8 @@ def untangled(
             rope.lie_down(crossings)
             drawing = draw(rope, rng)
             yield rope.take(drawing.diagram.crossings, moves)
-            drawing, moves, shut = yield from _make_moves(rope, drawing, moves, rng, few)
-            reached, blocked = drawing.diagram.crossings, blocked or shut
+            drawing, moves = yield from _make_moves(rope, drawing, moves, rng, few)
+            reached = drawing.diagram.crossings
             left = simplified(drawing.diagram)
             if left.crossings == reached and shows_least(left):
                 told = Message("{count} crossings are left, as few as can be", count=reached)
@@ -116,10 +115,8 @@ def untangled(
             curve = rope.curve
     except UnclearError as error:
         return Untangled(reached, False, error.reason, moves)
-    why = "{count} crossings are left, as no move of a strand is known that saves any"
-    if blocked:
-        why = "{count} crossings are left, as no way for a strand is free"
-    return Untangled(reached, False, Message(why, count=reached), moves)
+    told = Message("{count} crossings are left, as no free way of a strand is known that saves any", count=reached)
+    return Untangled(reached, False, told, moves)
 
 
 def _make_moves(
@@ -130,13 +127,13 @@ def _make_moves(
     few: int,
     patience: int = 12,
     tabu_for: int = 8,
-) -> Generator[Legs, None, tuple[PlaneDrawing, int, bool]]:
-    """Make moves in one view until few crossings can still go; return the drawing, and whether no way has been free.
+) -> Generator[Legs, None, tuple[PlaneDrawing, int]]:
+    """Make moves in one view until few crossings can still go; return the drawing, and the number of moves.
 
     A move that adds crossings may be what leads on; what does not is taken back. The view is given up after so many
     moves in vain as there is patience for, and a strand that has moved in vain is left alone for some moves.
     """
-    lowest, best, vain, tried, made, blocked = drawing, outlook(drawing.diagram, rng), 0, 0, 0, False
+    lowest, best, vain, tried, made = drawing, outlook(drawing.diagram, rng), 0, 0, 0
     tabu: list[tuple[int, set[int]]] = []  # strands that have moved in vain, each with the number of moves by then
     mark = rope.mark()
     while drawing.diagram.crossings > best + few and vain < patience:
@@ -146,24 +143,24 @@ def _make_moves(
             break
         before, count, tried = rope.mark(), drawing.diagram.crossings, tried + 1
         led = [(tried, set(each.vertices.tolist())) for each in leads]
-        free = lead(rope, leads)
+        lead(rope, leads)
         rope.settle()
         after = draw(rope, rng)
         seen, low = after.diagram.crossings, lowest.diagram.crossings
         if seen >= count and (seen > low + max(4, low // 8) or outlook(after.diagram, rng) > best):
             rope.rewind(before)
-            tabu, vain, blocked = tabu + led, vain + 1, blocked or not free
+            tabu, vain = tabu + led, vain + 1
             continue
         drawing, made = after, made + len(leads)
         if seen < low:
-            lowest, moves, made, vain, blocked = drawing, moves + made, 0, 0, False
+            lowest, moves, made, vain = drawing, moves + made, 0, 0
             best = min(best, outlook(drawing.diagram, rng))
             yield rope.take(seen, moves)
             mark = rope.mark()
         else:
             tabu, vain = tabu + led, vain + 1
     rope.rewind(mark)
-    return lowest, moves, blocked
+    return lowest, moves
 
 
 def _choose(

@@ -185,7 +185,7 @@ def test_a_move_in_space_leads_to_the_diagram_that_was_planned(name: str) -> Non
     found = ((strand, plane.way(strand)) for strand in strands(seen.diagram))
     strand, way = next((strand, way) for strand, way in found if way and len(way.route) < len(strand.inner))
     move = StrandMove(seen.diagram, strand, way.route)
-    assert lead(rope, [Lead(rope, seen, move, way)])
+    lead(rope, [Lead(rope, seen, move, way)])
     after = drawing(rope).diagram
     assert after.crossings <= move.after.crossings
     assert simplified(after).crossings == simplified(move.after).crossings

@@ -63,7 +63,7 @@ def test_scrambled_knots_and_links_come_to_their_crossings(case: tuple[str, int]
 def test_a_knot_of_which_no_least_diagram_is_known_says_so() -> None:
     _, found = run(scramble(knot("8_19", 60), 1, moves=300))
     assert (found.crossings, found.least) == (8, False)
-    assert "no move of a strand is known" in found.reason
+    assert "no free way of a strand is known" in found.reason
 
 
 def test_pins_stay_and_strands_end_at_them() -> None:
@@ -89,7 +89,7 @@ def test_plates_leave_room_or_none(part: float, free: bool) -> None:
     gap = part * np.ptp(curve.vertices, axis=0).max()
     _, found = run(curve, walls=[plate(low - gap, name="below"), plate(high + gap, name="above")])
     assert (found.crossings == 0) is free
-    assert free or "crossings are left, as no" in found.reason  # way is free, or no view shows what is in front
+    assert free or "crossings are left, as no" in found.reason  # free way, or no view shows what is in front
 
 
 def test_wherever_it_is_left_the_curve_is_embedded_and_of_its_type() -> None:
