@@ -126,9 +126,7 @@ FBX does with NLA Strips and All Actions off, one frame later"""
             forces, struts = bake.contacts(obj.data)
             if len(forces) == each.mesh.size:
                 write_values(tube.data, {"contact_force": forces})
-                beside = struts_object(obj, struts)
-                for collection in obj.users_collection:
-                    collection.objects.link(beside)
+                obj.users_collection[0].objects.link(struts_object(obj, struts))
             if self.every_frame:
                 # at the middles of the rings as shown, Blender's nodes compute the arc length from the start of a
                 # component; the curvature, which is the angle by which the polygon turns over half the length of both
