@@ -64,7 +64,7 @@ def _energy(options: argparse.Namespace) -> int:
 def add_info(parser: argparse.ArgumentParser) -> None:
     parser.description, parser.epilog = "Identify the knot type of curves, and measure them.", _INFO_EPILOG
     curves.add_input(parser, "curves", "inputs", "+")
-    text = "close open components: their ends go straight away, in one direction, and are joined far out"
+    text = "close open components: their ends go straight away from the centre and are joined far out"
     parser.add_argument("--close", action="store_true", help=text)
     text = "also close open components in N random directions, and tell how often each type comes out"
     parser.add_argument("--closures", type=int, metavar="N", help=text)

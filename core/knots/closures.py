@@ -11,26 +11,29 @@ from .knot_type import knot_type
 
 @checked
 def closed_far_away(curve: Curve, direction: tuple[float, ...] | None = None) -> Curve:
-    """Join the ends of open components far out in a direction, of length 1; both of a component go there straight.
+    """Join the ends of open components far out: they go there straight, away from the centre of the vertices.
 
-    By default that is halfway between those in which its ends lie from the centre of the vertices.  Closed components
-    stay.  The knot type is the closed curve's; for arcs whose ends are deep inside, it depends on where they leave.
+    With a direction, of length 1, both go that way.  Closed components stay.  The knot type is the closed curve's; for
+    arcs whose ends are deep inside, it depends on where they leave, as with every closure.
     """
     middle = curve.vertices.mean(axis=0)
     radius = float(np.linalg.norm(curve.vertices - middle, axis=1).max())
     parts = []
     for k, (part, closed) in enumerate(zip(curve.components, curve.mesh.closed, strict=True)):
-        ends, way = part[[-1, 0]], np.array(direction)
-        if direction is None:
-            units = (ends - middle) / np.maximum(np.linalg.norm(ends - middle, axis=1), 1e-300)[:, None]
-            way = units.sum(axis=0)
-            if np.linalg.norm(way) < 1e-6:  # ends are opposite: any way across will do
-                way = np.eye(curve.dimension)[np.abs(units[0]).argmin()]
-                way = way - (way @ units[0]) * units[0]
-            way /= np.linalg.norm(way)
-        # as far beyond the curve as it is large, and each component further out, so that none meet there
-        away = (3.0 + k) * radius - (ends - middle) @ way
-        parts.append(part if closed else np.concatenate([part, ends + away[:, None] * way]))
+        ends, far = part[[-1, 0]], part[:0]  # each component goes further out, so that none meet there
+        if not closed and direction is not None:
+            away = (3.0 + k) * radius - (ends - middle) @ direction
+            far = ends + away[:, None] * np.array(direction)
+        elif not closed:
+            last, first = (ends - middle) / np.maximum(np.linalg.norm(ends - middle, axis=1), 1e-300)[:, None]
+            between = last + first
+            if np.linalg.norm(between) < 1e-6:  # any way round will do
+                between = np.eye(curve.dimension)[np.abs(last).argmin()]
+                between = between - (between @ last) * last
+            # lines to a corner that is this far out do not come near the curve
+            corner = 1.5 * between / np.linalg.norm(between)
+            far = middle + (4.0 + k) * radius * np.stack([last, corner, first])
+        parts.append(np.concatenate([part, far]))
     return Curve(np.concatenate(parts), Mesh(tuple(map(len, parts))))
 
 
