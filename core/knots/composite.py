@@ -54,7 +54,18 @@ def knotted_ball(curve: Curve) -> Ball | None:
     size = float(np.abs(curve.vertices - middle).max())
     normal = curve.with_vertices((curve.vertices - middle) / size)
     sample = np.arange(0, len(curve), max(1, len(curve) // SAMPLES))
-    for inside in _arcs(curve, sample):
+    slices, component = curve.mesh.slices, curve.mesh.component[sample]
+    places, wanted = _places(len(slices))
+    # of each component which sampled vertices are inside, (m, n): one of its arcs, the longest ones first, and any
+    # whole components among the others that can lie there together
+    for part, groups in zip(slices, _linked_groups(curve), strict=True):
+        count = part.stop - part.start
+        starts, lengths = np.unique(np.arange(places) * count // places), np.unique(np.array(wanted) * count // places)
+        along = (sample - part.start - starts[:, None]) % count
+        arcs = (along < lengths[::-1, None, None]) & (part.start <= sample) & (sample < part.stop)
+        choices = product((False, True), repeat=len(groups))
+        others = [np.isin(component, list(chain.from_iterable(compress(groups, chosen)))) for chosen in choices]
+        inside = (arcs[:, :, None] | np.array(others)).reshape(-1, len(sample))
         for ball in _separating(normal.vertices[sample], np.where(inside, -1.0, 1.0)):
             if _is_knotted(normal, ball):
                 return Ball(middle + size * ball.center, size * ball.radius)
@@ -91,21 +102,6 @@ def _linked_groups(curve: Curve) -> list[list[IntArray]]:
         groups, label = connected_components(linked[np.ix_(others, others)], directed=False)
         found.append([others[label == k] for k in range(groups)])
     return found
-
-
-def _arcs(curve: Curve, sample: IntArray) -> Iterator[BoolArray]:
-    """For each component which sampled vertices are inside, shape (m, n): one of its arcs, the longest ones first, and
-    any whole components among the others that can lie there together."""
-    slices, component = curve.mesh.slices, curve.mesh.component[sample]
-    places, wanted = _places(len(slices))
-    for part, groups in zip(slices, _linked_groups(curve), strict=True):
-        size = part.stop - part.start
-        starts, lengths = np.unique(np.arange(places) * size // places), np.unique(np.array(wanted) * size // places)
-        along = (sample - part.start - starts[:, None]) % size
-        arcs = (along < lengths[::-1, None, None]) & (part.start <= sample) & (sample < part.stop)
-        choices = product((False, True), repeat=len(groups))
-        others = [np.isin(component, list(chain.from_iterable(compress(groups, chosen)))) for chosen in choices]
-        yield (arcs[:, :, None] | np.array(others)).reshape(-1, len(sample))
 
 
 def _separating(points: FloatArray, sides: FloatArray) -> Iterator[Ball]:

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
 
-from ..base import BoolArray, CurveError, FloatArray, IntArray
+from ..base import CurveError, FloatArray, IntArray
 from ..base.tolerances import SIEVE_ROUNDING, SIEVE_UNDERFLOW
 from .checker import START, Time, between, contacts, whole
 from .planes import doubtful
@@ -74,8 +74,17 @@ def passings(before: Placed, after: Placed, beads: IntArray, tails: IntArray, fr
     bead, box = beads[corners], lattice[0]
     for i, j in _near(ends, clearance):
         keep = (i < len(tails)) & (number[i] != number[j])  # pairs of images are the same as others
-        keep[keep] = ~_apart(ends, i[keep], j[keep], clearance)
         i, j = i[keep], j[keep]
+        # a plane at rest, across the line between their middles, surely separates most moving edges
+        x, y = ends.take(i, axis=2), ends.take(j, axis=2)
+        between_ends = (x[:, 0] + x[:, 1]) - (y[:, 0] + y[:, 1])
+        normal = between_ends.sum(axis=0)
+        room = np.einsum("tpm,pm->tp", between_ends, normal)
+        for edge in (x, y):
+            room -= np.abs(np.einsum("tpm,pm->tp", edge[:, 1] - edge[:, 0], normal))
+        margin = (8.0 * clearance + 4.0 * SIEVE_ROUNDING) * np.abs(normal).sum(axis=1) + SIEVE_UNDERFLOW
+        near = ~(room > margin).all(axis=0)
+        i, j = i[near], j[near]
         for p, q in product((0, 1), repeat=2):  # ends that are no common one
             keep = (bead[p, i] != bead[q, number[j]]) | (box[p, i] != box[q, number[j]] + image[j]).any(axis=1)
             i, j = i[keep], j[keep]
@@ -152,18 +161,6 @@ def _near(ends: FloatArray, clearance: float) -> Iterator[tuple[IntArray, IntArr
                 pair = i[k : k + at_once], j[k : k + at_once]
                 yield np.minimum(*pair), np.maximum(*pair)
         first = last
-
-
-def _apart(ends: FloatArray, i: IntArray, j: IntArray, clearance: float) -> BoolArray:
-    """Whether a plane at rest, across the line between their middles, surely separates moving edges."""
-    x, y = ends.take(i, axis=2), ends.take(j, axis=2)
-    between = (x[:, 0] + x[:, 1]) - (y[:, 0] + y[:, 1])
-    normal = between.sum(axis=0)
-    room = np.einsum("tpm,pm->tp", between, normal)
-    for edge in (x, y):
-        room -= np.abs(np.einsum("tpm,pm->tp", edge[:, 1] - edge[:, 0], normal))
-    margin = (8.0 * clearance + 4.0 * SIEVE_ROUNDING) * np.abs(normal).sum(axis=1) + SIEVE_UNDERFLOW
-    return np.asarray((room > margin).all(axis=0))
 
 
 def _contacts(
