@@ -5,7 +5,7 @@ Few vertices find the shape, more of them the length: the error of a polygon fal
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 from typing import NamedTuple
@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base.arguments import check_number, checked
-from ..base.deadline import TimeLimit
+from ..base.deadline import TimeIsUp, TimeLimit
 from ..base.errors import CurveError, OptionError
 from ..base.messages import Message
 from ..base.threads import BLAS
@@ -139,50 +139,59 @@ def tightening(task: Task, options: TightenOptions, others: Sequence[Curve] = ()
     return within(TimeLimit(options.time_limit, used=time.perf_counter() - began), work)
 
 
+def _spread(start: Task, unit: float, unknot: bool) -> tuple[PulledRope, Iterable[Iterate]]:
+    """The rope of a start, and its way along a flow that spreads it out; none if it is tight already."""
+    options = RelaxOptions(
+        mesh="fixed", untangle="never", radius=unit, vertices=len(start.curve), tolerance=1e-2, max_iterations=2000
+    )
+    if unknot:  # forces may balance wherever it is packed, but the flow and its moves bring it to the circle
+        flow = relax(start, options)
+        return (rope := PulledRope(next(flow), unit)), rope.spread(flow)
+    problem = start_problem(replace(start, pins=tuple(start.curve.mesh.ends.ravel().tolist())), options)
+    assert problem.objective.rope is not None, "it has a radius"
+    # strands that keep away from each other from afar find shorter shapes, for which there is less to do, too
+    far = Rope(problem.objective.rope.radius, weight=0.5, reach=5.0)
+    problem = replace(problem, objective=problem.objective.having(Rope, far))
+    flow = iterates(Run(problem, start.curve, options), ())
+    rope = PulledRope(next(flow), unit)
+    # over ends strands could slip
+    return rope, rope.spread(flow) if start.curve.mesh.all_closed and not rope.is_tight else ()
+
+
 def _tightened(starts: Sequence[tuple[Task, float]], coarse: int, unknot: bool, wanted: TightenOptions) -> Relaxation:
     rng, count = np.random.default_rng(wanted.seed), max(wanted.starts, len(starts))
-    closed = starts[0][0].curve.mesh.all_closed
-    loosely = RelaxOptions(mesh="fixed", untangle="never", tolerance=1e-2, max_iterations=2000)
     trials = list[tuple[PulledRope, list[Iterate]]]()
-    for k in range(count):
-        start, unit = starts[k % len(starts)]
-        ends = tuple(start.curve.mesh.ends.ravel().tolist())
-        if unknot:
-            flow = relax(
-                start, replace(loosely, radius=unit, vertices=len(start.curve))
-            )  # whose moves bring it to the circle
-        else:
-            options = replace(loosely, radius=unit, vertices=len(start.curve))
-            problem = start_problem(replace(start, pins=ends), options)
-            assert problem.objective.rope is not None, "it has a radius"
-            # strands that keep away from each other from afar find shorter shapes, for which there is less to do, too
-            far = Rope(problem.objective.rope.radius, weight=0.5, reach=5.0)
-            problem = replace(problem, objective=problem.objective.having(Rope, far))
-            flow = iterates(Run(problem, start.curve, options), ())
-        rope = PulledRope(next(flow), unit)
-        loose = closed and (unknot or not rope.is_tight)  # over ends strands could slip
-        if k == 0 and len(starts) == 1:
-            yield rope.last
-        stirred = rope.stirred(rng) if k >= len(starts) else ()
-        steps = chain(rope.spread(flow) if loose else (), rope.thinned(coarse), stirred, rope.pulled(wanted.vertices))
-        if count == 1:
-            yield from steps
-        else:
-            trials.append((rope, [*([] if len(starts) == 1 else [rope.last]), *steps]))
 
     def rank(trial: tuple[PulledRope, list[Iterate]]) -> tuple[int, float]:
         """Those of about as many vertices are compared, the others are last."""
         return round(len(trial[0].curve) / coarse), trial[0].promise
 
-    if trials:
+    try:
+        for k in range(count):
+            rope, spread = _spread(*starts[k % len(starts)], unknot)
+            stirred = rope.stirred(rng) if k >= len(starts) else ()
+            steps = chain(spread, rope.thinned(coarse), stirred, rope.pulled(wanted.vertices))
+            if k == 0 and len(starts) == 1:
+                yield rope.last
+            if count == 1:
+                yield from steps
+            else:
+                trials.append((rope, way := [] if len(starts) == 1 else [rope.last]))
+                way += steps
         several = list[tuple[PulledRope, list[Iterate]]]()  # shapes, as starts often come to the same one
         for trial in sorted(trials, key=rank):
-            if not several or abs(trial[0].promise / several[-1][0].promise - 1.0) > 1e-3:
+            if not several or abs(trial[0].promise / several[-1][0].promise - 1.0) > 2e-4:
                 several.append(trial)
-        several = several[:3]  # which on few vertices are not told apart
+        del several[3:]  # which on few vertices are not told apart
         for rope, way in several if coarse < wanted.vertices and len(several) > 1 else ():
-            way += [*rope.doubled(), *rope.pulled(wanted.vertices)]
-        rope, way = min(several, key=rank)
+            way += chain(rope.doubled(), rope.pulled(wanted.vertices))
+        if several:
+            rope, way = min(several, key=rank)
+    except TimeIsUp:
+        if trials:  # the shortest so far
+            yield from min(trials, key=rank)[1]
+        raise
+    if trials:
         yield from way
     while (before := len(rope.curve)) < wanted.vertices:
         yield from rope.doubled()

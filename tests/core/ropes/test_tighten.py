@@ -1,12 +1,15 @@
 """Knots pulled tight: derivatives of contacts, equilibrium at rest, proofs of the way, and known lengths."""
 
-from itertools import islice
+from itertools import count, islice
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError, Mesh, OptionError, Status, Task, tighten
+from mobius_flow.core.base.deadline import TimeLimit
 from mobius_flow.core.collision import thickness
+from mobius_flow.core.driver import WithOutcome
+from mobius_flow.core.driver.relax import within
 from mobius_flow.core.energies.edge_pairs import EdgePairs
 from mobius_flow.core.knots import knot, overhand
 from mobius_flow.core.ropes import TightenOptions, tightening
@@ -255,6 +258,15 @@ def test_numbers_out_of_range_are_refused(settings):
 def test_a_time_limit_that_is_up_before_the_start_is_refused():
     with pytest.raises(OptionError, match="was up before the start"):
         list(tightening(Task(curve=knot("3_1")), TightenOptions(time_limit=1e-9)))
+
+
+def test_when_the_time_is_up_the_shortest_start_so_far_is_kept():
+    ticks = count()
+    several = tightening(Task(curve=HOPF), TightenOptions(vertices=100, starts=3))
+    limited = WithOutcome(within(TimeLimit(100, lambda: next(ticks)), several))
+    energies = [iterate.energy for iterate in limited]
+    assert limited.outcome.status is Status.TIME_LIMIT
+    assert energies[-1] < 0.95 * energies[0]
 
 
 def test_open_ropes_that_are_not_knotted_become_straight():
