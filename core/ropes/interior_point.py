@@ -103,8 +103,9 @@ class InteriorPoint:
 
     @property
     def excess(self) -> float:
-        """The length, less how far out ends are where they are pulled, at rest: of straight ropes nothing is left."""
-        return self.curve.length - float(np.sum(outward(self.curve) * self.curve.vertices[self.curve.mesh.ends]))
+        """The length of arcs, less how far out ends are where they are pulled: of straight ropes nothing is left."""
+        pulled = np.sum(outward(self.curve) * self.curve.vertices[self.curve.mesh.ends])
+        return float(self.curve.component_lengths @ ~np.asarray(self.curve.mesh.closed) - pulled)
 
     def step(self) -> tuple[float, float]:
         """Take a step; the share of Newton's that is taken, and by how much the barrier function was to fall."""

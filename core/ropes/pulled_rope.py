@@ -166,7 +166,7 @@ class PulledRope:
         def placed(vertices: FloatArray) -> FloatArray:
             return np.asarray(self.center + self.unit * vertices)
 
-        closed = curve.mesh.all_closed
+        closed, arcs = curve.mesh.all_closed, ~np.asarray(curve.mesh.closed)
         self.point = point = InteriorPoint(curve, mu, lambda vertices: self.proves(placed(vertices)), margin)
         if not closed:
             point.longest, point.proportions = 2.0, curve.edge_lengths
@@ -176,9 +176,9 @@ class PulledRope:
                 path = [placed(point.curve.vertices)]
                 if not closed:  # what rope comes out of the knot leads ends on, what is pulled in leads them back
                     ahead, ends = point.curve.vertices.copy(), curve.mesh.ends
-                    out = 0.5 * (self.lengths / self.unit - point.curve.component_lengths)
+                    out = 0.5 * arcs * (self.lengths / self.unit - point.curve.component_lengths)
                     if last is not None:  # knots may slide along their ropes without effort; where they are they stay
-                        out[:] = out.mean()
+                        out[arcs] = out[arcs].mean()
                     onward = out[curve.mesh.component[ends], None] * outward(point.curve)
                     ahead[ends] += onward
                     ahead -= onward.mean(axis=(0, 1))  # the middle of all ends stays in its place

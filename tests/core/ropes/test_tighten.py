@@ -277,6 +277,17 @@ def test_open_ropes_that_are_not_knotted_become_straight():
     assert "no knot" in result.message
 
 
+def test_an_open_rope_beside_a_closed_one_keeps_its_length():
+    t = np.linspace(-2.0, 2.0, 41)
+    wave, ring = np.stack([t, 0.2 * np.sin(3 * t), 0.0 * t], axis=1), CIRCLE + np.array([0.0, 4.0, 0.0])
+    given = Curve.from_components([wave, ring], (False, True))
+    result = tighten(given, vertices=200)
+    assert result.status is Status.CONVERGED
+    assert "no knot" in result.message  # the ring's length is not counted
+    assert result.curve.component_lengths[0] == pytest.approx(given.component_lengths[0], rel=1e-2)
+    assert result.curve.component_lengths[1] < 0.9 * given.component_lengths[1]
+
+
 @pytest.mark.parametrize("away", [1e4, 1e9])
 def test_what_is_too_far_away_is_refused_at_once(away):
     with pytest.raises(CurveError, match=r"from the origin|no rope"):
