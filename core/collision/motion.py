@@ -27,7 +27,7 @@ class Limit(Enum):
     NONE = "the whole motion is free of contact"
     CONTACT = "edges, or an edge and an obstacle, meet, or come too near to each other to be told apart"
     TOUCHING_START = "edges, or an edge and an obstacle, touch, or cannot be told apart, at the start"
-    NOT_FINITE = "a vertex is not finite"
+    NOT_FINITE = "a vertex, or a radius, is not finite"
     UNTESTED = "in more than three dimensions, where nothing is knotted, contact is not tested"
 
 

@@ -46,6 +46,8 @@ def rope_motion(
     """
     if radius is None:
         return free_motion(mesh, start, end, obstacles)
+    if not all(np.isfinite(each).all() for each in (start, end, radius)):
+        return FreeMotion(0.0, None, Limit.NOT_FINITE)
     if not obstacles:  # margins are relative to coordinates: those of curves far away get smaller, where that is exact
         near = start - start[0], end - start[0]
         if not any(_lost(given, start[0], each).any() for given, each in zip((start, end), near, strict=True)):

@@ -154,6 +154,13 @@ def test_a_motion_stops_where_strands_come_too_near() -> None:
     assert not found.proved
 
 
+def test_nothing_is_proved_of_numbers_that_are_none() -> None:
+    square = regular_polygon(4)
+    lost = np.where(np.eye(4, 3) > 0, np.nan, square.vertices)
+    for end, radius in ((square.vertices, np.nan), (square.vertices, np.inf), (lost, 0.1)):
+        assert not is_rope(square.mesh, square.vertices, end, np.array([radius]))
+
+
 def test_a_corner_gets_sharper() -> None:
     """A right angle with legs of 1 bends at radius ½; it is folded until its legs are parallel."""
     mesh = Mesh((3,), (False,))
