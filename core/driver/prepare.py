@@ -99,7 +99,7 @@ def rope_radius(task: Task, options: RelaxOptions) -> FloatArray | None:
         why = Message("it bends too sharply")
         if contact and contact.obstacle:
             why = Message("{obstacle} is in the way", obstacle=contact.obstacle)
-        elif contact and curve.mesh.disjoint(*contact.edges):
+        elif contact and curve.mesh.disjoint(*np.array(contact.edges)):
             why = Message("strands are too near to each other")
         kept = rope_radius(task, replace(options, radius="keep"))
         remedy = Message("make more room there")
