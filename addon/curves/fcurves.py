@@ -14,13 +14,13 @@ CONSTANT, LINEAR = 0, 1  # among the interpolations of a keyframe, as arrays of 
 def new_action(name: str, id_type: str, slot: str, user: Any) -> bpy.types.Action:
     """Make an action with a slot, of a name, for datablocks of a type, and give both to an animation or constraint."""
     action = bpy.data.actions.new(name)
-    user.action = action
-    if hasattr(action, "slots"):
-        strip = action.layers.new("Layer").strips.new(type="KEYFRAME")
-        user.action_slot = action.slots.new(id_type=id_type, name=slot)
-        strip.channelbag(user.action_slot, ensure=True)
-    else:
+    if not hasattr(action, "slots"):
         action.id_root = id_type
+        user.action = action
+        return action
+    strip, slots = action.layers.new("Layer").strips.new(type="KEYFRAME"), action.slots
+    strip.channelbag(slots.new(id_type=id_type, name=slot), ensure=True)
+    user.action, user.action_slot = action, slots[0]
     return action
 
 
