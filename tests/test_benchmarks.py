@@ -36,8 +36,8 @@ def test_it_runs(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     done = run(name, *ARGUMENTS[name])
     assert done.returncode == 0, done.stdout + done.stderr
-    few = {"seeded_runs": 0, "untangling": 2, "resolution": 3, "hops": 3, "rope": 3, "knots": 6}
-    least = few.get(name, 5)  # a title, and a line for each of four curves
+    few = {"seeded_runs": 0, "untangling": 2, "resolution": 3, "hops": 3, "rope": 3, "collision": 3, "knots": 6}
+    least = few.get(name, 5)  # a title, and a line for each curve
     assert len(done.stdout.splitlines()) >= least
 
 

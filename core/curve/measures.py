@@ -83,5 +83,5 @@ def bending_radii(curve: Curve) -> FloatArray:
     ell, mesh = curve.edge_lengths, curve.mesh
     tau, before, after = curve.edge_vectors / ell[:, None], mesh.incoming, mesh.outgoing
     sine, cosine = (np.einsum("ij,ij->i", d, d) for d in (tau[after] - tau[before], tau[after] + tau[before]))
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", over="ignore"):  # straight on
         return frozen(0.5 * np.minimum(ell[before], ell[after]) * np.sqrt(cosine / sine))  # ½ min(ℓ, ℓ') / tan(θ/2)

@@ -265,9 +265,9 @@ class MoebiusEnergy:
             matrix = matrix[number][:, :, number]
         own.add_to(matrix, mesh, 2.0)
         coordinates, shares = ComponentShares(curve).hessian_columns()
-        matrix = matrix.reshape(n * m, n * m)
-        matrix[:, coordinates] += CONSTANT * shares
-        return matrix
+        hessian = matrix.reshape(n * m, n * m)
+        hessian[:, coordinates] += CONSTANT * shares
+        return hessian
 
 
 def moebius_by_length(curve: Curve) -> FloatArray:

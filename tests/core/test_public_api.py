@@ -146,7 +146,7 @@ FINE: dict[str, tuple[Callable[..., object], dict[str, object]]] = {
 }
 # not made by users
 OF_THE_PROGRAM = {"CurveFile", "Weighted", "Format", "KnotType", "Drawing", "format_of", "load_curve", "check_closed"}
-OF_THE_PROGRAM |= {"at_edges", "at_vertices", "Audit"}
+OF_THE_PROGRAM |= {"at_edges", "at_vertices", "Audit", "weighted_term"}
 
 
 def test_all_that_is_public_is_tried():
