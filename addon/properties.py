@@ -102,11 +102,12 @@ def settings(options: set[str], retime: Callable[[Any, Any], None] | None = None
     at_once = {} if retime is None else {"update": retime}
 
     keys, times, (slow, fast) = KeyOptions(), Timing(), FRAMES_PER_ITERATE
+    outputs = [(*item, "NONE", 2 * k) for k, item in enumerate(_enum_items(_OUTPUTS))]  # as in files; 1 is gone
     whole = {"max": LAST_FRAME, "soft_max": 1000, **at_once}
     kept = [(_AUTOMATIC, "Automatic", "The radius, or the length where something is pinned or avoided, or grows")]
     more: dict[str, tuple[Any, str, Any, dict[str, Any]]] = {
         "pin_tangents": (BoolProperty, "Pin Tangents", False, {}),
-        "keyframes": (EnumProperty, "Keyframes", keys.output.name, {"items": _enum_items(_OUTPUTS)}),
+        "keyframes": (EnumProperty, "Keyframes", keys.output.name, {"items": outputs}),
         "timing": (EnumProperty, "Timing", times.pace.name, {"items": _enum_items(_PACES), **at_once}),
         "start_frame": (
             IntProperty,
@@ -216,7 +217,7 @@ def timing(value: Callable[[str], Any]) -> Timing:
 def key_options(values: Mapping[str, Any]) -> KeyOptions:
     """The animation's options from the values of the settings; raises OptionError."""
     return KeyOptions(
-        output=Output[values["keyframes"]],
+        output=Output[values["keyframes"] or KeyOptions.output.name],
         timing=timing(values.__getitem__),
         max_keys=values["max_keys"] or None,
         fit_bevel=values["fit_bevel"],

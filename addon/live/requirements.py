@@ -11,6 +11,7 @@ import numpy as np
 from ...core import MobiusFlowError
 from ...core.base.messages import Message
 from ..curves import bake, bevel, splines
+from ..curves.keyframes import count_own, fcurves_of
 from ..curves.moving import what_deforms, what_moves
 from . import registry
 from .selection import convertible, curves_at_hand, relaxed_together, selected_curves, shown_curves
@@ -156,9 +157,21 @@ def _keyed(obj: bpy.types.Object) -> Iterator[Refusal]:
 
 
 def _changed(obj: bpy.types.Object) -> Iterator[Refusal]:
-    if bake.was_baked(obj.data) and not bake.is_baked(obj.data):
+    if _has_coordinate_curves(obj):
+        yield _refused(obj, "'{name}' has keys of an earlier version; press Clear first")
+    yield from _edited_since(obj)
+
+
+def _edited_since(obj: bpy.types.Object) -> Iterator[Refusal]:
+    if bake.was_baked(obj.data) and not bake.is_baked(obj.data) and not _has_coordinate_curves(obj):
         sentence = "'{name}' has other keys or points than it was baked with; undo that, or relax a copy"
         yield _refused(obj, sentence, Remedy.COPY)
+
+
+def _has_coordinate_curves(obj: bpy.types.Object) -> bool:
+    """Whether an earlier version has keyed the coordinates of its points, each by an F-curve."""
+    ours = bake.was_baked(obj.data) and count_own(obj.data) is not None
+    return ours and any(".points[" in curve.data_path for curve in fcurves_of(obj.data))
 
 
 def _unkeyed(obj: bpy.types.Object) -> Iterator[Refusal]:
@@ -234,7 +247,7 @@ FITTABLE = Curves(_edited, _unreadable, _shared, _unfit)
 TUBED = Curves(_thin, others=(_thin,), among=relaxed_together)
 PINNABLE = Curves(_shared, among=curves_at_hand)
 BAKED = Curves(_changed, _unkeyed, others=(_unkeyed,))
-CLEARABLE = Curves(_changed, _unkeyed, _edited, _shared, others=(_unkeyed,))
+CLEARABLE = Curves(_edited_since, _unkeyed, _edited, _shared, others=(_unkeyed,))
 UNEDITED = Curves(_rekeyed)
 POLYGONS = Curves(_smooth, among=relaxed_together)
 _CLOSABLE, _POSSIBLE = Curves(_edited, _shared, _keyed), Curves(*_RELAXABLE, _smooth)

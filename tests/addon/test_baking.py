@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 import pytest
 from baked_curves import SHORT, again, blocks, clear, go_on, last_frame
-from blender_scenes import add_curve, add_trefoil, contents, evaluated, relax
+from blender_scenes import add_curve, add_trefoil, contents, evaluated, relax, stored
 from mobius_flow.addon.curves import keyframes
 from mobius_flow.addon.curves.recorded import BakedKeys
 from mobius_flow.core.knots import knot
@@ -34,6 +34,20 @@ def test_constant_thickness_is_the_least():
     further = [block.data[0].radius for block in obj.data.shape_keys.key_blocks[len(constant) :]]
     assert len(further) == 8
     assert np.ptp(further) < 1e-6
+
+
+def test_keys_of_earlier_versions_an_f_curve_for_every_coordinate_can_be_cleared():
+    obj = add_trefoil()
+    before = stored(obj.data)
+    relax(**SHORT)
+    obj.shape_key_clear()
+    for axis in range(3):
+        keyframes.add_keys(obj.data, "Relaxation", "splines[0].points[0].co", axis, np.arange(2.0), np.arange(2.0))
+    with pytest.raises(RuntimeError, match="'Knot' has keys of an earlier version; press Clear first"):
+        relax(**SHORT)
+    clear()
+    assert np.array_equal(stored(obj.data), before)
+    relax(**SHORT)
 
 
 def test_an_animation_without_motion_goes_on():

@@ -154,6 +154,14 @@ def test_a_motion_stops_where_strands_come_too_near() -> None:
     assert not found.proved
 
 
+@pytest.mark.parametrize("first", range(6))
+def test_strands_behind_a_bend_are_near_wherever_vertices_are_counted_from(first: int) -> None:
+    given = [[10.0, 0, 0], [0, 0, 0], [0, 1, 0.5], [10, -1, 0.5], [14, -6, 3], [14, 6, -3]]
+    vertices = np.roll(given, first, axis=0)
+    assert not is_rope(Mesh((6,), (True,)), vertices, vertices, np.array([0.3]))
+    assert is_rope(Mesh((6,), (True,)), vertices, vertices, np.array([0.1]))
+
+
 def test_nothing_is_proved_of_numbers_that_are_none() -> None:
     square = regular_polygon(4)
     lost = np.where(np.eye(4, 3) > 0, np.nan, square.vertices)
