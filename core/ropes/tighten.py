@@ -141,8 +141,9 @@ def tightening(task: Task, options: TightenOptions, others: Sequence[Curve] = ()
 
 def _spread(start: Task, unit: float, unknot: bool) -> tuple[PulledRope, Iterable[Iterate]]:
     """The rope of a start, and its way along a flow that spreads it out; none if it is tight already."""
+    most = 2000 if unknot else 300  # knots take up to a hundred, and parts that are not linked would part for ever
     options = RelaxOptions(
-        mesh="fixed", untangle="never", radius=unit, vertices=len(start.curve), tolerance=1e-2, max_iterations=2000
+        mesh="fixed", untangle="never", radius=unit, vertices=len(start.curve), tolerance=1e-2, max_iterations=most
     )
     if unknot:  # forces may balance wherever it is packed, but the flow and its moves bring it to the circle
         flow = relax(start, options)
