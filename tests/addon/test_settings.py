@@ -70,6 +70,8 @@ def test_every_option_can_be_set(name):
 def test_names_keep_their_numbers_in_files(tmp_path):
     scene = bpy.context.scene.mobius_flow
     assert scene.bl_rna.properties["untangle"].enum_items["never"].value == 438673936
+    written = scene.bl_rna.properties["keyframes"].enum_items  # 1 was an F-curve for every coordinate
+    assert {item.identifier: item.value for item in written} == {"SHAPE_KEYS": 0, "RESULT": 2}
     scene.untangle, scene.method, scene.tolerance, scene.metric = "never", "flow-l2", 1e-9, "h2"
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "a.blend"))
     bpy.ops.wm.read_factory_settings(use_empty=True)

@@ -19,9 +19,8 @@ class GiveWay(Move):
     there is more patience, as saddles of flow and rope are left in a dozen steps.
     """
 
-    share: float = (
-        0.5  # that is left of the radius each time: with .8 it takes a fifth more iterations to where it ends
-    )
+    # that is left of the radius each time: with .8 it takes a fifth more iterations to where it ends
+    share: float = 0.5
     first: tuple[int, float] = (15, 0.08)  # steps that must gain this part of the promise, the first time
     later: tuple[int, float] = (5, 0.5)
     every: int = 3  # steps, to save time

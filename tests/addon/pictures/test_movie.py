@@ -3,6 +3,7 @@
 import os
 import signal
 import sys
+from contextlib import contextmanager
 
 import bpy
 import numpy as np
@@ -123,6 +124,26 @@ def test_stopped_within_one_frame_without_a_trace(tmp_path, scene, rendered, mon
     assert os.listdir(tmp_path) == ["a.mp4"]
     assert (tmp_path / "a.mp4").read_text() == "old"
     assert list(bpy.data.scenes) == [scene]
+
+
+@pytest.mark.parametrize("suffix", [".jpg", ".mp4"])
+def test_a_full_disk_is_noticed(tmp_path, scene, monkeypatch, suffix):
+    """Blender's operator says it has written what is only half there."""
+    quiet = rendering.quiet
+
+    @contextmanager
+    def half_written():
+        with quiet():
+            yield
+        for path in tmp_path.rglob(f"*{suffix}"):
+            os.truncate(path, path.stat().st_size // 2)
+
+    monkeypatch.setattr(rendering, "quiet", half_written)
+    with pytest.raises(OSError, match="disk full"):
+        movie.render_movie(scene, tmp_path / "a.mp4")
+    assert os.listdir(tmp_path) == []
+    assert list(bpy.data.scenes) == [scene]
+    assert not bpy.data.movieclips
 
 
 PROCESS = """

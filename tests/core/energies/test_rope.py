@@ -71,6 +71,7 @@ def test_radii_of_components() -> None:
     curve = Curve.from_components(strands, closed=(False, False))
     assert 0.0 < Rope(np.array([0.3, 0.6])).value(curve) < np.inf
     assert Rope(np.array([0.3, 0.71])).value(curve) == np.inf
+    assert [Rope(np.array([0.3, r])).meets(curve) for r in (0.6, 0.71)] == [False, True]
     assert Rope(np.array([0.1, 0.2])).value(curve) == 0.0
 
 

@@ -8,7 +8,7 @@ import pytest
 from mobius_flow.core import Curve, CurveError, Mesh, OptionError, Status, Task, tighten
 from mobius_flow.core.base.deadline import TimeLimit
 from mobius_flow.core.collision import thickness
-from mobius_flow.core.driver import WithOutcome
+from mobius_flow.core.driver import WithOutcome, relax
 from mobius_flow.core.driver.relax import within
 from mobius_flow.core.energies.edge_pairs import EdgePairs
 from mobius_flow.core.knots import knot, overhand
@@ -22,6 +22,11 @@ from taylor import taylor_slope
 
 RING = np.exp(2j * np.pi * np.arange(60) / 60)
 CIRCLE = np.stack([RING.real, RING.imag, 0 * RING.real], axis=1)
+T = np.linspace(-2.0, 2.0, 41)
+WAVE = np.stack([T, 0.2 * np.sin(3 * T), 0.0 * T], axis=1)
+BESIDE = Curve.from_components(
+    [WAVE, CIRCLE + np.array([0.0, 4.0, 0.0])], (False, True)
+)  # an open rope and a closed one
 HOPF = Curve.from_components([CIRCLE, CIRCLE[:, [0, 2, 1]] + [1.0, 0.0, 0.0]])
 
 
@@ -140,6 +145,39 @@ def test_an_unknot_becomes_the_circle_of_its_rope():
     assert "circles" in outcome.message
 
 
+def test_only_what_is_no_knot_is_left_to_the_flow_and_its_moves(monkeypatch):
+    """Forces balance in an unknot that is packed, which nothing but the flow undoes."""
+    begun = []
+
+    def noted(start, options):
+        begun.append(start.curve)
+        return relax(start, options)
+
+    monkeypatch.setitem(tightening.__wrapped__.__globals__, "relax", noted)
+    for curve in (HOPF, knot("3_1", 60), Curve(CIRCLE)):
+        next(tightening(Task(curve=curve), TightenOptions()))
+    assert [len(curve.mesh.component_sizes) for curve in begun] == [1]
+    assert np.ptp(begun[0].vertices[:, 2]) == 0.0  # the circle
+
+
+def test_strands_that_keep_away_from_afar_find_shorter_shapes():
+    """With the flow's own barrier 8_21 ends at 67.8."""
+    assert tighten(knot("8_21", 100), vertices=100).outcome.ropelength < 66.5
+
+
+def test_of_starts_that_come_to_the_same_shape_one_goes_on(monkeypatch):
+    doubled, done = PulledRope.doubled, []
+
+    def noted(rope):
+        done.append(rope)
+        return doubled(rope)
+
+    monkeypatch.setattr(PulledRope, "doubled", noted)
+    *_, last = tightening(Task(curve=HOPF), TightenOptions(vertices=200), [HOPF, HOPF])
+    assert len(last.curve) == 200
+    assert len(set(map(id, done))) == 1
+
+
 def test_of_several_starts_the_shortest_goes_on_and_a_seed_tells_which():
     alone, _ = run(HOPF, vertices=100)
     several, _ = run(HOPF, vertices=100, starts=3, seed=4)
@@ -168,6 +206,15 @@ def test_rope_that_is_drawn_out_of_a_knot_counts_as_progress():
     merits = [rope.point.merit for _ in islice(rope.pulled(400), 15)]
     assert merits[-1] < merits[0] - 10.0
     assert rope.curve.length == pytest.approx(first.curve.length, rel=1e-3)
+
+
+def test_what_closed_ropes_lose_is_not_drawn_out_of_open_ones():
+    first = next(tightening(Task(curve=BESIDE), TightenOptions(vertices=200)))
+    rope = PulledRope(first, first.radius[0])
+    drawn = max(rope.point.drawn for _ in islice(rope.pulled(400), 30)) * rope.unit
+    lost = first.curve.component_lengths[1] - rope.curve.component_lengths[1]
+    assert lost > 0.5
+    assert drawn < 0.2 * lost
 
 
 def test_vertices_double_where_open_ropes_touch_and_ends_stay():
@@ -278,14 +325,11 @@ def test_open_ropes_that_are_not_knotted_become_straight():
 
 
 def test_an_open_rope_beside_a_closed_one_keeps_its_length():
-    t = np.linspace(-2.0, 2.0, 41)
-    wave, ring = np.stack([t, 0.2 * np.sin(3 * t), 0.0 * t], axis=1), CIRCLE + np.array([0.0, 4.0, 0.0])
-    given = Curve.from_components([wave, ring], (False, True))
-    result = tighten(given, vertices=200)
+    result = tighten(BESIDE, vertices=200)
     assert result.status is Status.CONVERGED
     assert "no knot" in result.message  # the ring's length is not counted
-    assert result.curve.component_lengths[0] == pytest.approx(given.component_lengths[0], rel=1e-2)
-    assert result.curve.component_lengths[1] < 0.9 * given.component_lengths[1]
+    assert result.curve.component_lengths[0] == pytest.approx(BESIDE.component_lengths[0], rel=1e-2)
+    assert result.curve.component_lengths[1] < 0.9 * BESIDE.component_lengths[1]
 
 
 @pytest.mark.parametrize("away", [1e4, 1e9])
