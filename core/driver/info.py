@@ -6,8 +6,6 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from ..base import BLAS, CurveError, MobiusFlowError, Table, check_known, checked
 from ..collision import check_embedded, check_gap, minimal_gap, thickness
 from ..curve import Curve, writhe_and_crossings
@@ -132,12 +130,12 @@ def info(curve: Curve) -> Info:
     in_space, few, names = curve.dimension == 3, len(curve) <= PAIRS_UP_TO, ("moebius", "edge", "vertex")
     writhe, crossings = writhe_and_crossings(curve) if in_space and few else (None, None)
     kind, rest, smooth, symmetry = knot_type(curve), None, None, None
-    with suppress(np.linalg.LinAlgError):  # of so few edges that the metric is singular
-        if len(curve) <= REST_UP_TO:
-            point = start_problem(curve, RelaxOptions(edge_lengths="keep", radius="none")).at_curve(curve)
-            bound = gradient_bound(RelaxOptions(), curve.mesh, point.energy)
-            index = stability(point).index if point.gradient_norm <= bound else None
-            rest = Rest(point.energy, point.gradient_norm, bound, index)
+    parts = zip(curve.mesh.component_sizes, curve.mesh.closed, strict=True)
+    if len(curve) <= REST_UP_TO and all(size > 4 or not closed for size, closed in parts):  # a square has no metric
+        point = start_problem(curve, RelaxOptions(edge_lengths="keep", radius="none")).at_curve(curve)
+        bound = gradient_bound(RelaxOptions(), curve.mesh, point.energy)
+        index = stability(point).index if point.gradient_norm <= bound else None
+        rest = Rest(point.energy, point.gradient_norm, bound, index)
     if in_space and rest is not None and rest.at_rest and curve.mesh.all_closed:
         found = next((each for at_rest in AT_REST.values() if (each := at_rest(curve)) is not None), None)
         name = None
