@@ -75,12 +75,12 @@ def test_strand_moves_are_keyed(name):
 
 def test_the_first_marker_may_come_to_lie_between_new_vertices():
     hexagon = np.array(regular_polygon(6).vertices)
-    hexagon[0] = 0.5 * (hexagon[5] + hexagon[1])
-    along = np.linspace(hexagon[5], hexagon[1], 7)[1:-1]
+    hexagon[0] = 0.6 * hexagon[5] + 0.4 * hexagon[1]  # of five pieces two come before it
+    along = np.linspace(hexagon[5], hexagon[1], 6)[1:-1]
     finer = np.concatenate([hexagon[1:], along])
     markers = Markers(6, closed=True)
-    markers.change([1, 2, 3, 4, 5], [0, 1, 2, 3, 4], 10)
-    markers.change(range(10), range(10), 10)
+    markers.change([1, 2, 3, 4, 5], [0, 1, 2, 3, 4], 9)
+    markers.change(range(9), range(9), 9)
     shapes = [markers.on(vertices, stage) for stage, vertices in enumerate((hexagon, finer, finer))]
     for shape in shapes:
         np.testing.assert_allclose(shape[0], hexagon[0], atol=1e-12)
