@@ -1,4 +1,6 @@
-"""Free motions of whole curves."""
+"""Motions that are proved free of contact, and ways in several of them."""
+
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -7,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mobius_flow.core import Curve, Mesh
 from mobius_flow.core.collision import FreeMotion, Limit, free_motion, is_free
+from mobius_flow.core.collision.motion import walk
 from shapes import hopf_link, regular_polygon, torus_trefoil
 
 
@@ -168,3 +171,26 @@ def test_thousands_of_components() -> None:
     places = np.stack(np.meshgrid(*3 * [np.arange(12.0)], indexing="ij"), axis=-1).reshape(-1, 1, 3)
     start = (places + rng.uniform(-0.4, 0.4, size=(len(places), 3, 3))).reshape(-1, 3)
     assert is_free(Mesh((3,) * len(places)), start, 2 * start + 1)
+
+
+@given(end=st.floats(0.01, 50.0), longest=st.floats(0.01, 5.0), seed=st.randoms())
+def test_a_walk_is_an_unbroken_chain_of_proved_legs(end, longest, seed) -> None:
+    asked: list[tuple[float, float, bool]] = []
+
+    def leg(place: float, stride: float) -> str | None:
+        asked.append((place, stride, seed.random() < 0.7))
+        return "proved" if asked[-1][2] else None
+
+    legs = list(walk(leg, end, longest, 1e-3 * longest))
+    ways = [(place, stride) for place, stride, free in asked if free]
+    assert [place for place, _ in legs] == [place + stride for place, stride in ways]
+    assert [place for place, _ in ways[1:]] == [place for place, _ in legs[:-1]]
+    for (_, before, free), (_, stride, _) in pairwise(asked):
+        assert stride == (min(2.0 * before, longest) if free else 0.5 * before)
+
+
+@pytest.mark.parametrize(("shortest", "tried"), [(1.0, 1), (0.5, 2), (0.3, 2), (0.1, 4)])
+def test_strides_shorter_than_the_shortest_are_not_tried(shortest: float, tried: int) -> None:
+    strides: list[float] = []
+    assert list(walk(lambda _, stride: strides.append(stride), 1.0, 1.0, shortest)) == []
+    assert strides == [0.5**k for k in range(tried)]

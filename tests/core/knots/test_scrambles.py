@@ -1,4 +1,4 @@
-"""Scrambles keep the type: every move is checked again in exact arithmetic, every result by its invariants."""
+"""Scrambled knots, and closures of open ones."""
 
 import numpy as np
 import pytest
@@ -7,9 +7,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from knot_diagrams import pairwise_linking
 from knot_type import knot_invariants
-from mobius_flow.core.base.errors import CurveError
-from mobius_flow.core.curve import Curve
+from mobius_flow.core import Curve, CurveError
+from mobius_flow.core.collision import check_embedded
+from mobius_flow.core.curve import Mesh
 from mobius_flow.core.knots import knot, scramble
+from mobius_flow.core.knots.closures import closed_far_away, closures
 from mobius_flow.core.knots.scrambles import triangle_distances
 
 POINTS = st.lists(st.integers(-6, 6), min_size=3, max_size=3).map(lambda p: np.array(p, dtype=np.float64) / 2)
@@ -51,3 +53,37 @@ def test_what_is_refused(option: str, value: float) -> None:
         scramble(knot("3_1"), 1, **{option: value})  # type: ignore[arg-type]
     with pytest.raises(CurveError, match="dimension 2"):
         scramble(Curve([[0, 0], [1, 0], [0, 1]]), 1)
+
+
+def test_deep_knots_stay_and_shallow_ones_depend_on_the_direction():
+    assert closures(knot("overhand"), 20) == {"3_1": 20}
+    trefoil = knot("3_1", 120)
+    cut = Curve(trefoil.vertices[: len(trefoil) * 2 // 3], Mesh((len(trefoil) * 2 // 3,), (False,)))
+    types = closures(cut, 60, seed=3)
+    assert types == closures(cut, 60, seed=3)
+    assert types != closures(cut, 60, seed=4)
+    assert set(types) == {"3_1", "unknot"}
+
+
+def test_links_close_component_by_component():
+    hopf = knot("hopf", 80)
+    arc = Curve(hopf.vertices[:-1], Mesh((40, 39), (True, False)))
+    closed = closed_far_away(arc, (0.0, 0.6, 0.8))
+    check_embedded(closed)
+    assert closed.mesh.all_closed
+    np.testing.assert_array_equal(closed.components[0], hopf.components[0])
+    both = Curve(hopf.vertices[1:-1], Mesh((39, 39), (False, False)))
+    check_embedded(closed_far_away(both, (0.0, 0.6, 0.8)))
+
+
+@pytest.mark.parametrize(
+    ("curve", "count", "said"),
+    [
+        (knot("3_1"), 5, "all components are closed"),
+        (knot("overhand"), 0, "number of closures is 0"),
+        (Curve(np.eye(4)[:, :2] + [[0.0, 3.0]], Mesh((4,), (False,))), 5, "dimension 2"),
+    ],
+)
+def test_refusals(curve, count, said):
+    with pytest.raises(CurveError, match=said):
+        closures(curve, count)

@@ -1,10 +1,14 @@
-"""Bounds of ropelengths are those of curves as thick as dense samples tell, and not below what is known."""
+"""Ropelengths of smooth curves, and what no rope or energy of a type is below."""
+
+from fractions import Fraction
 
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError, Mesh
 from mobius_flow.core.collision import thickness
-from mobius_flow.core.knots import knot
+from mobius_flow.core.knots import KNOTS, knot
+from mobius_flow.core.knots.shapes import least_energies
+from mobius_flow.lab.smooth.least import lower_bound
 from mobius_flow.lab.smooth.ropelength import bound_by_arcs, ropelength_bound
 from shapes import regular_polygon
 
@@ -79,3 +83,34 @@ def test_a_spline_that_may_be_another_knot_bounds_nothing():
     hook = np.array([[-5.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-5.0, 1.0, 0.0]])
     with pytest.raises(CurveError, match="another knot"):
         ropelength_bound(Curve.from_components([hook, hook[:, [0, 2, 1]] * [-1.0, 1.0, 1.0] + [1.9, 0.0, 0.0]]))
+
+
+PI = Fraction("3.14159265358979323846264338327950288")
+
+
+@pytest.mark.parametrize(
+    ("name", "exact"),
+    [
+        ("0_1", 4),
+        ("m3_1", 4 + 6 * PI),
+        ("10_165", 4 + 20 * PI),
+        ("L2a1", 8 + 4 * PI**2),
+        ("L5a1", 8 + 4 * PI**2),  # with linking number 0
+        ("L6a5", 12 + 12 * PI**2),
+        ("L6a4", 12),  # no two of the Borromean rings are linked
+    ],
+)
+def test_by_crossings_and_linked_pairs(name, exact):
+    assert Fraction(0) <= exact - Fraction(lower_bound(name)) < Fraction("3e-15") * exact
+
+
+def test_knots_of_any_crossing_number_have_rounded_down_bounds():
+    for c in range(3, 11):
+        assert Fraction(lower_bound(f"{c}_1")) < 4 + 2 * c * PI
+
+
+def test_below_every_energy_of_the_table_but_where_a_circle_or_hopf_link_attains_it():
+    for name in KNOTS:
+        energy, error = least_energies()[name]
+        attained = name in ("0_1", "L2a1")
+        assert (lower_bound(name) > energy - error - 1e-8) if attained else (lower_bound(name) < energy - error)
