@@ -13,13 +13,14 @@ import numpy as np
 
 from ..core.base import ENERGY_ROUNDING, FloatArray
 from ..core.curve import Curve, free_edges
-from ..core.descent import Leg, LineSearch, Method, NoStep, Point, Problem, SearchState, Step, attempt, on_target
+from ..core.descent import Leg, LineSearch, Method, NoStep, Point, SearchState, Step, attempt, on_target
 from ..core.descent.directions import ConjugateGradient, LimitedMemoryBFGS
+from ..core.descent.geometry import Geometry
 from ..core.descent.hessian import energy_hessian, projected_conjugate_gradient
 from ..core.descent.line_searches import NOTHING, Armijo, FirstTrial, NormalStep
-from ..core.descent.methods import Geometry
 from ..core.descent.step import Rejected, judged
-from ..core.solve.constraints import ConstraintDerivative
+from ..core.energies import Objective
+from ..core.solve.constraints import ConstraintDerivative, Constraints
 from ..core.solve.metrics import METRICS, InnerProduct, Metric, MoebiusMetric
 from ..core.solve.saddle import TangentSpace
 
@@ -33,30 +34,26 @@ class Penalised(Geometry):
 
     penalty: float = 1000.0  # α
 
-    def value_and_derivative(self, problem: Problem, curve: Curve) -> tuple[float, FloatArray]:
-        energy, derivative = problem.objective.value_and_derivative(curve)
-        targets = problem.constraints.lengths
+    def value_and_derivative(
+        self, objective: Objective, constraints: Constraints, curve: Curve
+    ) -> tuple[float, FloatArray]:
+        energy, derivative = objective.value_and_derivative(curve)
+        targets = constraints.lengths
         stretch = np.log(curve.edge_lengths / targets)
         weights = self.penalty * targets
         pull = ConstraintDerivative.of_lengths(curve).apply_transpose(2.0 * weights * stretch)
         return energy + float(weights @ stretch**2), derivative + pull
 
-    def tangent_space(self, problem: Problem, curve: Curve, inner: InnerProduct) -> TangentSpace:
+    def tangent_space(
+        self, constraints: Constraints, curve: Curve, metric: Metric, inner: InnerProduct
+    ) -> TangentSpace:
         # the whole space, but for pins
-        penalty = self.penalty if problem.metric.extends_penalty else 0.0
-        constraints = problem.constraints
+        penalty = self.penalty if metric.extends_penalty else 0.0
         rows = ConstraintDerivative.of_lengths(curve, constraints.pins.vertices)
         return inner.tangent_space(replace(rows, symmetry=constraints.symmetry), penalty * constraints.lengths)
 
-    def residual(self, problem: Problem, curve: Curve) -> FloatArray:  # every polygon is allowed
-        return np.zeros(len(free_edges(curve.mesh, problem.constraints.pins.vertices)))
-
-    def retract(self, base: Point, vertices: FloatArray, level: FloatArray, space: TangentSpace) -> Point | None:
-        point = base.problem.at(vertices)
-        return point if point.nondegenerate else None
-
-    def transport(self, point: Point, u: FloatArray) -> FloatArray:
-        return u  # there is only one tangent space
+    def residual(self, constraints: Constraints, curve: Curve) -> FloatArray:  # every polygon is allowed
+        return np.zeros(len(free_edges(curve.mesh, constraints.pins.vertices)))
 
 
 @dataclass(frozen=True)

@@ -7,13 +7,14 @@ from descent_contracts import point_on, with_geometry
 from mobius_flow.core.collision import Contact, FreeMotion, Limit
 from mobius_flow.core.descent import Point, Problem
 from mobius_flow.core.descent.directions import ConjugateGradient, LimitedMemoryBFGS, SteepestDescent
+from mobius_flow.core.descent.geometry import Geometry
 from mobius_flow.core.descent.line_searches import Armijo
-from mobius_flow.core.descent.methods import Constrained, Geometry, StepRule
+from mobius_flow.core.descent.methods import StepRule
 from mobius_flow.core.descent.second_order import TrustRegion
 from mobius_flow.lab.methods import Accelerated, BackwardEuler, Penalised, WeakWolfe
 from shapes import torus_trefoil
 
-GEOMETRIES: dict[str, Geometry] = {"constrained": Constrained(), "penalised": Penalised(50.0)}
+GEOMETRIES: dict[str, Geometry] = {"constrained": Geometry(), "penalised": Penalised(50.0)}
 SEARCHES = {"armijo": Armijo(), "wolfe": WeakWolfe()}
 DIRECTIONS = {"steepest": SteepestDescent(), "cg": ConjugateGradient(), "lbfgs": LimitedMemoryBFGS()}
 RULES: dict[str, tuple[StepRule, str]] = {

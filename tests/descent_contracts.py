@@ -8,7 +8,7 @@ from mobius_flow.core import Curve
 from mobius_flow.core.base.tolerances import ENERGY_ROUNDING
 from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.descent import Point, SearchState, Step
-from mobius_flow.core.descent.methods import Geometry
+from mobius_flow.core.descent.geometry import Geometry
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.proof.filter import doubtful_pairs
 from tasks import wanted

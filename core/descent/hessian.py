@@ -16,8 +16,8 @@ import numpy as np
 
 from ..base import BULK, FloatArray
 from ..energies.moebius import OwnBlocks
-from ..solve.saddle import TangentSpace
-from ..solve.saddle.iterative import LinearMap, conjugate_gradients
+from ..solve.saddle import LinearMap, TangentSpace
+from ..solve.saddle.iterative import conjugate_gradients
 from .problem import Point
 
 ASSEMBLED_SIZE = 3000  # unknowns up to which one assembled matrix beats products that go through all pairs

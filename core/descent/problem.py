@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -18,10 +18,8 @@ from ..energies.rope import Rope
 from ..solve.constraints import Barycenters, Constraints
 from ..solve.metrics import InnerProduct, Metric, SparseInnerProduct
 from ..solve.saddle import TangentSpace
+from .geometry import Geometry
 from .task import Units
-
-if TYPE_CHECKING:
-    from .methods import Geometry
 
 
 class PairSums(Protocol):
@@ -50,7 +48,7 @@ class Problem:
     metric: Metric
     constraints: Constraints  # targets of lengths and barycenter, and pins
     units: Units
-    geometry: "Geometry"  # whether the targets are prescribed, or missing them costs energy
+    geometry: Geometry  # whether the targets are prescribed, or missing them costs energy
     solver: PairSums  # where objective and metric come from, on this mesh and on others
     obstacles: tuple[Obstacle, ...] = ()  # what no motion may touch, in the user's units
     radius: FloatArray | None = None  # of each component as a rope, in the user's units, if it is one
@@ -63,7 +61,7 @@ class Problem:
         pins: Pins,
         obstacles: tuple[Obstacle, ...],
         solver: PairSums,
-        geometry: "Geometry",
+        geometry: Geometry,
         barycenters: Barycenters | None = None,
         symmetry: Symmetry = NO_SYMMETRY,
         radius: FloatArray | None = None,
@@ -209,17 +207,44 @@ class Point:
         return bool(np.isfinite(self.vertices).all() and self.curve.edge_lengths.min() > 0.0)
 
     def retract(self, vertices: FloatArray, level: FloatArray, space: TangentSpace | None = None) -> "Point | None":
-        """The point of a level of the residual that vertices lead to, in this metric by default; None if too far."""
-        return self.problem.geometry.retract(self, vertices, level, self.tangent_space if space is None else space)
+        """Find Q near ``vertices`` with Φ(Q) = ``level`` by Q ← Q − C(P)^† (Φ(Q) − level), P this point: (42).
+
+        The pseudo-inverse is that of ``space``, by default in this point's metric.  Once corrections are small the
+        derivative is that at Q and the pseudo-inverse one that is cheap, by which the residual vanishes quadratically.
+        There is always one: many short steps, each within the tolerance, would drift away together, and energy that
+        lengths so gain or lose be taken for the step's.  None if the residual does not contract: the step was too long.
+        """
+        problem, geometry, last = self.problem, self.problem.geometry, np.inf
+        for corrections in range(geometry.max_iterations):
+            point = problem.at(vertices)
+            if not point.nondegenerate:
+                return None
+            if not geometry.prescribes:  # every polygon is allowed
+                return point
+            residual = point.residual - level
+            error = problem.constraints.error(problem.mesh, residual)
+            if error <= geometry.tolerance and corrections:
+                return point
+            if not error <= geometry.contraction * last:
+                return None
+            last, space = error, self.tangent_space if space is None else space
+            correction = space.restoration(problem.constraints, point.curve, residual)
+            change = np.linalg.norm(problem.mesh.changes(correction), axis=1)  # how it turns or stretches edges
+            if np.max(change / point.curve.edge_lengths) > geometry.small:
+                correction = -space.pseudo_inverse(residual)
+            vertices = vertices + correction
+        return None
 
     def transport(self, u: FloatArray) -> FloatArray:
         """A vector of another tangent space moved to that of this point; shape (n, m)."""
-        return self.problem.geometry.transport(self, u)
+        return self.tangent_space.project(u) if self.problem.geometry.prescribes else u
 
     @cached_property
     def _energy_and_derivative(self) -> tuple[float, FloatArray]:
         check_time()
-        value, derivative = self.problem.geometry.value_and_derivative(self.problem, self.curve)
+        value, derivative = self.problem.geometry.value_and_derivative(
+            self.problem.objective, self.problem.constraints, self.curve
+        )
         return value, self.problem.constraints.symmetry.mean(derivative)
 
     @property
@@ -233,7 +258,7 @@ class Point:
     @cached_property
     def residual(self) -> FloatArray:
         """How far r lengths and p barycenters are from their targets, shape (r + p·m,); 0 where none is prescribed."""
-        return self.problem.geometry.residual(self.problem, self.curve)
+        return self.problem.geometry.residual(self.problem.constraints, self.curve)
 
     @property
     def infeasibility(self) -> float:
@@ -248,7 +273,8 @@ class Point:
     @cached_property
     def tangent_space(self) -> TangentSpace:
         """Where directions lie, with the metric."""
-        return self.problem.geometry.tangent_space(self.problem, self.curve, self.inner_product)
+        problem = self.problem
+        return problem.geometry.tangent_space(problem.constraints, self.curve, problem.metric, self.inner_product)
 
     @cached_property
     def _gradient_and_multipliers(self) -> tuple[FloatArray, FloatArray]:

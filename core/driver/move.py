@@ -1,16 +1,16 @@
-"""What may act on a run between its steps: the events that moves are told of, and the changes they answer with."""
+"""What may act on a run between its steps: events, the changes that moves answer with, and the loop over both."""
 
-from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
 
 from ..curve.refine import Resolution
-from ..descent import Method, NoStep, Point, Step
+from ..descent import Method, NoStep, Point, SearchState, Step
 from ..io.trajectory import Iterate
-from .outcome import Outcome
-
-if TYPE_CHECKING:
-    from .run import Run
+from .outcome import Outcome, degenerate, stalled
+from .run import Relaxation, Run
 
 
 class Start:
@@ -41,7 +41,7 @@ class Move:
     event as it is.  Settings are fields.  Where the run goes on as from a start moves are made again, unless they last.
     """
 
-    run: "Run"
+    run: Run
     lasts: ClassVar[bool] = False
 
     def __call__(self, event: Event) -> Event | Change:
@@ -80,3 +80,57 @@ class Move:
     def summarised(self, outcome: Outcome) -> Outcome:
         """The outcome of the whole run with clauses about what the move did."""
         return outcome
+
+
+def iterates(run: Run, moves: Sequence[Callable[[Run], Move]]) -> Relaxation:
+    """Yield the start and every accepted step, motion or change of mesh, each once; return how it ended.
+
+    After every event the moves are asked in turn, until one of them answers with a change.  Where none does, the run
+    ends if a rule says so, or the method takes its next step.
+    """
+    made = [make(run) for make in moves]
+    yield run.iterate
+    event: Event = Start()
+    ending: Outcome | None = None
+    while ending is None:
+        mesh, answer = run.problem.mesh, event
+        change: Change | None = None
+        try:
+            for move in made:
+                said = move(answer)
+                if isinstance(said, Change):
+                    change = said
+                    break
+                answer = said
+            point = None if change is None else change.point
+            # each step is an iteration, and so is another mesh
+            if change and len(change.steps) + bool(point and point.problem.mesh is not mesh) <= run.iterations_left:
+                yield from change.iterates
+                for step in change.steps:
+                    before = run.iterate
+                    yield run.take(step)
+                    if not step.size:  # others have been found by a search, and lower the energy
+                        run.rises.change(before, run.iterate)
+                run.resolution = change.resolution or run.resolution
+                if change.method is not None:
+                    run.method, run.memory = change.method, SearchState()
+                if point is not None:
+                    yield from run.enter(point)
+                made = [replace(move) if change.anew and not move.lasts else move for move in made]
+                if change.anew or run.problem.mesh is not mesh:
+                    event = Start()
+                    continue
+            elif isinstance(event, Outcome):  # no move leads on, or one needs more iterations than are left
+                ending = run.at_limit() if change else run.stopping(answer)
+                continue
+            event = run.stopping(None if change else answer) or run.step()
+            if isinstance(event, Step):
+                yield run.accept(event)
+        except np.linalg.LinAlgError as error:
+            if isinstance(event, Outcome):
+                ending = stalled(degenerate(error))
+            event = stalled(degenerate(error))
+    outcome = run.rises.summarised(ending, run.iterate.index - (run.strand_moves.iterates if run.strand_moves else 0))
+    for move in made:
+        outcome = move.summarised(outcome)
+    return outcome

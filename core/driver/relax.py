@@ -14,11 +14,12 @@ from ..curve import Curve
 from ..descent.task import Task
 from ..io.trajectory import Iterate
 from . import moves
-from .moves.hand import Hand
+from .hand import Hand
+from .move import iterates
 from .options import RelaxOptions
 from .outcome import INTERRUPTED, OUT_OF_MEMORY, Outcome, Phase, Result, Status
 from .prepare import Symmetrised, start_problem
-from .run import Relaxation, Run, iterates
+from .run import Relaxation, Run
 from .solver import Solver
 
 

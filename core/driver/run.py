@@ -1,9 +1,9 @@
-"""One relaxation in progress: its state, when it stops, and its loop over steps and moves."""
+"""One relaxation in progress: its state, how that changes, and when it stops."""
 
 from collections import deque
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Generator, Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -13,13 +13,10 @@ from ..descent import METHODS, LineSearch, NoStep, Point, Problem, SearchState, 
 from ..energies.components import energy_scale
 from ..energies.hierarchy import SampledErrors
 from ..io.trajectory import Iterate, StrandMoves
-from .move import Change, Event, Move, Start
+from .hand import Hand
 from .options import RelaxOptions
 from .outcome import Outcome, Rises, Status, converged, degenerate, stalled
 from .prepare import Symmetrised
-
-if TYPE_CHECKING:
-    from .moves.hand import Hand
 
 Relaxation = Generator[Iterate, None, Outcome]
 
@@ -154,24 +151,13 @@ class Run:
         """Go on with the requested method, which remembers nothing."""
         self.method, self.memory = METHODS[self.options.method], SearchState()
 
-    def change(self, change: Change) -> Iterator[Iterate]:
-        """Make a change; yield the iterates it leads to, one for each step and one for a new mesh."""
-        yield from change.iterates
-        for step in change.steps:
-            before = self.iterate
-            yield self.take(step)
-            if not step.size:  # others have been found by a search, and lower the energy
-                self.rises.change(before, self.iterate)
-        self.resolution = change.resolution or self.resolution
-        if change.method is not None:
-            self.method, self.memory = change.method, SearchState()
-        if change.point is None:
-            return
-        before, point, pull = self.iterate, change.point, self.problem.objective.pull
-        if not self._remeshes(change):
+    def enter(self, point: Point) -> Iterator[Iterate]:
+        """Go on at a point of another problem; yield the iterate that it is if it is on another mesh."""
+        if point.problem.mesh is self.problem.mesh:  # another one may have as many vertices
             self.view(point)
-            self.iterate = self.described(before.index)
+            self.iterate = self.described(self.iterate.index)
             return
+        before, pull = self.iterate, self.problem.objective.pull
         if pull is not None:  # by the hand at the same place, to the same target
             old, new = self.problem.units, point.problem.units
             point = point.pulled(pull.on(self.point.curve, point.curve, lambda x: new.from_user(old.to_user(x))))
@@ -179,15 +165,7 @@ class Run:
         self.rises.change(before, self.go(point))
         yield self.iterate
 
-    def allows(self, change: Change) -> bool:
-        """Whether the budget suffices for a change: each step is an iteration, and so is another mesh."""
-        return len(change.steps) + self._remeshes(change) <= self.iterations_left
-
-    def _remeshes(self, change: Change) -> bool:
-        """Whether a change is to another mesh, perhaps with as many vertices."""
-        return change.point is not None and change.point.problem.mesh is not self.problem.mesh
-
-    def stopping(self, event: Event | Change | None = None) -> Outcome | None:
+    def stopping(self, event: object = None) -> Outcome | None:
         """How the run ends here, or after an event that no move knows an answer to; None if it goes on.
 
         These are all rules but two: the time limit acts even in the middle of a step (`within`), and an interrupt or
@@ -199,14 +177,13 @@ class Run:
         if isinstance(event, Outcome):
             return event
         bound = gradient_bound(self.options, self.problem.mesh, self.point.energy)
-        if not isinstance(event, Change) and self.point.gradient_norm <= bound and self.feasible:
+        if self.point.gradient_norm <= bound and self.feasible:
             norm = self.point.with_own_metric().gradient_norm
             if norm <= bound:
                 outcome = converged(norm, bound)
                 frozen = "nothing can move: the curve is pinned, or straight between pins"
                 return outcome.adding(frozen) if self.frozen else outcome
-        # a change comes here if it needs more iterations than are left
-        return self.at_limit() if isinstance(event, Change) or self.iterations_left <= 0 else None
+        return self.at_limit() if self.iterations_left <= 0 else None
 
     def at_limit(self) -> Outcome:
         """How the run ends at the iteration limit."""
@@ -221,45 +198,3 @@ class Run:
 def gradient_bound(options: RelaxOptions, mesh: Mesh, energy: float) -> float:
     """Norm of the projected gradient at which a curve of this energy is at rest."""
     return options.tolerance * float(np.sqrt(energy_scale(mesh, energy)))
-
-
-def iterates(run: Run, moves: Sequence[Callable[[Run], Move]]) -> Relaxation:
-    """Yield the start and every accepted step, motion or change of mesh, each once; return how it ended.
-
-    After every event the moves are asked in turn, until one of them answers with a change.  Where none does, the run
-    ends if a rule says so, or the method takes its next step.
-    """
-    made = [make(run) for make in moves]
-    yield run.iterate
-    event: Event = Start()
-    ending: Outcome | None = None
-    while ending is None:
-        mesh, answer = run.problem.mesh, event
-        change: Change | None = None
-        try:
-            for move in made:
-                said = move(answer)
-                if isinstance(said, Change):
-                    change = said
-                    break
-                answer = said
-            if change is not None and run.allows(change):
-                yield from run.change(change)
-                made = [replace(move) if change.anew and not move.lasts else move for move in made]
-                if change.anew or run.problem.mesh is not mesh:
-                    event = Start()
-                    continue
-            elif isinstance(event, Outcome):  # no move leads on
-                ending = run.stopping(change or answer)
-                continue
-            event = run.stopping(None if change else answer) or run.step()
-            if isinstance(event, Step):
-                yield run.accept(event)
-        except np.linalg.LinAlgError as error:
-            if isinstance(event, Outcome):
-                ending = stalled(degenerate(error))
-            event = stalled(degenerate(error))
-    outcome = run.rises.summarised(ending, run.iterate.index - (run.strand_moves.iterates if run.strand_moves else 0))
-    for move in made:
-        outcome = move.summarised(outcome)
-    return outcome

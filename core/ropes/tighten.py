@@ -21,9 +21,10 @@ from ..collision import thickness
 from ..curve import Curve
 from ..descent.task import Task
 from ..driver import Outcome, Relaxation, RelaxOptions, Result, Status, finish, relax
+from ..driver.move import iterates
 from ..driver.prepare import rope_radius, start_problem
 from ..driver.relax import within
-from ..driver.run import Run, iterates
+from ..driver.run import Run
 from ..energies.rope import Rope
 from ..io.trajectory import Iterate
 from ..knots import knot_type

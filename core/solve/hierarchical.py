@@ -178,7 +178,7 @@ class CompressedInnerProduct:
         return 0.5 * (matrix + matrix.T)
 
     def tangent_space(self, constraints: ConstraintDerivative, weights: FloatArray | None = None) -> TangentSpace:
-        return IterativeTangentSpace(self, constraints, self.tolerances, weights)
+        return IterativeTangentSpace(self.apply, self.model, constraints, self.tolerances, weights)
 
     @cached_property
     def model(self) -> TwoLevel:

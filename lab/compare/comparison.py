@@ -10,11 +10,11 @@ from itertools import pairwise, product
 from ...core.base import BLAS, OptionError, TimeLimit, check_number, checked, choice
 from ...core.curve import Curve
 from ...core.descent import METHODS, Problem, Task
+from ...core.driver.move import iterates
 from ...core.driver.moves import ON_A_FIXED_MESH
 from ...core.driver.options import RelaxOptions
 from ...core.driver.prepare import start_problem
 from ...core.driver.relax import WithOutcome, begin, within
-from ...core.driver.run import iterates
 from ...core.driver.solver import Solver
 from ...core.solve.metrics import METRICS
 

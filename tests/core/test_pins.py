@@ -10,8 +10,8 @@ from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.curve import Mesh, refine
 from mobius_flow.core.curve.pins import Pins, arcs, ends_of, spans
 from mobius_flow.core.curve.refine import smoothed, subdivide, superfluous
+from mobius_flow.core.descent.geometry import Geometry
 from mobius_flow.core.descent.hessian import lagrangian_hessian, lagrangian_matrix
-from mobius_flow.core.descent.methods import Constrained
 from mobius_flow.core.driver.moves.rest import stability
 from mobius_flow.core.knots import knot
 from shapes import regular_polygon, torus_trefoil
@@ -173,7 +173,7 @@ def test_little_slack_is_no_obstacle() -> None:
     assert message.startswith("converged")
     # (42) ends as soon as a correction leaves no relative error of a length above its tolerance: how far below it the
     # last one leads, by quadratic convergence, depends on the last step, and with that on the processor
-    assert iterates[-1].edge_length_error <= Constrained().tolerance
+    assert iterates[-1].edge_length_error <= Geometry().tolerance
 
 
 @pytest.mark.parametrize(

@@ -15,9 +15,9 @@ from ...descent import Leg, Point, Step, attempt, soft_modes
 from ...energies.components import energy_scale
 from ...knots import knot_type
 from ...knots.diagrams import quick_invariants
-from ..move import Change, Move
+from ..move import Change, Move, iterates
 from ..outcome import Outcome
-from ..run import Run, iterates
+from ..run import Run
 from .links import SplitLinks
 from .rest import CheckAccuracy, Fallback
 

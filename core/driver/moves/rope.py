@@ -7,8 +7,9 @@ import numpy as np
 from ...descent import NoStep, Point, Step
 from ...energies.components import energy_scale
 from ...energies.rope import Rope
+from ..move import Change, Move
 from ..outcome import Outcome
-from ..run import Change, Move, gradient_bound
+from ..run import gradient_bound
 
 
 @dataclass(eq=False)

@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, Protocol
+from typing import ClassVar
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
@@ -17,12 +17,9 @@ from scipy.linalg import cho_factor, cho_solve
 from ...base import FloatArray, IntArray, check_time
 from ...curve import Curve, Mesh, holds
 from ..constraints import ConstraintDerivative, Constraints
-from .tangent_space import TangentSpace
+from .models import Model
+from .tangent_space import LinearMap, TangentSpace
 
-if TYPE_CHECKING:
-    from ..hierarchical import CompressedInnerProduct
-
-LinearMap = Callable[[FloatArray], FloatArray]
 # From a residual r, and what iterations so far took off the squared norm of the error, to z near the operator's inverse
 # times r, and the residual to go on with: r itself, or r without a part that is of no consequence.  None is enough.
 Preconditioner = Callable[[FloatArray, list[float]], tuple[FloatArray, FloatArray] | None]
@@ -78,19 +75,6 @@ def stopping(solve: LinearMap, enough: Callable[[float, float], bool]) -> Precon
 def relative(solve: LinearMap, tolerance: float) -> Preconditioner:
     """One that stops when the residual is small against the solution."""
     return stopping(solve, lambda rho, square: rho <= tolerance**2 * square)
-
-
-class Model(Protocol):
-    """An inner product M that is cheaply inverted."""
-
-    def solve(self, f: FloatArray) -> FloatArray:
-        """M⁻¹ f; shape (n, k)."""
-
-    def tension(self, tangents: FloatArray) -> LinearMap:
-        """A map near the inverse of Σ_k diag(t_k) D M⁻¹ Dᵀ diag(t_k), D the edge differences; (n,) to (n,).
-
-        It leads from changes of edge lengths to tensions that cause them, for t = τ/ℓ of shape (n, m).
-        """
 
 
 class PinnedModel:
@@ -191,15 +175,16 @@ class IterativeTangentSpace(TangentSpace):
 
     def __init__(
         self,
-        inner: "CompressedInnerProduct",
+        product: LinearMap,
+        model: Model,
         constraints: ConstraintDerivative,
         tolerances: Tolerances,
         weights: FloatArray | None = None,
     ) -> None:
-        super().__init__(inner, constraints, weights)
+        super().__init__(product, constraints, weights)
         self._tolerances = tolerances
         pins = constraints.pins
-        self._model = PinnedModel(inner.model, constraints.mesh, pins) if len(pins) else inner.model
+        self._model = PinnedModel(model, constraints.mesh, pins) if len(pins) else model
 
     @cached_property
     def _preconditioner(self) -> ConstraintPreconditioner:

@@ -10,7 +10,7 @@ transform, but insensitive to the mesh.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Protocol
 
 import numpy as np
 import scipy.sparse as sp
@@ -18,13 +18,25 @@ from scipy.fft import irfft, rfft
 
 from ...base.types import FloatArray
 from ...curve import Mesh
-from .iterative import LinearMap, Model
-from .tangent_space import factorised
+from .tangent_space import LinearMap, factorised
 
 LEAST = 1e-6  # modulated value, relative to the largest one: where edges double back it may be 0
 
 Symbol = Callable[[FloatArray], FloatArray]
 """A positive function of frequencies."""
+
+
+class Model(Protocol):
+    """An inner product M that is cheaply inverted."""
+
+    def solve(self, f: FloatArray) -> FloatArray:
+        """M⁻¹ f; shape (n, k)."""
+
+    def tension(self, tangents: FloatArray) -> LinearMap:
+        """A map near the inverse of Σ_k diag(t_k) D M⁻¹ Dᵀ diag(t_k), D the edge differences; (n,) to (n,).
+
+        It leads from changes of edge lengths to tensions that cause them, for t = τ/ℓ of shape (n, m).
+        """
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from descent_contracts import with_geometry
 from mobius_flow.core import METHODS, Curve, OptionError, RelaxOptions, Status, minimize, relax
+from mobius_flow.core.descent.geometry import Geometry
 from mobius_flow.core.descent.hessian import lagrangian_hessian
-from mobius_flow.core.descent.methods import Constrained
 from mobius_flow.core.driver.moves.rest import stability
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.energies import ENERGIES, MoebiusEnergy
@@ -115,7 +115,7 @@ def test_lagrangian_hessian_has_slope_three_on_the_constraint_set():
     By (42) alone, whose corrections are orthogonal to the gradient: others bend Q(t) up or down the slope.
     """
     even = minimize(torus_trefoil(60), RelaxOptions(max_iterations=3, vertices=60)).curve
-    point = with_geometry(point_at(even), Constrained(small=1e-300))
+    point = with_geometry(point_at(even), Geometry(small=1e-300))
     rng = np.random.default_rng(23)
     v = point.tangent_space.project(rng.normal(size=point.vertices.shape))
     v /= np.abs(v).max()

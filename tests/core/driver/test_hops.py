@@ -12,6 +12,7 @@ from mobius_flow.core import Curve, Iterate, Mesh, Obstacle, RelaxOptions, Resul
 from mobius_flow.core.collision import FreeMotion, Limit
 from mobius_flow.core.curve import refine
 from mobius_flow.core.descent import Point, Step
+from mobius_flow.core.driver.move import iterates
 from mobius_flow.core.driver.moves import MOVES
 from mobius_flow.core.driver.moves.hops import (
     IS_UNKNOT,
@@ -27,7 +28,7 @@ from mobius_flow.core.driver.moves.hops import (
 )
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.driver.relax import WithOutcome
-from mobius_flow.core.driver.run import Run, iterates
+from mobius_flow.core.driver.run import Run
 from mobius_flow.core.knots import double, knot, overhand, torus_knot
 from mobius_flow.lab import starts
 from shapes import hopf_link, regular_polygon, torus_trefoil

@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from descent_contracts import point_on
+from descent_contracts import point_on, with_geometry
 from hard_curves import uneven
 from mobius_flow.core import Curve, RelaxOptions, minimize
 from mobius_flow.core.base.types import FloatArray
-from mobius_flow.core.descent.methods import Constrained
+from mobius_flow.core.descent.geometry import Geometry
 from mobius_flow.core.solve.constraints import Barycenters, Constraints
 from mobius_flow.core.solve.saddle import TangentSpace
 from mobius_flow.core.solve.saddle.tangent_space import euclidean_correction
@@ -61,7 +61,7 @@ def test_short_steps_do_not_drift_away_from_the_lengths() -> None:
     move = 5e-6 * base.gradient / base.gradient_norm
     missed = base.problem.at(base.vertices - move).infeasibility
     end = base.retract(base.vertices - move, base.residual)
-    assert 100 * end.infeasibility < missed < Constrained().tolerance
+    assert 100 * end.infeasibility < missed < Geometry().tolerance
 
 
 class Counting(TangentSpace):
@@ -82,10 +82,10 @@ def test_the_metric_is_asked_only_for_large_corrections(size: float, solves: int
     direction = point.tangent_space.project(np.random.default_rng(47).normal(size=point.vertices.shape))
     direction *= size / np.abs(direction).max()
     moved = point.problem.at(point.vertices + direction).residual
-    assert (np.abs(moved - point.residual).max() > Constrained().small) == (solves > 0)
+    assert (np.abs(moved - point.residual).max() > Geometry().small) == (solves > 0)
     space = Counting(point.tangent_space)
     end = point.retract(point.vertices + direction, point.residual, space)
-    assert np.abs(end.residual).max() <= Constrained().tolerance
+    assert np.abs(end.residual).max() <= Geometry().tolerance
     assert space.solves == solves
 
 
@@ -95,11 +95,10 @@ def test_the_last_corrections_converge_quadratically() -> None:
     direction = point.tangent_space.project(np.random.default_rng(53).normal(size=point.vertices.shape))
     direction *= 0.003 / np.abs(direction).max()
     aimed = point.vertices + direction
-    assert 1e-4 < np.abs(point.problem.at(aimed).residual).max() < Constrained().small
-    few = Constrained(max_iterations=3)
-    assert few.retract(point, aimed, point.residual, point.tangent_space) is not None
-    chord = replace(few, small=1e-300)
-    assert chord.retract(point, aimed, point.residual, point.tangent_space) is None
+    assert 1e-4 < np.abs(point.problem.at(aimed).residual).max() < Geometry().small
+    few = Geometry(max_iterations=3)
+    assert with_geometry(point, few).retract(aimed, point.residual) is not None
+    assert with_geometry(point, replace(few, small=1e-300)).retract(aimed, point.residual) is None
 
 
 def test_edges_much_shorter_than_others_are_left_to_the_metric() -> None:
@@ -107,13 +106,13 @@ def test_edges_much_shorter_than_others_are_left_to_the_metric() -> None:
     point = point_on(uneven(torus_trefoil(60), 1000.0, seed=5))
     aimed = point.vertices - 1e-3 / np.abs(point.gradient).max() * point.gradient
     residual = point.problem.at(aimed).residual - point.residual
-    assert np.abs(residual).max() < Constrained().small
+    assert np.abs(residual).max() < Geometry().small
     space = Counting(point.tangent_space)
     end = point.retract(aimed, point.residual, space)
     assert end is not None
     assert space.solves > 0
     tau, before = (p.curve.edge_vectors / p.curve.edge_lengths[:, None] for p in (end, point.problem.at(aimed)))
-    assert np.linalg.norm(tau - before, axis=1).max() < 10.0 * Constrained().small
+    assert np.linalg.norm(tau - before, axis=1).max() < 10.0 * Geometry().small
 
 
 def test_a_polygon_within_a_line_is_given_up() -> None:
@@ -123,7 +122,7 @@ def test_a_polygon_within_a_line_is_given_up() -> None:
     flat[:, 0] = 0.1 * np.minimum(np.arange(60), 60 - np.arange(60))
     level = point.problem.at(flat).residual
     level[3] += 1e-4
-    assert Constrained().retract(point, flat, level, point.tangent_space) is None
+    assert point.retract(flat, level) is None
 
 
 def test_long_chains_are_led_back_although_sums_along_them_are_rounded() -> None:

@@ -60,7 +60,7 @@ def test_gradient(name: str) -> None:
     # multipliers by what they do, the displacement that corresponds to their pull; no tolerance is theirs, and those of
     # the gradient leave them less exact where edges are of very different lengths
     pull = space.constraints.apply_transpose(multipliers - forces)
-    displacement = spaces(name)[1]._inner.solve(pull)  # type: ignore[attr-defined]
+    displacement = spaces(name)[1]._solve(pull)  # type: ignore[attr-defined]
     assert np.sqrt(np.sum(pull * displacement)) < (6e-2 if name == "graded" else 1.5e-2) * size
 
 
@@ -161,7 +161,7 @@ def test_no_gradient_where_the_derivative_is_normal() -> None:
     space, _ = spaces("knot")
     normal = space.constraints.apply_transpose(np.cos(np.arange(space.constraints.count)))
     u, _ = space.gradient(normal)
-    assert space.norm(u) < 1e-8 * np.sqrt(np.sum(normal * spaces("knot")[1]._inner.solve(normal)))  # type: ignore[attr-defined]
+    assert space.norm(u) < 1e-8 * np.sqrt(np.sum(normal * spaces("knot")[1]._solve(normal)))  # type: ignore[attr-defined]
     assert not np.any(space.gradient(np.zeros_like(u))[0])
 
 
