@@ -3,8 +3,10 @@
 import logging
 from collections.abc import Callable, Iterator, Mapping
 from functools import cached_property
-from importlib.metadata import EntryPoint, entry_points
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 _Thing = TypeVar("_Thing")
 _LOG = logging.getLogger(__name__)
@@ -31,6 +33,8 @@ class Table(Mapping[str, _Thing]):
 
     @cached_property
     def _added(self) -> dict[str, _Thing]:
+        from importlib.metadata import entry_points  # which takes a while to import
+
         found: dict[str, _Thing] = {}
         for entry in entry_points(group=self.group):
             try:
@@ -47,7 +51,7 @@ class Table(Mapping[str, _Thing]):
         return found
 
 
-def leave_out(entry: EntryPoint, error: Exception) -> None:
+def leave_out(entry: "EntryPoint", error: Exception) -> None:
     """Warn that an entry point is left out, in one sentence that names the package that has it."""
     whose = entry.dist.name if entry.dist else "a package"
     _LOG.warning("%s in %s, of the package %s, is left out: %s", entry.name, entry.group, whose, error)

@@ -9,7 +9,6 @@ maximum from each of many rotations.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 from scipy.spatial.transform import Rotation
 
 from ..base.types import FloatArray
@@ -86,6 +85,8 @@ class Alignment:
 
 def alignments(curve: Curve, other: Curve, freedom: Freedom) -> list[Alignment]:
     """Ways to lay a curve upon another one with as many components, closed and open ones; the best first."""
+    from scipy.optimize import linear_sum_assignment  # which takes a while to import
+
     x, y = _samples(curve), _samples(other)
     source, target = (each.mean(axis=(0, 1)) if freedom.fixed is None else freedom.fixed for each in (x, y))
     radii = [np.sqrt(np.square(each).sum(axis=2).mean()) for each in (x - source, y - target)]

@@ -10,16 +10,18 @@ neighbours, a motion to be proved free of contact like any other, and then remov
 import heapq
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from ..base import CurveOptionError, FloatArray, IntArray, checked
 from .curve import Curve
 from .distances import strand_gaps
 from .mesh import Mesh
 from .pins import NOWHERE, arcs, holds
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 SPLIT = 1.5  # edges longer than this many times the spacing wanted are split
 SAMPLES = 8  # points of a spline, for each vertex of its polygon, at which its arc length is measured
@@ -252,13 +254,15 @@ def halved(curve: Curve) -> Curve:
     return Curve.from_components([spline(at) for spline, at in zip(splines, places, strict=True)])
 
 
-def cubic_spline(points: FloatArray, closed: bool = True) -> CubicSpline:
+def cubic_spline(points: FloatArray, closed: bool = True) -> "CubicSpline":
     """The cubic spline through the vertices of a polygon, shape (n, m), by its arc length; a natural one if open."""
+    from scipy.interpolate import CubicSpline  # which takes a while to import
+
     points = np.concatenate([points, points[:1]]) if closed else points
     return CubicSpline(arc_lengths(points), points, bc_type="periodic" if closed else "natural")
 
 
-def sample_parameters(spline: CubicSpline) -> FloatArray:
+def sample_parameters(spline: "CubicSpline") -> FloatArray:
     """Parameters from the first to the last, so many in each piece that chords between them are as good as arcs."""
     pieces = len(spline.x) - 1
     places = np.linspace(0.0, pieces, SAMPLES * pieces + 1)

@@ -3,13 +3,10 @@
 import signal
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing, suppress
 from dataclasses import dataclass, field
 from functools import partial
 from itertools import chain, pairwise
-from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -128,6 +125,8 @@ def audit(
     CurveError, OptionError
         If not even the first leg can be looked at.  Whatever is wrong later ends the report, as its ``problem``.
     """
+    from concurrent.futures.process import BrokenProcessPool  # which takes a while to import
+
     if not 1 <= processes <= 1000:
         raise OptionError(f"processes is {shown(processes)}; it must be from 1 to 1000")
     cell = None if box is None else cell_of(box)
@@ -172,6 +171,9 @@ def _legs(
     frames: Iterator[Placed], topology: Topology, processes: int
 ) -> Generator[tuple[Callable[[], Passings], Placed], None, None]:
     """Yield of each leg, in order, what gives its contacts, and its end; several are worked at in advance."""
+    from concurrent.futures import ProcessPoolExecutor
+    from multiprocessing import get_context
+
     few = 2_000  # edges whose legs take less time than starting processes does
     pool: ProcessPoolExecutor | None = None
     if processes > 1 and len(topology.tails) > few:

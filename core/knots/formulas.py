@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from ..base import CurveError, FloatArray, checked
 from ..curve import Curve, Mesh, cubic_spline, evenly, nearest_strands
@@ -216,6 +215,8 @@ class SolidTorus:
         if curve.dimension != 3 or curve.mesh.closed != (True,):
             raise CurveError("satellites are drawn around a knot, one closed curve in space")
         closed = np.concatenate([curve.vertices, curve.vertices[:1]])
+        from scipy.interpolate import CubicSpline  # which takes a while to import
+
         spline = CubicSpline(np.append(arc_steps(curve.vertices), 1.0), closed, bc_type="periodic")
 
         def sample(count: int) -> tuple[FloatArray, FloatArray]:

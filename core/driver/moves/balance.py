@@ -15,7 +15,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.optimize import minimize
 
 from ...base.types import FloatArray
 from ...collision.motion import walk
@@ -161,6 +160,8 @@ def turn(q: FloatArray) -> tuple[float, Callable[[float], FloatArray]]:
 
 def least_bending(images: MoebiusImages, dimension: int) -> list[FloatArray]:
     """Local minimisers of the bending, the lowest first, of length 1 with c ≥ 0; none is found twice."""
+    from scipy.optimize import minimize  # which takes a while to import
+
     units = np.eye(dimension + 1)
     starts = [*units[:2]]  # the pole at infinity, in the middle of the curve, and on the unit sphere along the axes
     for unit in units[1:]:
