@@ -14,7 +14,6 @@ from mobius_flow.core.curve.refine import (
     onto_chords,
     superfluous,
 )
-from mobius_flow.core.driver.move import Change
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.driver.run import Run
 from mobius_flow.core.knots import knot
@@ -93,10 +92,10 @@ def test_another_mesh_is_another_iterate_even_of_the_same_size():
     curve, options = torus_trefoil(60), RelaxOptions(vertices=60, mesh="adaptive")
     run = Run(start_problem(curve, options), curve, options)
     other_lengths = replace(run.problem, constraints=replace(run.problem.constraints))
-    assert not list(run.change(Change(point=run.point.within(other_lengths))))
+    assert not list(run.enter(run.point.within(other_lengths)))
     shifted = Curve(np.roll(curve.vertices, 1, axis=0))
     assert shifted.mesh == curve.mesh
-    (iterate,) = run.change(Change(point=start_problem(shifted, options).at_curve(shifted)))
+    (iterate,) = run.enter(start_problem(shifted, options).at_curve(shifted))
     assert iterate.index == 1
     np.testing.assert_array_equal(iterate.curve.vertices, shifted.vertices)
 
