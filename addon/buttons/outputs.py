@@ -86,7 +86,7 @@ FBX does with NLA Strips and All Actions off, one frame later"""
         ),
         "radius": FloatProperty(
             name="Radius",
-            description="Radius of the tubes; 0: as they are drawn, and where nothing is drawn as thick as fits",
+            description="Radius of the tubes; 0: as they are drawn, and where nothing is drawn as the rope, or as thick as fits",
             default=0.0,
             min=0.0,
             unit="LENGTH",
@@ -115,7 +115,9 @@ FBX does with NLA Strips and All Actions off, one frame later"""
         """Make the meshes; the numbers that colors may show become attributes."""
         values, first, made = vertex_values(link), 0, []
         drawn = all(depth(obj.data) for obj in objects)
-        wanted = self.radius or (0.0 if drawn else bevel.fitting_radius(link))  # in the world
+        rope = bevel.rope_radii(objects)
+        fits = 0.0 if drawn else float(rope.min()) if len(rope) else bevel.fitting_radius(link)
+        wanted = self.radius or fits  # in the world
         colours = None if self.color == _PLAIN else COLOURINGS[self.color](values[self.color])
         for obj, each in zip(objects, recorded, strict=True):
             thick = 0.0 if self.radius else depth(obj.data)

@@ -16,6 +16,7 @@ PANEL = "VIEW3D_PT_mobius_flow_presets"
 SUBDIRECTORY = "mobius_flow"
 ROOM = Path(__file__).parents[1]  # Blender looks for presets in its "presets"
 SHIPPED = ROOM / "presets" / SUBDIRECTORY
+_KEPT = ("options", *(name for name in SETTINGS if name not in FURTHER))
 
 
 class CURVE_OT_mobius_flow_preset(bpy.types.Operator):
@@ -29,13 +30,25 @@ class CURVE_OT_mobius_flow_preset(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Run the preset; only presets that say so change how a motion is kept."""
-        if not Path(self.filepath).is_file():
+        path = Path(self.filepath)
+        if not path.is_file():
             sentence = "The preset {name} no longer exists; choose another one"
-            self.report({"ERROR"}, rpt_(sentence, name=Path(self.filepath).name))
+            self.report({"ERROR"}, rpt_(sentence, name=path.name))
             return {"CANCELLED"}
+        settings = context.scene.mobius_flow
+        before = {name: getattr(settings, name) for name in _KEPT}
         for name in ("options", *(option.name for option in shown() if option.row)):
-            context.scene.mobius_flow.property_unset(name)
-        return set(bpy.ops.script.execute_preset(filepath=self.filepath, menu_idname=PANEL))
+            settings.property_unset(name)
+        try:
+            bpy.utils.execfile(self.filepath)
+        except Exception as error:  # whatever its Python may raise
+            for name, value in before.items():
+                setattr(settings, name, value)
+            sentence = "The preset {name} cannot be used here: {reason}"
+            self.report({"ERROR"}, rpt_(sentence, name=path.name, reason=error))
+            return {"CANCELLED"}
+        VIEW3D_PT_mobius_flow_presets.bl_label = bpy.path.display_name(path.name, title_case=False)
+        return {"FINISHED"}
 
 
 class CURVE_OT_mobius_flow_preset_add(AddPresetBase, bpy.types.Operator):
@@ -46,7 +59,7 @@ class CURVE_OT_mobius_flow_preset_add(AddPresetBase, bpy.types.Operator):
     preset_menu = PANEL
     preset_subdir = SUBDIRECTORY
     preset_defines = ("settings = bpy.context.scene.mobius_flow",)
-    preset_values = tuple(f"settings.{name}" for name in ("options", *SETTINGS) if name not in FURTHER)
+    preset_values = tuple(f"settings.{name}" for name in _KEPT)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Add or remove a preset; the extension's own presets stay, wherever it is installed."""

@@ -11,6 +11,7 @@ import bpy
 import numpy as np
 
 from ...core import Curve, Obstacle
+from ...core.base import FloatArray
 from ...core.keys.tube import free_radius, radius_beside, thickest_radius
 from . import bake
 from .recorded import Recorded, drawn_radius, in_world
@@ -59,6 +60,14 @@ def fit(data: bpy.types.Curve, radius: float, constant: bool | None = None) -> N
         data[_CONSTANT] = constant
 
 
+def rope_radii(objects: Sequence[bpy.types.Object]) -> FloatArray:
+    """Radius at each key, in the world, of the rope that objects were baked as together; empty if they are none."""
+    ropes = np.array([bake.rope(obj.data) * stretch(obj) for obj in objects])
+    if not (ropes.min() > 0.0 and np.ptp(ropes) <= 1e-6 * ropes.min()):
+        return np.empty(0)
+    return ropes.min() * np.array([size.factor for size in bake.sizes(objects[0].data)])
+
+
 def draw(data: bpy.types.Curve, radius: float) -> None:
     if not data.bevel_depth:
         data.bevel_resolution, data.use_fill_caps = 6, True  # caps, which closed splines do not need
@@ -77,10 +86,8 @@ def fit_tubes(objects: Sequence[bpy.types.Object], constant: bool = False) -> No
     if len({len(shapes) for shapes in keys}) > 1:
         keys = [shapes[-1:] for shapes in keys]
     links = [in_world(objects, recorded, shapes) for shapes in zip(*keys, strict=True)]
-    ropes = np.array([bake.rope(obj.data) * stretch(obj) for obj in objects])
-    together = ropes.min() > 0.0 and np.ptp(ropes) <= 1e-6 * ropes.min()
-    sizes = np.array([size.factor for size in bake.sizes(objects[0].data)][-len(links) :])
-    fitting = ropes.min() * sizes if together else np.array([fitting_radius(link) for link in links])
+    rope = rope_radii(objects)
+    fitting = rope[-len(links) :] if len(rope) else np.array([fitting_radius(link) for link in links])
     fitting = np.full_like(fitting, fitting.min()) if constant else fitting
     for obj in objects:
         data, wanted = obj.data, fitting / stretch(obj)

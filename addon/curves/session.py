@@ -276,8 +276,6 @@ class Session(Group):
             member.keep(keys, frames, options, course, seen / scale)
         if isinstance(self.outcome, Tightened):
             self._press(self.outcome)
-        if isinstance(self.outcome, Tightened):
-            self._press(self.outcome)
         self.goals.hide(objects)
         played = bake.scene_range(objects)
         shown = keys.keys[-1].size.factor * stretch(objects[0])

@@ -22,15 +22,16 @@ _VERTICES, _FACES = 34962, 34963  # what data are for, as glTF numbers it
 
 
 @checked
-def wire(curve: Curve, width: float | None = None) -> list[Tube]:
-    """Tubes of a width in the curve's units, by default nine tenths of the widest.
+def wire(curve: Curve, width: float | None = None, rope: float = 0.0) -> list[Tube]:
+    """Tubes of a width in the curve's units, by default the rope of that radius, or else nine tenths of the widest.
 
     Raises CurveError where they would run into themselves or each other: the widest is twice the thickness.
     """
     if curve.dimension > 3:
         raise CurveError(f"the curve is in dimension {curve.dimension}; wires are of curves in the plane or in space")
     widest = 2.0 * thickness(curve)
-    width = 0.9 * widest if width is None else width
+    if width is None:
+        width = 2.0 * rope if 0.0 < 2.0 * rope <= widest else 0.9 * widest
     if not 0.0 < width <= widest:
         advice = f"this curve has room for {widest:.4g}; scale it, or relax it further"
         raise CurveError(f"a wire {width:g} wide has no width, or runs into itself: {advice}")
@@ -38,9 +39,9 @@ def wire(curve: Curve, width: float | None = None) -> list[Tube]:
 
 
 @checked
-def solid(curve: Curve, kind: str, width: float | None = None) -> bytes:
+def solid(curve: Curve, kind: str, width: float | None = None, rope: float = 0.0) -> bytes:
     """A file of kind ``stl`` or ``3mf`` with closed surfaces, in millimetres; raises as `wire`, or without trimesh."""
-    parts = wire(curve, width)
+    parts = wire(curve, width, rope)
     try:
         import lxml  # noqa: F401 (trimesh needs these two for 3MF)
         import networkx  # noqa: F401

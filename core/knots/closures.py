@@ -5,6 +5,7 @@ from collections import Counter
 import numpy as np
 
 from ..base import CurveError, checked
+from ..collision import check_embedded
 from ..curve import Curve, Mesh
 from .knot_type import knot_type
 
@@ -14,8 +15,10 @@ def closed_far_away(curve: Curve, direction: tuple[float, ...] | None = None) ->
     """Join the ends of open components far out: they go there straight, away from the centre of the vertices.
 
     With a direction, of length 1, both go that way.  Closed components stay.  The knot type is the closed curve's; for
-    arcs whose ends are deep inside, it depends on where they leave, as with every closure.
+    arcs whose ends are deep inside, it depends on where they leave, as with every closure.  Raises CurveError if the
+    curve touches itself, or would where it is closed.
     """
+    check_embedded(curve)
     middle = curve.vertices.mean(axis=0)
     radius = float(np.linalg.norm(curve.vertices - middle, axis=1).max())
     parts = []
@@ -27,14 +30,21 @@ def closed_far_away(curve: Curve, direction: tuple[float, ...] | None = None) ->
         elif not closed:
             last, first = (ends - middle) / np.maximum(np.linalg.norm(ends - middle, axis=1), 1e-300)[:, None]
             between = last + first
-            if np.linalg.norm(between) < 1e-6:  # any way round will do
-                between = np.eye(curve.dimension)[np.abs(last).argmin()]
+            if np.linalg.norm(between) < 1e-6:  # any way round will do: where the curve extends least
+                between = np.linalg.svd(curve.vertices - middle)[2][-1]
+                between = between if abs(between @ last) < 0.9 else np.eye(curve.dimension)[np.abs(last).argmin()]
                 between = between - (between @ last) * last
             # lines to a corner that is this far out do not come near the curve
             corner = 1.5 * between / np.linalg.norm(between)
             far = middle + (4.0 + k) * radius * np.stack([last, corner, first])
         parts.append(np.concatenate([part, far]))
-    return Curve(np.concatenate(parts), Mesh(tuple(map(len, parts))))
+    closed = Curve(np.concatenate(parts), Mesh(tuple(map(len, parts))))
+    try:
+        check_embedded(closed)
+    except CurveError:  # its place may be on what was added
+        sentence = "ways from the ends of components to each other, far out, meet; close them at random instead"
+        raise CurveError(sentence) from None
+    return closed
 
 
 @checked

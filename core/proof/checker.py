@@ -77,7 +77,8 @@ class Verdict:
             legs, stages, obstacles, pins = (f"{count} {noun}{'s' * (count != 1)}" for noun, count in counts.items())
             nor = f", nor with {obstacles}" if self.obstacles else ""
             held = f"; {pins} in place" if self.pins else ""
-            rope = f"; a rope of radius {min(self.radius):.4g}" if self.radius else ""
+            radii = ", ".join(f"{radius:.4g}" for radius in dict.fromkeys(self.radius))
+            rope = f"; a rope of radius {radii}" if self.radius else ""
             return f"accepted: no contact on {legs} in {stages}{nor}{held}{rope}"
         place = "" if self.stage is None else f"stage {self.stage}"
         place += "" if self.frame is None else f", frame {self.frame}"

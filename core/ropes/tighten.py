@@ -126,6 +126,9 @@ def tightening(task: Task, options: TightenOptions, others: Sequence[Curve] = ()
     start, unit = starts[0]
     away = float(np.abs(start.curve.vertices.mean(axis=0)).max())
     if away > 1e3 * unit:  # of such coordinates too few digits are left for strands that touch
+        size = float(np.ptp(start.curve.vertices, axis=0).max())
+        if size > away:
+            raise CurveError(f"the curve is {size:.3g} wide, but no rope thicker than {unit:.3g}; smooth or relax it")
         raise CurveError(
             f"the curve is {away:.3g} from the origin, too far for ropes of radius {unit:.3g}; move it there"
         )

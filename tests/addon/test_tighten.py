@@ -43,6 +43,9 @@ def check_contacts(obj, curve):
     forces = sum(each.value for each in struts.data.attributes["force"].data)
     at_vertices = 0.5 * (curve.edge_lengths + curve.edge_lengths[curve.mesh.previous])
     assert pressing @ at_vertices == pytest.approx(2 * forces * thickness(curve), rel=1e-3)
+    rings = np.array([vertex.co for vertex in bpy.context.object.data.vertices]).reshape(-1, 3, 3)
+    radii = np.linalg.norm(rings - rings.mean(axis=1, keepdims=True), axis=2)
+    assert radii.min() == pytest.approx(thickness(curve), rel=1e-2), "it is the rope, without a bevel"
     for each in (struts, bpy.context.object):
         bpy.data.objects.remove(each)
     obj.select_set(True)

@@ -26,6 +26,7 @@ def test_ropes_are_written_with_report_and_proof(cross, tmp_path, run):
     verdict = verify(outputs[2])
     assert verdict.accepted
     radii = said.partition("a rope of radius ")[2].partition(" on the whole path")[0]  # not those in the end
+    assert str(verdict).endswith(f"a rope of radius {radii}")
     assert [float(each) for each in radii.split(", ")] == pytest.approx(verdict.radius, rel=1e-3)
     report = json.loads(outputs[1].read_text(encoding="utf-8"))
     assert report["crossings"] == [{"over": 1, "under": 0, "place": [0.0, 0.0, 0.0]}]

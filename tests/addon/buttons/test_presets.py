@@ -58,6 +58,15 @@ def test_a_preset_that_is_gone_is_refused_in_one_sentence(tmp_path):
         bpy.ops.curve.mobius_flow_preset(filepath=str(tmp_path / "Old.py"))
 
 
+def test_a_preset_that_names_what_is_not_there_is_refused_and_changes_nothing(tmp_path):
+    before, path = values(), tmp_path / "Old.py"
+    wanted = "bpy.context.scene.mobius_flow"
+    path.write_text(f"import bpy\n{wanted}.tolerance = 0.5\n{wanted}.length = 9\n{wanted}.method = 'missing'\n")
+    with pytest.raises(RuntimeError, match=r"The preset Old\.py cannot be used here: method is 'missing'; "):
+        bpy.ops.curve.mobius_flow_preset(filepath=str(path))
+    assert values() == before
+
+
 def test_a_preset_of_ones_own_keeps_every_setting(user):
     settings = bpy.context.scene.mobius_flow
     settings.energy, settings.tolerance, settings.hold_end, settings.fit_bevel = "edge", 0.02, 9, False

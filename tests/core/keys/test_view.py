@@ -34,6 +34,7 @@ def test_wires_are_as_wide_as_there_is_room():
     curve = knot("3_1")
     widest = 2 * thickness(curve)
     assert len(wire(curve, 0.99 * widest)) == 1
+    assert wire(curve, rope=0.4 * widest)[0].points.tolist() == wire(curve, 0.8 * widest)[0].points.tolist()
     for width in (1.01 * widest, 0.0, -1.0, np.nan, np.inf):
         with pytest.raises(CurveError, match="room for"):
             wire(curve, width)

@@ -10,7 +10,7 @@ from knot_type import knot_invariants
 from mobius_flow.core import Curve, CurveError
 from mobius_flow.core.collision import check_embedded
 from mobius_flow.core.curve import Mesh
-from mobius_flow.core.knots import knot, scramble
+from mobius_flow.core.knots import knot, knot_type, scramble
 from mobius_flow.core.knots.closures import closed_far_away, closures
 from mobius_flow.core.knots.scrambles import triangle_distances
 
@@ -74,6 +74,12 @@ def test_links_close_component_by_component():
     np.testing.assert_array_equal(closed.components[0], hopf.components[0])
     both = Curve(hopf.vertices[1:-1], Mesh((39, 39), (False, False)))
     check_embedded(closed_far_away(both, (0.0, 0.6, 0.8)))
+
+
+def test_parallel_segments_in_a_plane_are_closed_past_each_other():
+    ends = [[x, float(k), 0.0] for k in range(3) for x in (0.0, 2.0)]
+    segments = Curve(np.array(ends), Mesh((2, 2, 2), (False,) * 3))
+    assert str(knot_type(closed_far_away(segments))) == "unknot ⊔ unknot ⊔ unknot"
 
 
 @pytest.mark.parametrize(
