@@ -58,7 +58,7 @@ def add_view(parser: argparse.ArgumentParser) -> None:
     parser.description, parser.epilog = "Show a curve or a trajectory, or make a solid of it.", _EPILOG_OF_VIEW
     curves.add_input(parser, "curve, or trajectory (.npz)")
     parser.add_argument("output", metavar="OUT", help=f"what to write, by suffix: {', '.join(VIEWED)}")
-    text = "width of the tubes, in the curve's units (default: the rope of a trajectory, or what is well seen; for solids nine tenths of the widest)"
+    text = "width of the tubes (default: that of the rope, or what is well seen; for solids nine tenths of the widest)"
     parser.add_argument("--width", type=float, metavar="W", help=text)
     text = f"frames of a trajectory that are shown, about as far apart, 2 to 1000 (default: {FRAMES})"
     parser.add_argument("--frames", type=int, default=FRAMES, metavar="N", help=text)

@@ -13,7 +13,7 @@ from ..curves import bake
 from ..curves.doors import show_instead
 from ..curves.moving import deforms
 from ..curves.splines import Splines, sampled, shape, write_points
-from ..live.requirements import Remedy, closable, idle, needing
+from ..live.requirements import Remedy, idle, needing
 from ..live.selection import convertible, selected_curves
 from .button import Button
 
@@ -112,13 +112,6 @@ def _to_curve(obj: bpy.types.Object) -> None:
         curve.data.materials.append(slot.material)
 
 
-@_mends(Remedy.CLOSE)
-def _close(obj: bpy.types.Object) -> None:
-    """Join the two ends of every open spline of the selected curves"""
-    for spline in obj.data.splines:
-        spline.use_cyclic_u = True
-
-
 class CURVE_OT_mobius_flow_mend(Button, bpy.types.Operator):
     """Remove what keeps the selected objects from being relaxed"""
 
@@ -141,9 +134,7 @@ class CURVE_OT_mobius_flow_mend(Button, bpy.types.Operator):
         remedy, before, tried, mended = Remedy[self.remedy], set(context.view_layer.objects), False, False
         curves = selected_curves(context)
         needy: Iterable[bpy.types.Object] = needing(curves, remedy)  # one by one: mending one may mend others
-        if remedy is Remedy.CLOSE:
-            needy = closable(curves)
-        elif remedy is Remedy.TO_CURVE:
+        if remedy is Remedy.TO_CURVE:
             needy = convertible(context) if context.mode == "OBJECT" and not curves else ()
         elif remedy is Remedy.COPY and context.mode == "OBJECT":
             needy = list(needy) or curves  # a copy never does harm

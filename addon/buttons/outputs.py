@@ -86,7 +86,7 @@ FBX does with NLA Strips and All Actions off, one frame later"""
         ),
         "radius": FloatProperty(
             name="Radius",
-            description="Radius of the tubes; 0: as they are drawn, and where nothing is drawn as the rope, or as thick as fits",
+            description="Radius of the tubes; 0: as they are drawn, or else as the rope, or as thick as fits",
             default=0.0,
             min=0.0,
             unit="LENGTH",

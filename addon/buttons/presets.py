@@ -1,8 +1,6 @@
 """Presets: named settings, in files of Blender's own kind; some come with the extension."""
 
-from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import bpy
 from bl_operators.presets import AddPresetBase
@@ -80,14 +78,9 @@ class VIEW3D_PT_mobius_flow_presets(PresetPanel, bpy.types.Panel):
     preset_operator = CURVE_OT_mobius_flow_preset.bl_idname
     preset_add_operator = CURVE_OT_mobius_flow_preset_add.bl_idname
 
-    def path_menu(self, places: Sequence[str], operator: str, **more: Any) -> None:
-        """List the presets, the extension's own too where Blender (4.2.0) could not be told where they are."""
-        ours = [] if str(SHIPPED) in places else [str(SHIPPED)]
-        PresetPanel.path_menu(self, [*ours, *places], operator, **more)
-
 
 def register() -> None:
-    """Tell Blender where the extension's presets are; 4.2.0 cannot be told, see the panel."""
+    """Tell Blender where the extension's presets are; only 4.2.0 cannot be told, and has none."""
     if hasattr(bpy.utils, "register_preset_path"):
         bpy.utils.register_preset_path(str(ROOM))
 

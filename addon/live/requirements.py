@@ -27,7 +27,6 @@ class Remedy(Enum):
     TO_POLY = "Convert to Poly"
     MAKE_3D = "Make 3D"
     COPY = "Make Still Copy"
-    CLOSE = "Close Splines"
 
 
 @dataclass(frozen=True)
@@ -250,7 +249,7 @@ BAKED = Curves(_changed, _unkeyed, others=(_unkeyed,))
 CLEARABLE = Curves(_edited_since, _unkeyed, _edited, _shared, others=(_unkeyed,))
 UNEDITED = Curves(_rekeyed)
 POLYGONS = Curves(_smooth, among=relaxed_together)
-_CLOSABLE, _POSSIBLE = Curves(_edited, _shared, _keyed), Curves(*_RELAXABLE, _smooth)
+_POSSIBLE = Curves(*_RELAXABLE, _smooth)
 
 
 def needing(objects: Sequence[bpy.types.Object], remedy: Remedy) -> Iterator[bpy.types.Object]:
@@ -258,12 +257,4 @@ def needing(objects: Sequence[bpy.types.Object], remedy: Remedy) -> Iterator[bpy
     for obj in objects:
         refusal = _POSSIBLE.of([obj], several=len(objects) > 1)
         if refusal is not None and refusal.remedy is remedy:
-            yield obj
-
-
-def closable(objects: Sequence[bpy.types.Object]) -> Iterator[bpy.types.Object]:
-    """Yield the curve objects with open splines that may be closed: a baked curve's keys are made for open ones."""
-    for obj in objects:
-        is_open = not all(spline.use_cyclic_u for spline in obj.data.splines)
-        if is_open and not bake.is_baked(obj.data) and not _CLOSABLE.of([obj]):
             yield obj

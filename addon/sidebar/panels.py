@@ -17,7 +17,7 @@ from ..curves.moving import unsteady
 from ..curves.splines import length
 from ..live import registry
 from ..live.modal import unseen
-from ..live.requirements import ENTERABLE, Remedy, closable
+from ..live.requirements import ENTERABLE
 from ..live.run import RunState
 from ..live.selection import avoided, curves_at_hand, relaxed_together, selected_curves, shown_curves
 from ..pictures import staging
@@ -134,11 +134,6 @@ bevel's Depth to 0, and let the nodes make the tube"
             sentence(layout, context, Message(said, name=obj.name))
 
 
-def _open(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    if any(closable(selected_curves(context))):
-        button("mend", "CURVE_BEZCIRCLE", Remedy.CLOSE.value, remedy=Remedy.CLOSE.name)(layout, context)
-
-
 class VIEW3D_PT_mobius_flow_shape(SubPanel, bpy.types.Panel):
     bl_label = "Shape"
     rows = (
@@ -156,7 +151,6 @@ class VIEW3D_PT_mobius_flow_shape(SubPanel, bpy.types.Panel):
             button("keep_size", "FULLSCREEN_EXIT"),
             row(button("lay_flat", "AXIS_TOP"), button("face_camera", "CAMERA_DATA")),
         ),
-        _open,
         _hidden_from_nodes,
     )
 

@@ -24,7 +24,6 @@ def test_every_remedy_has_its_words():
 
 @pytest.mark.parametrize("remedy", [each for each in Remedy if each is not Remedy.COPY], ids=lambda each: each.name)
 def test_what_needs_nothing_is_left_alone(remedy):
-    """A baked open spline is not closed: its keys are proved for an open one."""
     add_curve([SHAPE + 9], cyclic=False)
     relax(max_iterations=1)
     add_trefoil()
@@ -32,17 +31,6 @@ def test_what_needs_nothing_is_left_alone(remedy):
     with pytest.raises(RuntimeError, match="Nothing selected needs that"):
         call(remedy)
     assert contents() == before
-
-
-def test_open_splines_are_closed():
-    first, second = two(cyclic=False)
-    third = add_curve([SHAPE + 20], "C")
-    second.data.splines.new("NURBS").points.add(5)
-    before = [stored(obj.data) for obj in (first, second, third)]
-    assert call(Remedy.CLOSE) == {"FINISHED"}
-    assert all(spline.use_cyclic_u for obj in (first, second) for spline in obj.data.splines)
-    for obj, points in zip((first, second, third), before, strict=True):
-        np.testing.assert_array_equal(stored(obj.data), points)
 
 
 def test_shared_data_becomes_ones_own():
