@@ -41,7 +41,7 @@ def moved(curve, scale=3.0):
     return curve.with_vertices(FAR + scale * curve.vertices @ turn.T)
 
 
-def proved(a, b, options=QUICK):
+def proved(a, b, options=COARSE):
     """A morph, its iterates, and the verdict of the independent check."""
     iterates = []
     result = morph(a, b, options, iterates.append)
@@ -55,7 +55,7 @@ def proved(a, b, options=QUICK):
         (Curve(RECTANGLE), Curve(ZIGZAG)),
         (knot("3_1", 40), moved(smooth_knot("3_1", 50))),
         pytest.param(knot("4_1", 80), moved(knot("m4_1", 80), 0.01), marks=pytest.mark.slow),
-        (knot("L4a1", 60), moved(knot("L4a1", 70))),
+        (knot("L4a1", 60), moved(knot("L4a1", 50))),
         (Curve([[0.0, 0], [3, 0], [3, 1], [0, 1]]), Curve([[5.0, 5], [6, 6 - 1e-8], [7, 7], [6, 6], [5, 7]])),
     ],
     ids=["unknots", "trefoils", "amphichiral", "link", "plane"],
@@ -117,11 +117,10 @@ def test_where_shapes_do_not_meet_both_go_on_with_equal_meshes_and_then_hop(miss
 
     def met(*shapes):
         asked.append([len(found[0].end.curve) for found in shapes[:2]])
-        alignment, joint = meeting(*shapes)
-        return alignment, joint if len(asked) > misses else None
+        return meeting(*shapes) if len(asked) > misses else (None, None)
 
     monkeypatch.setattr(module, "meeting", met)
-    options = replace(QUICK, hops=1, max_iterations=60)
+    options = replace(QUICK, hops=1, max_iterations=12)
     result, _, _ = proved(knot("4_1", 60), knot("4_1", 300), options)
     assert len(asked) == misses + 1
     assert asked[0][0] < asked[0][1] == 300
@@ -220,7 +219,7 @@ def test_arcs_are_held_at_their_ends():
 
 def test_a_chain_leads_over_all_curves():
     curves = [Curve(RECTANGLE), Curve(ZIGZAG), moved(Curve(RECTANGLE))]
-    iterates = list(morphing([Task(curve=each) for each in curves], QUICK, "ABC"))
+    iterates = list(morphing([Task(curve=each) for each in curves], COARSE, "ABC"))
     check(iterates)
     passed = [each.curve.vertices.tolist() for each in iterates]
     places = [passed.index(each.vertices.tolist()) for each in curves]
