@@ -123,10 +123,10 @@ def test_where_vertices_are_to_stay_they_do(options: dict[str, object]) -> None:
 
 
 @pytest.mark.usefixtures("everywhere")
-@pytest.mark.parametrize("options", [{"vertices": 600}, {"mesh": "adaptive"}], ids=["coarse start", "adaptive"])
+@pytest.mark.parametrize("options", [{"vertices": 420}, {"mesh": "adaptive"}], ids=["coarse start", "adaptive"])
 def test_rises_of_the_energy_with_the_mesh_are_told_of(options: dict[str, object]) -> None:
     iterates: list[Iterate] = []
-    result = minimize(bent(torus_trefoil(600)), RelaxOptions(**options), iterates.append)  # type: ignore[arg-type]
+    result = minimize(bent(torus_trefoil(420)), RelaxOptions(**options), iterates.append)  # type: ignore[arg-type]
     energies, told = result.energies, []
     changed = [k for k, iterate in enumerate(iterates) if k and iterate.step_size == 0.0]
     for _, group in itertools.groupby(enumerate(changed), lambda place: place[1] - place[0]):

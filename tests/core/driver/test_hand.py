@@ -167,28 +167,21 @@ def test_at_rest_the_run_asks_once_more_and_then_ends() -> None:
     assert rests == sorted(set(rests))
 
 
-def test_a_pin_is_left_where_the_hand_lets_go() -> None:
-    iterates, outcome = drag(
-        knot("4_1"), Hand(), {8: held, 9: pulled_out, 20: lambda hand, _: hand.release(pin=True)}, vertices=80
-    )
-    (pin,) = iterates[-1].pins
-    assert iterates[20].pins == ()
-    for iterate in iterates[21:]:
-        assert iterate.pins == (pin,)
-        np.testing.assert_array_equal(iterate.curve.vertices[pin], iterates[20].curve.vertices[pin])
-    assert outcome.converged
-    check(iterates)
-
-
-def test_undo_takes_the_drag_back_with_its_pin() -> None:
+def test_a_pin_is_left_where_the_hand_lets_go_and_undo_takes_the_drag_back_with_it() -> None:
     plain, _ = drag(knot("4_1"), Hand(), {}, vertices=80)
+    pinned: list[Iterate] = []
 
     def undone(hand: Hand, _iterate: Iterate) -> None:
         hand.undo()
         hand.undo()  # there is nothing else
 
-    moves = {8: held, 9: pulled_out, 20: lambda hand, _: hand.release(pin=True), 25: undone}
+    moves = {8: held, 9: pulled_out, 20: lambda hand, each: (pinned.append(each), hand.release(pin=True))}
+    moves |= {k: lambda _, each: pinned.append(each) for k in range(21, 25)} | {25: undone}
     again, outcome = drag(knot("4_1"), Hand(), moves, vertices=80)
+    (pin,) = pinned[1].pins
+    assert [each.pins for each in pinned] == [(), *[(pin,)] * 4]
+    for each in pinned:
+        np.testing.assert_array_equal(each.curve.vertices[pin], pinned[0].curve.vertices[pin])
     assert outcome.converged
     assert again[-1].pins == ()
     np.testing.assert_array_equal(again[8].curve.vertices, plain[8].curve.vertices)

@@ -33,7 +33,6 @@ from shapes import regular_polygon
 from solids import plate
 from tasks import proved
 
-ALWAYS = {"untangle": "always", "max_iterations": 40}
 EASY = knot("braid(1,-2,3)", 40)  # an unknot of four crossings, and two moves
 GOERITZ = knot("goeritz")
 
@@ -173,14 +172,14 @@ def test_interrupted_runs_say_where_they_stand() -> None:
 
 def test_components_have_their_own_lengths_again() -> None:
     curve = scramble(knot("L2a1", 40), 2, moves=800)
-    result, _ = proved(curve, **ALWAYS)
+    result, _ = proved(curve, untangle="always", max_iterations=2)
     assert result.last.strand_moves.left == 2
     np.testing.assert_allclose(result.curve.component_lengths, curve.component_lengths, rtol=1e-6)
 
 
 def test_arcs_between_pins_have_their_lengths_again() -> None:
     curve = scramble(knot("3_1", 30), 1, moves=600)
-    result, iterates = proved(curve, pins=(0, 12), **ALWAYS)
+    result, iterates = proved(curve, pins=(0, 12), untangle="always", max_iterations=40)
     shortest = min(each.curve.length for each in iterates)
     assert shortest < 0.8 * curve.length
     assert result.last.strand_moves.left <= 4
@@ -246,7 +245,7 @@ def test_what_fails_within_moves_loses_nothing(monkeypatch: pytest.MonkeyPatch) 
 @pytest.mark.parametrize(("gone", "left", "made"), [(25, 30, False), (0, 0, False), (25, 25, True)])
 def test_at_rest_no_more_crossings_may_stay_than_go(gone, left, made, monkeypatch) -> None:
     monkeypatch.setattr(untangling, "worth", lambda *_: (gone, left))
-    result = minimize(GOERITZ)
+    result = minimize(GOERITZ, RelaxOptions(tolerance=1.0))
     assert (result.last.strand_moves is not None or "strand moves" in result.message) is made
 
 
