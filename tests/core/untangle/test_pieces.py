@@ -1,5 +1,6 @@
 """Each piece of a strand move keeps what it has to."""
 
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -23,9 +24,14 @@ from mobius_flow.core.untangle.ways import Plane
 from taylor import taylor_slope
 
 
+@cache
+def scrambled(name: str) -> Curve:
+    return scramble(knot(name, 60), 1, moves=1500)
+
+
 def messy(name: str, held: tuple[int, ...] = (), *, is_open: bool = False) -> PlaneDrawing:
     """The drawing of a messy curve from a random direction."""
-    curve = scramble(knot(name, 60), 1, moves=1500)
+    curve = scrambled(name)
     if is_open:
         curve = Curve(curve.vertices[:-1], Mesh((len(curve) - 1,), (False,)))
     seen = curve.vertices @ rotation(np.random.default_rng(1).normal(size=(3, 3)))

@@ -67,7 +67,7 @@ def test_a_knot_of_which_no_least_diagram_is_known_says_so() -> None:
 
 
 def test_pins_stay_and_strands_end_at_them() -> None:
-    curve, pins = scramble(knot("5_2", 60), 1, moves=800), [0, 20, 40]
+    curve, pins = scramble(knot("5_2", 60), 1, moves=400), [0, 20, 40]
     end, found = run(curve, pins)
     assert found.crossings == 5
     places = set(map(tuple, end.vertices.tolist()))
@@ -75,7 +75,7 @@ def test_pins_stay_and_strands_end_at_them() -> None:
 
 
 def test_arcs_come_apart_and_keep_their_ends() -> None:
-    closed = scramble(knot("3_1", 60), 1, moves=800).vertices
+    closed = scramble(knot("3_1", 60), 1, moves=400).vertices
     curve = Curve(closed[:-1], Mesh((59,), (False,)))
     end, found = run(curve)
     assert found.crossings == 0
@@ -101,7 +101,7 @@ def test_wherever_it_is_left_the_curve_is_embedded_and_of_its_type() -> None:
 
 
 def test_the_same_seed_gives_the_same_motions() -> None:
-    once, again = ([stage.end.vertices for stage in untangled(knot("goeritz"), seed=3)] for _ in range(2))
+    once, again = ([stage.end.vertices for stage in islice(untangled(knot("goeritz"), seed=3), 9)] for _ in range(2))
     assert all(map(np.array_equal, once, again))
 
 
