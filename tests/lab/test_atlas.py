@@ -37,8 +37,25 @@ def trefoil():
     return found
 
 
+@pytest.fixture(scope="module")
+def known():
+    return {}
+
+
 @pytest.fixture
-def results(tmp_path, trefoil, monkeypatch):
+def described_once(known, monkeypatch):
+    """Describe the same minimum once for all tests: proofs of bounds take a second."""
+    describe = entries._described
+
+    def described(name, runs):
+        key = name, repr([(run.row, [each.tobytes() for each in run.curve.coefficients]) for run in runs])
+        return known[key] if key in known else known.setdefault(key, describe(name, runs))
+
+    monkeypatch.setattr(entries, "_described", described)
+
+
+@pytest.fixture
+def results(tmp_path, trefoil, monkeypatch, described_once):
     """Two runs to the trefoil, one of them turned and mirrored, one said to be higher; and two that do not count."""
     monkeypatch.setattr(entries, "is_at_rest", lambda rest: True)
     place = tmp_path / "results"
@@ -254,6 +271,7 @@ FORGERIES: dict[str, tuple[Callable[[Path, Curve], None] | float, str]] = {
 }
 
 
+@pytest.mark.usefixtures("described_once")
 @pytest.mark.parametrize(("forged", "reason"), FORGERIES.values(), ids=FORGERIES)
 def test_reports_are_not_believed(run, tmp_path, trefoil, forged, reason):
     """Whatever a report says, whose checksum is right, of a run beside one that counts."""

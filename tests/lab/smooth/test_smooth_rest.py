@@ -91,6 +91,7 @@ def test_neither_too_few_modes_nor_last_steps_lead_astray(name):
     assert abs(smooth.energy - energy) <= smooth.error + error <= 2e-6 * energy
 
 
+@pytest.mark.slow
 def test_soft_valleys_are_followed_to_their_end():
     """Damping by the rounding of a stiff Hessian left 9_8 higher by 6e-8, and 10_36 by 1e-6, with smaller errors."""
     assert found(minimize(knot("9_8")).curve).energy == pytest.approx(263.28532593, rel=1e-8)
