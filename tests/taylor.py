@@ -18,10 +18,7 @@ ROUNDING = 1e-15  # remainders below this part of the function are ignored
 
 
 def taylor_slope(
-    function: Callable[[float], npt.ArrayLike],
-    terms: Sequence[npt.ArrayLike],
-    largest: float = 0.1,
-    halvings: int = 20,
+    function: Callable[[float], npt.ArrayLike], terms: Sequence[npt.ArrayLike], largest: float = 0.1, halvings: int = 20
 ) -> float:
     """Fit the order at which the Taylor remainder of a function f of a real variable, scalar or array, vanishes at 0.
 

@@ -52,12 +52,12 @@ def test_pipes_see_nothing_of_it(capsys):
 
 
 def test_a_notebook_keeps_the_last_line(monkeypatch):
-    shown: list[str] = []
+    shown = []
     place = SimpleNamespace(update=lambda data, raw: shown.append(data["text/plain"]))
     display = SimpleNamespace(display=lambda data, raw, display_id: place)
     shell = SimpleNamespace(kernel=None)
-    monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=lambda: shell))  # type: ignore[arg-type]
-    monkeypatch.setitem(sys.modules, "IPython.display", display)  # type: ignore[arg-type]
+    monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=lambda: shell))
+    monkeypatch.setitem(sys.modules, "IPython.display", display)
     with live() as show:
         show("first")
         show("last, too soon after the first")

@@ -38,11 +38,7 @@ def test_a_trefoil_is_written_with_report_and_proof(trefoil, tmp_path, run):
 
 @pytest.mark.parametrize(
     ("words", "said"),
-    [
-        (("--vertices", "7"), "vertices is 7"),
-        (("--starts", "0"), "starts is 0"),
-        (("--contacts", "map.txt"), ".svg"),
-    ],
+    [(("--vertices", "7"), "vertices is 7"), (("--starts", "0"), "starts is 0"), (("--contacts", "map.txt"), ".svg")],
 )
 def test_bad_input_is_one_line(trefoil, tmp_path, refused, words, said):
     assert said in refused("tighten", trefoil, tmp_path / "o.txt", *words)

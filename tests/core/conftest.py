@@ -1,7 +1,5 @@
 """Tests of methods and moves are of the flow alone; what users get, a rope, is tested in some files and above."""
 
-from collections.abc import Iterator
-
 import pytest
 from mobius_flow.core import RelaxOptions
 
@@ -9,7 +7,7 @@ AS_USERS_GET_IT = ("test_option.py", "test_rope.py", "test_tube.py", "test_untan
 
 
 @pytest.fixture(autouse=True, scope="module")
-def without_a_rope(request: pytest.FixtureRequest) -> Iterator[None]:
+def without_a_rope(request):
     """The default radius is none."""
     with pytest.MonkeyPatch.context() as patch:
         if request.path.name not in AS_USERS_GET_IT:

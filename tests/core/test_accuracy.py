@@ -12,11 +12,11 @@ INACCURATE = "the hierarchical solver misses the requested accuracy"
 
 
 def short(vertices: int = 1500, **options: object) -> Result:
-    wanted = RelaxOptions(**({"solver": "hierarchical", "mesh": "fixed", "max_iterations": 3} | options))  # type: ignore[arg-type]
+    wanted = RelaxOptions(**({"solver": "hierarchical", "mesh": "fixed", "max_iterations": 3} | options))
     return minimize(bent_trefoil(vertices), wanted)
 
 
-def test_errors_are_in_outcome_and_report() -> None:
+def test_errors_are_in_outcome_and_report():
     result = short()
     errors = result.outcome.sampled_errors
     assert 0.0 < errors.energy.bound < 1e-6
@@ -24,23 +24,20 @@ def test_errors_are_in_outcome_and_report() -> None:
     report = result.report()["sampled_errors"]
     assert report == {
         "energy": {"mean": errors.energy.mean, "standard_error": errors.energy.standard_error},
-        "gradient_norm": {
-            "mean": errors.gradient_norm.mean,
-            "standard_error": errors.gradient_norm.standard_error,
-        },
+        "gradient_norm": {"mean": errors.gradient_norm.mean, "standard_error": errors.gradient_norm.standard_error},
         "order": 4,
     }
     assert ";" not in result.message
 
 
 @pytest.mark.parametrize("solver", ["dense", "hierarchical"])  # with so few vertices most pairs are near
-def test_sums_of_all_pairs_have_no_errors(solver: str) -> None:
+def test_sums_of_all_pairs_have_no_errors(solver):
     result = short(200, solver=solver)
     assert result.outcome.sampled_errors is None
     assert result.report()["sampled_errors"] is None
 
 
-def test_expansions_are_tightened_for_the_accuracy_asked_for() -> None:
+def test_expansions_are_tightened_for_the_accuracy_asked_for():
     result = short(accuracy=1e-5)
     errors = result.outcome.sampled_errors
     assert errors.order == 6
@@ -53,7 +50,7 @@ def test_expansions_are_tightened_for_the_accuracy_asked_for() -> None:
 
 
 @pytest.mark.slow
-def test_what_cannot_be_reached_is_told() -> None:
+def test_what_cannot_be_reached_is_told():
     assert INACCURATE in short(accuracy=1e-12).message
 
 
@@ -61,7 +58,7 @@ def wrong_kernels(monkeypatch: pytest.MonkeyPatch) -> None:
     """One Taylor coefficient of the logarithm is wrong."""
     original = fields.kernel_derivatives
 
-    def kernels(*arguments):  # type: ignore[no-untyped-def]
+    def kernels(*arguments):
         square, log = original(*arguments)
         log[4] *= 1.01
         return square, log
@@ -85,7 +82,7 @@ def wrong_value(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("defect", [pytest.param(wrong_kernels, marks=pytest.mark.slow), wrong_derivative, wrong_value])
-def test_a_defect_is_noticed(defect, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def]
+def test_a_defect_is_noticed(defect, monkeypatch):
     defect(monkeypatch)
     message = short(max_iterations=1).message
     assert f"{INACCURATE}: against dense sums over a sample its relative errors are up to " in message
@@ -93,12 +90,12 @@ def test_a_defect_is_noticed(defect, monkeypatch: pytest.MonkeyPatch) -> None:  
 
 
 @pytest.mark.slow
-def test_every_mesh_and_the_end_are_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_every_mesh_and_the_end_are_looked_at(monkeypatch):
 
-    looked_at: list[int] = []
+    looked_at = []
     original = SampledErrors.at
 
-    def at(energy, curve, *rest):  # type: ignore[no-untyped-def]
+    def at(energy, curve, *rest):
         looked_at.append(len(curve))
         return original(energy, curve, *rest)
 
@@ -110,7 +107,7 @@ def test_every_mesh_and_the_end_are_looked_at(monkeypatch: pytest.MonkeyPatch) -
     assert looked_at == [1700], "it ends where it has all vertices again; the coarse mesh is too small for errors"
 
 
-def test_the_error_of_an_energy_that_is_not_exact(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_error_of_an_energy_that_is_not_exact(monkeypatch):
     from mobius_flow.cli.relax import _energies
 
     told = dict(_energies(short(300), short(300).curve, 1e-4))
@@ -122,7 +119,7 @@ def test_the_error_of_an_energy_that_is_not_exact(monkeypatch: pytest.MonkeyPatc
     assert result.report()["final_energy_error"] == result.final_energy_error > 0.0
 
 
-def test_the_error_of_the_mesh_is_the_distance_from_the_smooth_curve() -> None:
+def test_the_error_of_the_mesh_is_the_distance_from_the_smooth_curve():
     result = minimize(knot("3_1"), RelaxOptions(vertices=120))
     assert result.mesh_error == pytest.approx(abs(result.final_energy - least_energies()["3_1"][0]), rel=0.1)
     assert minimize(overhand(40), RelaxOptions(vertices=40, max_iterations=0)).mesh_error is None

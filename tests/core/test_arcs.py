@@ -23,7 +23,7 @@ from tasks import proved
         pytest.param(overhand(200), {"solver": "hierarchical"}, marks=pytest.mark.slow),
     ],
 )
-def test_arcs_become_straight(arc: Curve, options: dict[str, object]) -> None:
+def test_arcs_become_straight(arc, options):
     result, _ = proved(arc, **options)
     assert result.status is Status.CONVERGED
     distance = np.linalg.norm(result.curve.vertices[-1] - result.curve.vertices[0])
@@ -31,14 +31,14 @@ def test_arcs_become_straight(arc: Curve, options: dict[str, object]) -> None:
     assert "energy" in options or result.final_energy < 1e-6
 
 
-def test_single_edges() -> None:
+def test_single_edges():
     edges = Curve([[0, 0, 0], [1, 0, 0], [0, 0.1, 1], [0, 1, 1]], Mesh((2, 2), (False, False)))
     result, _ = proved(edges, vertices=4, max_iterations=50)
     assert result.final_energy < 0.1 * result.energies[0]  # they drift apart for ever
     np.testing.assert_allclose(result.curve.edge_lengths, [1.0, 0.9])
 
 
-def test_overhand_arcs_are_knotted() -> None:
+def test_overhand_arcs_are_knotted():
     for vertices in (40, 120):
         points = overhand(vertices).vertices
         ends = [3 * points[end] - 2 * points[inner] for end, inner in ((-1, -5), (0, 4))]
@@ -46,7 +46,7 @@ def test_overhand_arcs_are_knotted() -> None:
         assert str(knot_type(closed)) == "3_1"
 
 
-def test_an_arc_leaves_a_ring_that_it_is_not_linked_with() -> None:
+def test_an_arc_leaves_a_ring_that_it_is_not_linked_with():
     height = np.linspace(-1.5, 1.5, 21)
     rod = np.stack([np.full(21, 0.2), 0.1 * np.sin(height + 1.5), height], axis=1)
     curve = Curve.from_components([regular_polygon(60).vertices, rod], [True, False])
@@ -60,7 +60,7 @@ def test_an_arc_leaves_a_ring_that_it_is_not_linked_with() -> None:
     assert np.linalg.norm(middles[1] - middles[0]) > sum(radii)  # balls around them do not meet
 
 
-def test_what_only_closed_components_have() -> None:
+def test_what_only_closed_components_have():
     arc = opened(torus_trefoil(60), 0)
     for function in (quick_invariants, linking_numbers):
         with pytest.raises(CurveError, match=r"^component 1 is open; .* are for closed components$"):
@@ -71,6 +71,6 @@ def test_what_only_closed_components_have() -> None:
         minimize(arc, RelaxOptions(balance=True))
 
 
-def test_units_of_arcs() -> None:
+def test_units_of_arcs():
     arc = Curve(1e6 * half_circle(30).vertices + 1e7, Mesh((31,), (False,)))
     assert 4 <= arc.length / Units.of(arc).scale <= 8

@@ -13,7 +13,7 @@ from mobius_flow.core.driver.run import Run
 from shapes import regular_polygon, torus_trefoil
 
 
-def test_the_start_is_the_input_to_the_last_digit() -> None:
+def test_the_start_is_the_input_to_the_last_digit():
     vertices = torus_trefoil(36).vertices + np.random.default_rng(83).uniform(1.0, 3.0, size=3)
     vertices[0, 0] = 1.1e-13
     start = Curve(vertices)
@@ -41,20 +41,18 @@ class Forgetful:
 
 
 @pytest.mark.parametrize("limit", [Limit.UNTESTED, Limit.CONTACT])
-def test_one_step_without_proof_and_nothing_after_it_is_certified(
-    limit: Limit, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_one_step_without_proof_and_nothing_after_it_is_certified(limit, monkeypatch):
     monkeypatch.setattr(driver, "METHODS", {"lbfgs": replace(METHODS["lbfgs"], rule=Forgetful(limit))})
     iterates = relax(torus_trefoil(60), RelaxOptions(max_iterations=6, vertices=60))
     assert [iterate.certified for iterate in iterates] == [True] * 3 + [False] * 4
 
 
-def test_nothing_is_certified_in_four_dimensions() -> None:
+def test_nothing_is_certified_in_four_dimensions():
     lifted = Curve(np.column_stack([torus_trefoil(30).vertices, 0.1 * np.cos(np.arange(30))]))
     assert not any(each.certified for each in relax(lifted, RelaxOptions(max_iterations=3, vertices=30)))
 
 
-def test_rounding_that_matters() -> None:
+def test_rounding_that_matters():
     curve = torus_trefoil(40)
     assert survives_rounding(curve)
     assert not survives_rounding(curve.with_vertices(curve.vertices + 1e15))

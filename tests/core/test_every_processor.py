@@ -50,7 +50,7 @@ def relaxed(kind: str, seed: int | None, method: str, tolerance: float) -> Resul
 @pytest.mark.parametrize(
     ("kind", "rule"), crossed(KINDS, [("lbfgs", 1e-4), ("trust-region", 1e-4), ("trust-region", 1e-7)])
 )
-def test_rounding_decides_nothing(kind: str, rule: tuple[str, float]) -> None:
+def test_rounding_decides_nothing(kind, rule):
     """Not how a run ends, and of its energy what the tolerance leaves open, its square at most, as rounding does."""
     method, tolerance = rule
     usual = relaxed(kind, None, method, tolerance)

@@ -61,7 +61,7 @@ RUN: dict[str, Curve] = {
 
 
 @pytest.mark.parametrize("name", RUN)
-def test_hostile_curves_that_run(name: str) -> None:
+def test_hostile_curves_that_run(name):
     curve = RUN[name]
     check_run(curve, RelaxOptions(max_iterations=2, vertices=max(60, len(curve))))
 
@@ -98,14 +98,14 @@ REFUSED: dict[str, tuple[Array, str]] = {
         ([TREFOIL, TREFOIL + 1e6], r"component . is only 31.* long in a link 1e\+06 wide"),
     ],
 )
-def test_parts_too_small_for_their_distances_are_named(parts: list[Array], reason: str) -> None:
+def test_parts_too_small_for_their_distances_are_named(parts, reason):
     """Far apart as they are, moving strands would not help."""
     with pytest.raises(CurveError, match=reason + ", too small or too far away .* relax it by itself"):
         relax(Curve.from_components(parts))
 
 
 @pytest.mark.parametrize("name", REFUSED)
-def test_hostile_curves_that_are_refused(name: str) -> None:
+def test_hostile_curves_that_are_refused(name):
     vertices, reason = REFUSED[name]
     with pytest.raises(CurveError, match=reason) as caught:
         relax(Curve(vertices))
@@ -113,9 +113,7 @@ def test_hostile_curves_that_are_refused(name: str) -> None:
 
 
 @pytest.mark.parametrize("words", [("relax", "IN", "OUT.txt"), ("energy", "IN")])
-def test_the_command_line_says_it_in_one_line(
-    words: tuple[str, ...], tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_command_line_says_it_in_one_line(words, tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for name in ("below range", "met again", "infinite"):
         Path("IN").with_suffix(".txt").write_text(text(REFUSED[name][0]))
@@ -157,9 +155,9 @@ VALUES: dict[str, st.SearchStrategy[object]] = {
 @example(wanted={"method": []})
 @example(wanted={"quadrature_points": 10**30})
 @settings(max_examples=300, deadline=None)
-def test_any_options_are_valid_or_refused_in_one_sentence(wanted: dict[str, object]) -> None:
+def test_any_options_are_valid_or_refused_in_one_sentence(wanted):
     try:
-        options = RelaxOptions(**wanted)  # type: ignore[arg-type]
+        options = RelaxOptions(**wanted)
         relax(regular_polygon(5), options)
     except OptionError as error:
         said = str(error)
@@ -189,7 +187,7 @@ def polygons(draw: st.DrawFn) -> Curve:
     mesh=st.sampled_from(MESHES),
 )
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
-def test_short_flows(curve: Curve, method: str, more: int, iterations: int, mesh: str) -> None:
+def test_short_flows(curve, method, more, iterations, mesh):
     options = RelaxOptions(method=method, vertices=len(curve) + more, max_iterations=iterations, mesh=mesh)
     try:
         check_run(curve, options)
@@ -214,9 +212,7 @@ WORDS = st.sampled_from(VOCABULARY.split())
 @settings(
     max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
 )
-def test_any_arguments_give_an_exit_status_and_one_line(
-    words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_any_arguments_give_an_exit_status_and_one_line(words, tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "in.txt").write_text(text(TREFOIL))
     words = ["in.txt" if word == "IN" else word for word in words]

@@ -22,7 +22,7 @@ from taylor import taylor_slope
 SLOW = [pytest.param(mesh, marks=pytest.mark.slow) for mesh in ("fixed", "finer")]
 
 
-def test_arcs_go_from_pin_to_pin_round_the_end_and_have_every_edge() -> None:
+def test_arcs_go_from_pin_to_pin_round_the_end_and_have_every_edge():
     mesh = Mesh((6, 4))
     found = [arc.tolist() for arc in arcs(mesh, np.array([2, 4]))]
     assert found == [[0, 1, 4, 5], [2, 3], [6, 7, 8, 9]]
@@ -36,7 +36,7 @@ def test_arcs_go_from_pin_to_pin_round_the_end_and_have_every_edge() -> None:
 
 
 @pytest.mark.parametrize("pins", [[0, 50], [3, 20, 99], [10]])
-def test_collapses_take_no_pin_and_leave_each_arc_enough_edges_to_bend(pins: list[int]) -> None:
+def test_collapses_take_no_pin_and_leave_each_arc_enough_edges_to_bend(pins):
     curve, kept = regular_polygon(100), np.array(pins)
     chosen = superfluous(curve, np.full(100, 1e3), kept)
     assert len(chosen) > 10
@@ -47,7 +47,7 @@ def test_collapses_take_no_pin_and_leave_each_arc_enough_edges_to_bend(pins: lis
 
 
 @pytest.mark.parametrize(("pins", "places"), [([4], [11]), ([2, 9, 30], [0, 40, 99]), ([0, 39], [0, 99])])
-def test_smooth_curves_have_pins_at_their_places(pins: list[int], places: list[int]) -> None:
+def test_smooth_curves_have_pins_at_their_places(pins, places):
     """Equal distances from one to the next, round the first vertex."""
     coarse = regular_polygon(40)
     fine = smoothed(coarse, Mesh((100,)), np.array(pins), np.array(places))
@@ -59,7 +59,7 @@ def test_smooth_curves_have_pins_at_their_places(pins: list[int], places: list[i
 SQUARE = Curve([[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0]])
 
 
-def test_straight_arcs_are_held_also_where_vertices_are_inserted() -> None:
+def test_straight_arcs_are_held_also_where_vertices_are_inserted():
     """A corner between pins leaves slack."""
     fine = subdivide(SQUARE, np.array([4, 4, 4, 4]))
     pins = Pins.at(fine, SQUARE.vertices[[0, 1]])
@@ -87,7 +87,7 @@ def checked(curve: Curve, **options: object) -> tuple[list[Iterate], str]:
     return iterates, result.message
 
 
-def test_pins_are_held_by_the_hierarchical_solver_too() -> None:
+def test_pins_are_held_by_the_hierarchical_solver_too():
     dense, _ = checked(BENT, solver="dense", vertices=90, mesh="fixed")
     hierarchical, message = checked(BENT, solver="hierarchical", vertices=90, mesh="fixed")
     assert message.startswith("converged")
@@ -95,7 +95,7 @@ def test_pins_are_held_by_the_hierarchical_solver_too() -> None:
 
 
 @pytest.mark.parametrize("mesh", [*SLOW, "adaptive", "auto"])
-def test_pins_survive_every_mesh(mesh: str) -> None:
+def test_pins_survive_every_mesh(mesh):
     """Coarse input with near strands: vertices are inserted at the start, and later on split and left out."""
     iterates, message = checked(knot("ochiai-1"), pins=(1, 8, 20), mesh=mesh, max_iterations=60)
     assert all(len(iterate.pins) == 3 for iterate in iterates)
@@ -103,7 +103,7 @@ def test_pins_survive_every_mesh(mesh: str) -> None:
     assert iterates[-1].energy < 0.5 * iterates[0].energy, message
 
 
-def test_arcs_keep_their_lengths_spread_evenly() -> None:
+def test_arcs_keep_their_lengths_spread_evenly():
     curve = refine(torus_trefoil(40).with_vertices(torus_trefoil(40).vertices * [1.0, 2.0, 1.0]), 160)
     pins = (10, 11, 70, 130)
     end = checked(curve, pins=pins, vertices=160)[0][-1].curve
@@ -112,7 +112,7 @@ def test_arcs_keep_their_lengths_spread_evenly() -> None:
         assert np.ptp(end.edge_lengths[arc]) < 1e-9
 
 
-def test_pinned_tangents_stay_on_finer_meshes() -> None:
+def test_pinned_tangents_stay_on_finer_meshes():
     curve, pins = knot("ochiai-1"), (1, 8)
     (start, *_, end), _ = checked(curve, pins=pins, pin_tangents=True, mesh="adaptive", max_iterations=60)
     assert len(start.pins) == 6
@@ -130,7 +130,7 @@ def directions(curve: Curve, vertex: FloatArray) -> FloatArray:
 
 
 @pytest.mark.parametrize("dimension", [2, 3, 4])
-def test_loops_converge_in_every_dimension(dimension: int) -> None:
+def test_loops_converge_in_every_dimension(dimension):
     """A star with pinned corners, down to a small gradient; in four dimensions nothing is proved."""
     angle = np.linspace(0.0, 2.0 * np.pi, 16, endpoint=False)
     radius = np.where(np.arange(16) % 2 == 0, 1.0, 0.45)
@@ -143,7 +143,7 @@ def test_loops_converge_in_every_dimension(dimension: int) -> None:
     np.testing.assert_array_equal(result.curve.vertices[list(result.last.pins)], star[[0, 4, 8, 12]])
 
 
-def test_nothing_moves_where_everything_is_pinned() -> None:
+def test_nothing_moves_where_everything_is_pinned():
     for options in ({}, {"solver": "hierarchical"}, {"metric": "l2"}, {"method": "penalty-cg"}, {"stability": True}):
         iterates, message = checked(BENT, pins=tuple(range(90)), **options)
         assert message.startswith("converged: projected gradient 0 ≤")
@@ -151,7 +151,7 @@ def test_nothing_moves_where_everything_is_pinned() -> None:
         assert len(iterates) == 1
 
 
-def test_straight_arcs_of_a_start_do_not_move_and_others_do(caplog: pytest.LogCaptureFixture) -> None:
+def test_straight_arcs_of_a_start_do_not_move_and_others_do(caplog):
     curve = Curve([[0, 0, 0], [3, 0, 0], [3, 1, 0.2], [1.5, 2, 0.9], [0, 1, -0.3]])
     iterates, message = checked(curve, pins=(0, 1), vertices=100)
     assert message.startswith("converged")
@@ -163,7 +163,7 @@ def test_straight_arcs_of_a_start_do_not_move_and_others_do(caplog: pytest.LogCa
 
 
 @pytest.mark.kernels
-def test_little_slack_is_no_obstacle() -> None:
+def test_little_slack_is_no_obstacle():
     """The arc hardly bends out: 1 + 10⁻⁴ times as long as the distance of its ends."""
     x, t = np.linspace(0.0, 4.0, 40, endpoint=False), np.linspace(0.0, np.pi, 120)[:-1]
     sag = 4.0 * np.sqrt(3e-4 / 8.0)
@@ -192,7 +192,7 @@ def test_little_slack_is_no_obstacle() -> None:
         ),
     ],
 )
-def test_pins_that_cannot_be_are_refused(options: dict[str, object], said: str) -> None:
+def test_pins_that_cannot_be_are_refused(options, said):
     with pytest.raises(MobiusFlowError) as error:
         minimize(*wanted(BENT, **options))
     assert str(error.value) == said
@@ -205,7 +205,7 @@ def test_pins_that_cannot_be_are_refused(options: dict[str, object], said: str) 
         ((slice(62, 63), 1.01), "edge_lengths changes the edge between vertices 63 and 64, which are both pinned"),
     ],
 )
-def test_target_lengths_must_reach_from_pin_to_pin(change: tuple[slice, float], said: str) -> None:
+def test_target_lengths_must_reach_from_pin_to_pin(change, said):
     lengths = BENT.edge_lengths.copy()
     task, kept = wanted(BENT, vertices=90, pins=(*PINS, 63), edge_lengths=tuple(lengths), max_iterations=2)
     assert minimize(task, kept).certified
@@ -214,8 +214,8 @@ def test_target_lengths_must_reach_from_pin_to_pin(change: tuple[slice, float], 
         minimize(task, replace(kept, edge_lengths=tuple(lengths)))
 
 
-def test_the_report_tells_the_pins_of_the_result() -> None:
-    assert [Task(curve=BENT, pins=pins).pins for pins in ([3, 5], np.array([3, 5]))] == [(3, 5), (3, 5)]  # type: ignore
+def test_the_report_tells_the_pins_of_the_result():
+    assert [Task(curve=BENT, pins=pins).pins for pins in ([3, 5], np.array([3, 5]))] == [(3, 5), (3, 5)]
     result = minimize(*wanted(BENT, pins=PINS, vertices=180, max_iterations=2))
     pins = result.report()["pins"]
     assert isinstance(pins, list)
@@ -223,7 +223,7 @@ def test_the_report_tells_the_pins_of_the_result() -> None:
     assert minimize(BENT, RelaxOptions(max_iterations=0)).report()["pins"] == []
 
 
-def test_the_kernel_at_a_minimum_has_no_rotations_that_pins_forbid() -> None:
+def test_the_kernel_at_a_minimum_has_no_rotations_that_pins_forbid():
     """A round circle can rotate about its axes and slide; with three pins it can do neither."""
     circle = regular_polygon(40)
     free, pinned = (stability(point_on(circle, pins=pins)) for pins in ((), (0, 13, 26)))
@@ -232,7 +232,7 @@ def test_the_kernel_at_a_minimum_has_no_rotations_that_pins_forbid() -> None:
     assert not pinned.modes.vectors[:, [0, 13, 26]].any()
 
 
-def test_the_lagrangians_hessian_knows_pins() -> None:
+def test_the_lagrangians_hessian_knows_pins():
     """At a critical point it is the second derivative of the energy along the constraints."""
     pins = (3, 4, 62)
     relaxed = minimize(*wanted(BENT, pins=pins, vertices=90, mesh="fixed", method="trust-region", tolerance=1e-9))
@@ -245,7 +245,7 @@ def test_the_lagrangians_hessian_knows_pins() -> None:
         (matrix @ v.ravel()).reshape(v.shape), lagrangian_hessian(point)(v), atol=1e-9 * np.abs(matrix).max()
     )
 
-    def second_order(t: float) -> FloatArray:
+    def second_order(t):
         end = point.retract(point.vertices + t * v / np.abs(v).max(), 0.0 * point.residual)
         return np.array(end.energy)
 

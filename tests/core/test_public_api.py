@@ -3,7 +3,6 @@
 import enum
 import inspect
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -86,10 +85,7 @@ FINE: dict[str, tuple[Callable[..., object], dict[str, object]]] = {
             "callback": lambda *_: None,
         },
     ),
-    "tighten": (
-        core.tighten,
-        {"curve": TREFOIL, "vertices": 100, "starts": 1, "seed": 0, "callback": lambda *_: None},
-    ),
+    "tighten": (core.tighten, {"curve": TREFOIL, "vertices": 100, "starts": 1, "seed": 0, "callback": lambda *_: None}),
     "audit": (
         core.audit,
         {
@@ -164,7 +160,7 @@ def test_all_that_is_public_is_tried():
 
 
 @pytest.mark.parametrize("name", FINE)
-def test_nonsense_ends_in_one_sentence(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_nonsense_ends_in_one_sentence(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     function, fine = FINE[name]
     ends = {
@@ -237,7 +233,7 @@ def test_values_show_as_a_line(value, said):
     assert repr(value) == said
 
 
-def test_what_is_public_has_a_docstring() -> None:
+def test_what_is_public_has_a_docstring():
     exported = {name: getattr(core, name) for name in core.__all__}
     members = {
         f"{owner}.{name}": getattr(member, "__func__", member)

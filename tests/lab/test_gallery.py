@@ -7,7 +7,7 @@ import pytest
 from batch_results import write_run
 from mobius_flow.addon.pictures import export
 from mobius_flow.cli import main
-from mobius_flow.core import Curve, MobiusFlowError
+from mobius_flow.core import MobiusFlowError
 from mobius_flow.core.curve.measures import bending
 from mobius_flow.lab import gallery
 from shapes import half_circle, regular_polygon, torus_trefoil
@@ -28,8 +28,8 @@ def results(tmp_path):
 
 def test_every_result_has_its_picture_name_and_energy(results, tmp_path, monkeypatch, capsys):
     image = pytest.importorskip("matplotlib.image")
-    drawn: list[Curve] = []
-    titles: list[str] = []
+    drawn = []
+    titles = []
     write_page = gallery._write_page
 
     def draw(path, curve, width, height, look, *, cut_out):

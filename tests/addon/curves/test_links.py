@@ -5,16 +5,7 @@ from itertools import pairwise
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import (
-    add_curve,
-    contents,
-    evaluated,
-    in_world,
-    relax,
-    sentence,
-    show,
-    stored,
-)
+from blender_scenes import add_curve, contents, evaluated, in_world, relax, sentence, show, stored
 from knot_diagrams import linking_number
 from mathutils import Euler, Matrix, Vector
 from mobius_flow import Relaxation

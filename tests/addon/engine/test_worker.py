@@ -66,7 +66,7 @@ def test_options_and_words_arrive_as_they_were():
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGPIPE"), reason="there is no such signal")
-def test_a_worker_that_is_gone_does_not_end_blender() -> None:
+def test_a_worker_that_is_gone_does_not_end_blender():
     """Some builds of Blender leave SIGPIPE as it is, unlike Python by itself."""
     program = """
 import queue, signal, subprocess, sys, threading

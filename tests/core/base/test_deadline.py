@@ -77,8 +77,8 @@ def test_what_was_reached_is_kept():
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_waits_where_what_it_raises_would_be_lost(number: signal.Signals) -> None:
-    def leave(*_: object) -> None:
+def test_a_signal_waits_where_what_it_raises_would_be_lost(number):
+    def leave(*_):
         raise KeyboardInterrupt
 
     before = signal.signal(number, leave)

@@ -16,7 +16,7 @@ def _interrupted_write(path: Path) -> None:
     raise KeyboardInterrupt
 
 
-def test_an_exception_keeps_the_old_file_and_leaves_nothing_else(tmp_path: Path) -> None:
+def test_an_exception_keeps_the_old_file_and_leaves_nothing_else(tmp_path):
     target = tmp_path / "a.txt"
     target.write_text("old")
     with pytest.raises(KeyboardInterrupt), atomic_write(target) as temporary:
@@ -25,7 +25,7 @@ def test_an_exception_keeps_the_old_file_and_leaves_nothing_else(tmp_path: Path)
     assert list(tmp_path.iterdir()) == [target]
 
 
-def test_binary_files_and_suffix(tmp_path: Path) -> None:
+def test_binary_files_and_suffix(tmp_path):
     target = tmp_path / "a.npz"
     with atomic_write(target) as temporary:
         assert temporary.suffix == ".npz"
@@ -34,7 +34,7 @@ def test_binary_files_and_suffix(tmp_path: Path) -> None:
         assert archive["x"].tolist() == [0, 1, 2]
 
 
-def test_rights_are_kept_and_defaults_follow_the_umask(tmp_path: Path) -> None:
+def test_rights_are_kept_and_defaults_follow_the_umask(tmp_path):
     target = tmp_path / "a.txt"
     plain = tmp_path / "plain.txt"
     plain.write_text("")
@@ -47,7 +47,7 @@ def test_rights_are_kept_and_defaults_follow_the_umask(tmp_path: Path) -> None:
     assert target.stat().st_mode & 0o777 == 0o640
 
 
-def test_links_are_followed(tmp_path: Path) -> None:
+def test_links_are_followed(tmp_path):
     target, link = tmp_path / "a.txt", tmp_path / "link.txt"
     target.write_text("old")
     link.symlink_to(target)
@@ -57,14 +57,14 @@ def test_links_are_followed(tmp_path: Path) -> None:
     assert target.read_text() == "new"
 
 
-def test_devices_are_written_to_directly() -> None:
+def test_devices_are_written_to_directly():
     with atomic_write(os.devnull) as temporary:
         temporary.write_text("gone")
     assert not Path(os.devnull).is_file()
 
 
 @pytest.mark.parametrize("name", ["directory.txt", "missing/curve.txt", "a\0b.txt", "x" * 300 + ".txt"])
-def test_targets_that_cannot_be_written_give_one_sentence(tmp_path: Path, name: str) -> None:
+def test_targets_that_cannot_be_written_give_one_sentence(tmp_path, name):
     (tmp_path / "directory.txt").mkdir()
     with pytest.raises(CurveFileError, match=r"cannot be written|is a directory") as caught:
         write_curve(tmp_path / name, Curve(np.eye(3)))
@@ -72,7 +72,7 @@ def test_targets_that_cannot_be_written_give_one_sentence(tmp_path: Path, name: 
 
 
 @pytest.mark.skipif(os.name != "posix" or os.geteuid() == 0, reason="root may write everywhere")
-def test_write_protected_file_is_not_replaced(tmp_path: Path) -> None:
+def test_write_protected_file_is_not_replaced(tmp_path):
     target = tmp_path / "curve.txt"
     write_curve(target, Curve(np.eye(3)))
     target.chmod(0o444)
@@ -82,7 +82,7 @@ def test_write_protected_file_is_not_replaced(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
-def test_a_full_disk_gives_one_sentence(tmp_path: Path) -> None:
+def test_a_full_disk_gives_one_sentence(tmp_path):
     target = tmp_path / "curve.txt"
     target.symlink_to("/dev/full")
     with pytest.raises(CurveFileError, match="cannot be written: No space left"):
@@ -90,7 +90,7 @@ def test_a_full_disk_gives_one_sentence(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(os.name != "posix", reason="named pipes")
-def test_a_pipe_gets_the_whole_contents_at_the_end(tmp_path: Path) -> None:
+def test_a_pipe_gets_the_whole_contents_at_the_end(tmp_path):
     pipe = tmp_path / "pipe.txt"
     os.mkfifo(pipe)
     reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)

@@ -37,7 +37,7 @@ def test_names_come_from_the_registries():
     assert DECLARED["mesh"].choices == ("auto", "fixed", "finer", "adaptive")
 
 
-def test_what_auto_means_to_a_method_goes_with_the_method() -> None:
+def test_what_auto_means_to_a_method_goes_with_the_method():
     paper = RelaxOptions(method="paper", untangle="auto")
     meant = {"barrier": "off", "solver": "dense", "mesh": "fixed", "untangle": "never", "radius": "none"}
     assert vars(paper.resolved) == vars(RelaxOptions()) | {"method": "paper"} | meant

@@ -1,13 +1,12 @@
 """BLAS threads: one while the library works, and the caller's whenever it does not."""
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from types import FrameType
 
 import pytest
 import threadpoolctl
-from mobius_flow.core import Iterate, RelaxOptions, minimize, relax
+from mobius_flow.core import RelaxOptions, minimize, relax
 from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.driver.info import info, measure
 from mobius_flow.core.energies.density import Partials, PointPairs
@@ -31,7 +30,7 @@ pytestmark = pytest.mark.skipif(not threads(), reason="this BLAS cannot be bound
 
 
 @pytest.fixture(autouse=True)
-def _pools() -> Iterator[None]:
+def _pools():
     """Pools of a caller, of more threads than those of the tests; nothing of them may be left changed."""
     before = POOLS.limit(limits=OWN)
     with POOLS.limit(limits=None):  # when this ends the thread that has set a number lets go of the pools
@@ -70,16 +69,16 @@ class Spy:
         return replace(SHORT, energy=KPointEnergy("spy", "1/r³", self, MIDPOINT))
 
 
-def test_one_thread_at_work_and_the_callers_between_iterates() -> None:
+def test_one_thread_at_work_and_the_callers_between_iterates():
     spy = Spy()
     assert [threads() for _ in relax(TREFOIL, spy.options)] == [{OWN}] * 3
     assert spy.seen == {1}
 
 
-def test_a_callback_has_the_callers_threads() -> None:
+def test_a_callback_has_the_callers_threads():
     spy, seen = Spy(), list[set[int]]()
 
-    def callback(_: Iterate) -> None:
+    def callback(_):
         seen.append(threads())
 
     minimize(TREFOIL, spy.options, callback)
@@ -87,7 +86,7 @@ def test_a_callback_has_the_callers_threads() -> None:
     assert spy.seen == {1}
 
 
-def test_a_relaxation_that_is_left_leaves_nothing_behind() -> None:
+def test_a_relaxation_that_is_left_leaves_nothing_behind():
     for leave in (0, 1, 2):
         walk = relax(TREFOIL, SHORT)
         for _ in range(leave):
@@ -97,9 +96,9 @@ def test_a_relaxation_that_is_left_leaves_nothing_behind() -> None:
 
 
 @pytest.mark.parametrize("faulty", [True, False])
-def test_errors_leave_nothing_behind(faulty: bool) -> None:
+def test_errors_leave_nothing_behind(faulty):
 
-    def callback(_: Iterate) -> None:
+    def callback(_):
         raise FaultError
 
     with pytest.raises(FaultError):
@@ -116,10 +115,10 @@ ENTRANCES: dict[str, Callable[[], object]] = {
 
 
 @pytest.mark.parametrize("entrance", ENTRANCES)
-def test_every_entrance_bounds_the_pools(entrance: str) -> None:
-    seen: set[int] = set()
+def test_every_entrance_bounds_the_pools(entrance):
+    seen = set()
 
-    def profile(frame: FrameType, event: str, _: object) -> None:
+    def profile(frame, event, _):
         if event == "call" and "core/energies/" in frame.f_code.co_filename.replace("\\", "/"):
             seen.update(threads())
 

@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 from degenerate_motions import ARCS, tied_windows
 from mobius_flow.core import Mesh
-from mobius_flow.core.base.types import BoolArray, IntArray
 from mobius_flow.core.collision import boxes, is_free
-from mobius_flow.core.collision.boxes import BoxTree, Level, contact_window, still_triangles
+from mobius_flow.core.collision.boxes import BoxTree, contact_window, still_triangles
 from solids import sphere
 
 MESHES = [Mesh((3,)), Mesh((4,)), Mesh((100,)), Mesh((3, 3)), Mesh((7, 3, 31)), Mesh((3,) * 40), Mesh((257, 4, 64))]
@@ -34,7 +33,7 @@ def strangers(mesh: Mesh) -> set[tuple[int, int]]:
 
 @pytest.mark.parametrize("chunk", [5, 1 << 14])
 @pytest.mark.parametrize("mesh", MESHES, ids=str)
-def test_every_pair_exactly_once(mesh: Mesh, chunk: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_every_pair_exactly_once(mesh, chunk, monkeypatch):
     monkeypatch.setattr(BoxTree, "chunk", chunk)
     tree = BoxTree.build(mesh, *random_leg(mesh, 3))
     pairs = found(tree, lambda level, a, other, b: np.ones(len(a), dtype=bool))
@@ -43,7 +42,7 @@ def test_every_pair_exactly_once(mesh: Mesh, chunk: int, monkeypatch: pytest.Mon
 
 
 @pytest.mark.parametrize("n", [3, 40, 200])
-def test_every_pair_of_edge_and_triangle_exactly_once(n: int) -> None:
+def test_every_pair_of_edge_and_triangle_exactly_once(n):
     still, mesh = still_triangles((sphere(1.0),), 1), Mesh((n,))
     tree = BoxTree.build(mesh, *random_leg(mesh, 3))
     pairs = [
@@ -56,11 +55,11 @@ def test_every_pair_of_edge_and_triangle_exactly_once(n: int) -> None:
 
 @pytest.mark.parametrize("m", [2, 3])
 @pytest.mark.parametrize("mesh", MESHES, ids=str)
-def test_no_pair_that_can_meet_is_lost(mesh: Mesh, m: int) -> None:
+def test_no_pair_that_can_meet_is_lost(mesh, m):
     start, end = random_leg(mesh, m)
     tree = BoxTree.build(mesh, start, end)
 
-    def near(level: Level, a: IntArray, other: Level, b: IntArray) -> BoolArray:
+    def near(level, a, other, b):
         enter, leave = contact_window(level.gaps(a, other, b))
         return np.asarray(enter <= leave)
 
@@ -79,7 +78,7 @@ def overlapping(mesh: Mesh, start: np.ndarray, end: np.ndarray) -> set[tuple[int
     return pairs & strangers(mesh)
 
 
-def test_contact_window() -> None:
+def test_contact_window():
     # one row per ± axis, one column per pair of boxes; gaps at the start and at the end
     before = np.array([[1.0, 1.0, -1.0, -1.0, 0.0], [-3.0, -1.0, -1.0, -1.0, -1.0]])
     after = np.array([[-1.0, 2.0, -1.0, 3.0, 0.0], [1.0, -1.0, -1.0, -1.0, -1.0]])
@@ -105,7 +104,7 @@ def exact_window(before: list[float], after: list[float]) -> tuple[Fraction, Fra
     return (enter, leave) if enter <= leave else None
 
 
-def test_windows_are_never_too_narrow() -> None:
+def test_windows_are_never_too_narrow():
     """Roots are rounded, but boxes that touch for a moment only are found."""
     rng = np.random.default_rng(41)
     gaps = rng.uniform(-1.0, 1.0, size=(2, 2, 400))
@@ -120,7 +119,7 @@ def test_windows_are_never_too_narrow() -> None:
     assert found > 50
 
 
-def test_larger_boxes_meet_no_later_and_part_no_earlier() -> None:
+def test_larger_boxes_meet_no_later_and_part_no_earlier():
     """To the last bit, or a search that is split at a time may find a pair in neither part."""
     rng = np.random.default_rng(43)
     gaps = rng.choice([-1.0, 1.0], size=(2, 1, 40_000)) * 2.0 ** rng.uniform(-3, 0, size=(2, 1, 40_000))
@@ -132,12 +131,12 @@ def test_larger_boxes_meet_no_later_and_part_no_earlier() -> None:
     assert (leave <= last).all()
 
 
-def test_no_crossing_slips_through_where_the_search_is_split() -> None:
+def test_no_crossing_slips_through_where_the_search_is_split():
     rng, mesh = np.random.default_rng(47), Mesh((2,) * ARCS, (False,) * ARCS)
     assert sum(is_free(mesh, *tied_windows(rng)) for _ in range(COUNT)) == 0
 
 
-def test_digits_that_scaling_costs_hide_no_crossing() -> None:
+def test_digits_that_scaling_costs_hide_no_crossing():
     """An arc passes another one in so short a time that their distances are numbers without all their digits."""
     unit = 2.0**-1074
     still = np.array([[0.0, 0.0, -1024.0], [0.0, 0.0, 1024.0]])

@@ -4,7 +4,6 @@ The checker shares no line with the program.  MOBIUS_FLOW_MOTIONS=4000 makes it 
 """
 
 import os
-from collections.abc import Callable
 
 import degenerate_motions
 import motions
@@ -17,14 +16,14 @@ from mobius_flow.core.collision import free_motion, is_free
 from mobius_flow.core.collision.exact import first_contact, first_contact_with_triangle
 from mobius_flow.core.proof import checker
 from mobius_flow.core.proof.filter import doubtful_pairs
-from motions import Array, Rng, gaussian, placed
+from motions import gaussian, placed
 
 COUNT = int(os.environ.get("MOBIUS_FLOW_MOTIONS", "30"))
 QUADRILATERAL = Mesh((4,))
 
 
 @pytest.mark.parametrize("kind", [*degenerate_motions.KINDS, *motions.KINDS], ids=lambda kind: kind.__name__)
-def test_about_edges(kind: Callable[..., tuple[Array, Array]]) -> None:
+def test_about_edges(kind):
     """The exact decisions of both, the checker's planes, and the filter before it, which keeps few other pairs."""
     rng, contacts, left = np.random.default_rng(93), 0, 0
     dimensions = [{"m": 2}, {"m": 3}] if kind in motions.KINDS else [{}, {}]
@@ -45,7 +44,7 @@ def test_about_edges(kind: Callable[..., tuple[Array, Array]]) -> None:
 
 
 @pytest.mark.parametrize("kind", obstacle_motions.KINDS, ids=lambda kind: kind.__name__)
-def test_about_triangles(kind: Callable[[Rng], tuple[Array, Array]]) -> None:
+def test_about_triangles(kind):
     """So does the search, but for edges that almost shrink to a point."""
     rng, tally = np.random.default_rng(977), Tally(obstacle_motions.meets)
     for _ in range(COUNT):
@@ -65,7 +64,7 @@ def test_about_triangles(kind: Callable[[Rng], tuple[Array, Array]]) -> None:
 
 @pytest.mark.parametrize("m", [2, 3])
 @pytest.mark.parametrize("kind", motions.KINDS, ids=lambda kind: kind.__name__)
-def test_about_quadrilaterals(kind: Callable[[Rng, int], tuple[Array, Array]], m: int) -> None:
+def test_about_quadrilaterals(kind, m):
     """Nothing false is claimed by the search, nothing free is refused, and contacts are told to 2 %."""
     rng, tally = np.random.default_rng(1047 + m), Tally(opposite_edges_meet)
     for _ in range(COUNT * (6 if kind is gaussian else 1)):
@@ -80,7 +79,7 @@ def test_about_quadrilaterals(kind: Callable[[Rng, int], tuple[Array, Array]], m
 
 @pytest.mark.parametrize("ends", [(1.0, 0.3), (0.0, 1.0)])
 @pytest.mark.parametrize("gap", [1e-9, -1e-9, 1e-12])
-def test_near_misses_are_free(gap: float, ends: tuple[float, float]) -> None:
+def test_near_misses_are_free(gap, ends):
     """An end that passes the other edge or its end at a small distance is not taken for a contact."""
     rng = np.random.default_rng(77)
     free = 0
@@ -98,7 +97,7 @@ def test_near_misses_are_free(gap: float, ends: tuple[float, float]) -> None:
 
 
 @pytest.mark.parametrize("kind", [obstacle_motions.lattice, obstacle_motions.in_plane, obstacle_motions.inside])
-def test_an_edge_meets_a_triangle_if_it_does_so_at_some_time(kind: Callable[[Rng], tuple[Array, Array]]) -> None:
+def test_an_edge_meets_a_triangle_if_it_does_so_at_some_time(kind):
     """At quarters of the time coordinates are exact; there convex hulls decide, of which nobody else makes use."""
     rng, met = np.random.default_rng(5), 0
     for _ in range(24):
@@ -114,6 +113,6 @@ def test_an_edge_meets_a_triangle_if_it_does_so_at_some_time(kind: Callable[[Rng
     assert met > 3
 
 
-def test_parts_of_a_motion_meet_from_the_contact_on() -> None:
+def test_parts_of_a_motion_meet_from_the_contact_on():
     start, end = np.array([[-1.0, 0, 1], [1, 0, 1], [0, -1, 0], [0, 1, 0]]), np.zeros((4, 3))
     assert [until(meet, start, end, t) for t in (0.0, 0.5, np.nextafter(1.0, 0.0), 1.0)] == [False] * 3 + [True]

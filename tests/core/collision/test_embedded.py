@@ -18,7 +18,7 @@ FAR_SQUARE = [[5.0, 5, 5], [6, 5, 5], [6, 6, 5], [5, 6, 5]]
     [torus_trefoil(300), hopf_link(50), regular_polygon(3), regular_polygon(7, dimension=2), Curve(SQUARE)],
     ids=["trefoil", "link", "triangle", "plane", "square"],
 )
-def test_embedded_curves_pass(curve: Curve, scale: float) -> None:
+def test_embedded_curves_pass(curve, scale):
     check_embedded(curve.with_vertices(scale * curve.vertices))
 
 
@@ -48,23 +48,23 @@ BACK = "the curve doubles back at vertex {} of component 1, {}; move or remove i
         ([FAR_SQUARE, NEEDLE], TOUCH.format(1, 1, 2, "(5.5, 5, 5)")),
     ],
 )
-def test_what_is_wrong_is_named_with_the_place(parts: list[list[list[float]]], said: str) -> None:
+def test_what_is_wrong_is_named_with_the_place(parts, said):
     assert refusal(Curve.from_components([np.array(part, dtype=float) for part in parts])) == said
 
 
 @pytest.mark.parametrize("m", [3, 4])
-def test_curve_run_through_twice(m: int) -> None:
+def test_curve_run_through_twice(m):
     once = regular_polygon(40, dimension=m).vertices
     assert "edge 1 of component 1 and edge 40 of component 1 touch" in refusal(Curve(np.concatenate([once, once])))
 
 
 @pytest.mark.parametrize("gap", [1e-3, 1e-9, 1e-14])
-def test_near_strands_pass(gap: float) -> None:
+def test_near_strands_pass(gap):
     curve = Curve.from_components([SQUARE, np.asarray(SQUARE) + np.array([0.0, 0.0, gap])])
     check_embedded(curve)
 
 
-def test_lattice_polygon_with_parallel_and_collinear_edges() -> None:
+def test_lattice_polygon_with_parallel_and_collinear_edges():
     row = [[k, 0, 0] for k in range(4)]
     path = [*row, *([x, 1, 0] for x, _, _ in row[::-1]), [0, 1, 1], [0, 0, 1]]
     check_embedded(Curve(path))
@@ -74,7 +74,7 @@ def test_lattice_polygon_with_parallel_and_collinear_edges() -> None:
 
 @pytest.mark.parametrize("m", [4, 5, 40])
 @pytest.mark.parametrize("scale", [1.0, 1e-6, 1e6])
-def test_crossings_in_more_dimensions(m: int, scale: float) -> None:
+def test_crossings_in_more_dimensions(m, scale):
     """An eight that crosses itself, or nearly, turned into a random direction of R^m."""
     turn = np.linalg.qr(np.random.default_rng(9).normal(size=(m, m)))[0]
     eight = np.zeros((4, m))
@@ -85,7 +85,7 @@ def test_crossings_in_more_dimensions(m: int, scale: float) -> None:
     check_embedded(Curve(scale * eight @ turn + scale))
 
 
-def test_thousands_of_edges_within_rounding_of_each_other_are_refused_in_time() -> None:
+def test_thousands_of_edges_within_rounding_of_each_other_are_refused_in_time():
     row, column = np.divmod(np.arange(72), 9)
     tails = 1.0 + 2.0**-52 * np.stack([row, column, 0 * row], axis=1)
     arcs = np.stack([tails, tails + np.array([[0.5, 0.25, 0.375]])], axis=1)
@@ -93,7 +93,7 @@ def test_thousands_of_edges_within_rounding_of_each_other_are_refused_in_time() 
     assert "thousands of others are so close" in refusal(Curve.from_components(arcs, [False] * 72))
 
 
-def test_thousands_of_edges_on_each_other_need_little_memory() -> None:
+def test_thousands_of_edges_on_each_other_need_little_memory():
     """The first contact is enough: 9,000 vertices on three places are 13 million pairs of edges that coincide."""
     tracemalloc.start()
     try:

@@ -34,7 +34,7 @@ def collapses(mesh: Mesh, start: np.ndarray, end: np.ndarray) -> bool:
 
 @pytest.mark.parametrize("dimension", [2, 3])
 @pytest.mark.parametrize("size", [2, 3, 4, 5])
-def test_random_motions_of_arcs(tmp_path: Path, size: int, dimension: int) -> None:
+def test_random_motions_of_arcs(tmp_path, size, dimension):
     """On a small lattice, where edges fold and shrink exactly, and in general position."""
     mesh, rng = Mesh((size,), (False,)), np.random.default_rng(100 * size + dimension)
     found = {True: 0, False: 0}
@@ -60,7 +60,7 @@ def turned(angle: float) -> np.ndarray:
 
 @pytest.mark.parametrize("backwards", [False, True])
 @pytest.mark.parametrize("length", [0.5, 1.0, 2.0])
-def test_an_end_that_swings_through_the_next_edge(tmp_path: Path, length: float, backwards: bool) -> None:
+def test_an_end_that_swings_through_the_next_edge(tmp_path, length, backwards):
     middle = np.zeros(3)
     frames = [np.stack([length * turned(angle), middle, turned(0.0)]) for angle in (0.3, -0.3)]
     if backwards:
@@ -77,14 +77,14 @@ def test_an_end_that_swings_through_the_next_edge(tmp_path: Path, length: float,
 
 
 @pytest.mark.parametrize("shift", [1e-6, -1e-6])
-def test_an_end_that_swings_past_the_next_edge_is_free(tmp_path: Path, shift: float) -> None:
+def test_an_end_that_swings_past_the_next_edge_is_free(tmp_path, shift):
     frames = [np.stack([turned(angle) + shift * np.eye(3)[2], np.zeros(3), 2 * turned(0.0)]) for angle in (0.3, -0.3)]
     mesh = Mesh((3,), (False,))
     assert is_free(mesh, *frames)
     assert verdict(tmp_path, mesh, *frames).accepted
 
 
-def test_a_single_edge_that_turns_inside_out(tmp_path: Path) -> None:
+def test_a_single_edge_that_turns_inside_out(tmp_path):
     mesh, frame = Mesh((2,), (False,)), np.array([[0.0, 0.0, 0.0], [1.0, 2.0, 3.0]])
     free = free_motion(mesh, frame, frame[::-1])
     assert free.limit is Limit.CONTACT
@@ -93,7 +93,7 @@ def test_a_single_edge_that_turns_inside_out(tmp_path: Path) -> None:
     assert rejected.edges == (0, 0)
 
 
-def test_numbers_of_edges_are_not_those_of_their_tails(tmp_path: Path) -> None:
+def test_numbers_of_edges_are_not_those_of_their_tails(tmp_path):
     """After an arc an edge has a smaller number than its tail."""
     arc, square = straight_arc(3).vertices, np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]) + 9.0
     start = Curve.from_components([arc, square], [False, True])
@@ -106,13 +106,13 @@ def test_numbers_of_edges_are_not_those_of_their_tails(tmp_path: Path) -> None:
     assert {*rejected.edges} <= {3, 4, 5, 6}
 
 
-def test_closed_polygons_of_four_and_more_have_no_folds() -> None:
+def test_closed_polygons_of_four_and_more_have_no_folds():
     assert folds(Mesh((4, 5, 9))).shape == (4, 0)
     assert folds(Mesh((3,))).T.tolist() == [[0, 0, 1, 2], [1, 1, 2, 0], [2, 2, 0, 1]]
     assert folds(Mesh((4, 3), (True, False))).T.tolist() == [[4, 4, 5, 6], [6, 6, 4, 5]]
 
 
-def test_ends_that_rounding_could_fold() -> None:
+def test_ends_that_rounding_could_fold():
     """Far from the origin the end might be on the other side of the edge that it nearly lies on."""
     bent = np.array([[1.0, 1e-6, 0.0], [0.0, 0.0, 0.0], [2.0, 0.0, 0.0]])
     arcs = [Curve(bent + far, Mesh((3,), (False,))) for far in (0.0, 1e9)]
@@ -120,7 +120,7 @@ def test_ends_that_rounding_could_fold() -> None:
     assert survives_rounding(straight_arc(1))
 
 
-def test_gaps_of_arcs() -> None:
+def test_gaps_of_arcs():
     assert minimal_gap(straight_arc(2)) == (np.inf, None)
     assert minimal_gap(straight_arc(3))[0] == pytest.approx(1.0)
     knot = torus_trefoil(40)

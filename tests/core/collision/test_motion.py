@@ -22,14 +22,14 @@ def smooth_displacement(curve: Curve, seed: int, waves: int = 8) -> np.ndarray:
 
 
 @pytest.mark.parametrize("factor", [100.0, 1e-3])
-def test_similarities_are_free(factor: float) -> None:
+def test_similarities_are_free(factor):
     curve = torus_trefoil(200)
     turned = curve.vertices[:, [1, 2, 0]]
     for end in (factor * curve.vertices, turned, factor * turned + 1e3):
         assert is_free(curve.mesh, curve.vertices, end)
 
 
-def test_hopf_link_pulled_apart() -> None:
+def test_hopf_link_pulled_apart():
     """Two round circles through each other's centres: pulled apart, they meet after a radius."""
     link = hopf_link(100)
     end = link.vertices.copy()
@@ -45,7 +45,7 @@ def test_hopf_link_pulled_apart() -> None:
 
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("size", [0.03, 1.0, 30.0])
-def test_time_is_confirmed_by_sampling(seed: int, size: float) -> None:
+def test_time_is_confirmed_by_sampling(seed, size):
     """Just before the time all edges are apart; a little after it, the pair named has gone through itself."""
     curve = torus_trefoil(240)
     start, step = curve.vertices, size * smooth_displacement(curve, seed)
@@ -68,7 +68,7 @@ def volume(curve: Curve, points: np.ndarray, pair: tuple[int, int]) -> float:
 
 
 @pytest.mark.parametrize("scale", [2.0**-20, 2.0**20, 2.0**-600, 2.0**900])
-def test_units_do_not_matter(scale: float) -> None:
+def test_units_do_not_matter(scale):
     curve = torus_trefoil(120)
     end = curve.vertices + smooth_displacement(curve, 3)
     expected = free_motion(curve.mesh, curve.vertices, end)
@@ -76,7 +76,7 @@ def test_units_do_not_matter(scale: float) -> None:
 
 
 @pytest.mark.parametrize("offset", [1e3, 1e6])
-def test_far_from_the_origin(offset: float) -> None:
+def test_far_from_the_origin(offset):
     curve = torus_trefoil(120)
     end = curve.vertices + smooth_displacement(curve, 3)
     expected = free_motion(curve.mesh, curve.vertices, end)
@@ -87,7 +87,7 @@ def test_far_from_the_origin(offset: float) -> None:
 
 @given(st.integers(0, 10**6), st.sampled_from([2, 3]), st.sampled_from([(5,), (8,), (3, 4), (3, 3, 3)]))
 @settings(max_examples=30, deadline=None, derandomize=True)
-def test_earliest_contact_of_all_pairs(seed: int, m: int, sizes: tuple[int, ...]) -> None:
+def test_earliest_contact_of_all_pairs(seed, m, sizes):
     mesh, rng = Mesh(sizes), np.random.default_rng(seed)
     start = np.concatenate([rng.normal(size=(k, m)) + 3 * c for c, k in enumerate(sizes)])
     end = start + rng.choice([0.1, 1.0]) * rng.normal(size=start.shape)
@@ -104,7 +104,7 @@ def test_earliest_contact_of_all_pairs(seed: int, m: int, sizes: tuple[int, ...]
 
 
 @pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-9, 1e-12])
-def test_strands_that_slide_turn_and_stop_short(gap: float) -> None:
+def test_strands_that_slide_turn_and_stop_short(gap):
     x = np.linspace(0, 1, 30)
     strands = np.array([[a, 0, 0] for a in x] + [[a, gap, 0] for a in x[::-1]])
     mesh = Mesh((60,))
@@ -145,7 +145,7 @@ TOUCHING = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0.5, 0, 0], [0, 1, 0]])
         (TOUCHING, TOUCHING, 0.0),
     ],
 )
-def test_contacts_known_by_hand(start: np.ndarray, end: np.ndarray, contact: float | None) -> None:
+def test_contacts_known_by_hand(start, end, contact):
     mesh = Mesh((len(start),))
     motion = free_motion(mesh, start, end)
     assert is_free(mesh, start, end) == (contact is None)
@@ -158,7 +158,7 @@ def test_contacts_known_by_hand(start: np.ndarray, end: np.ndarray, contact: flo
         assert 0.98 * contact <= motion.time < contact
 
 
-def test_not_finite_is_never_free() -> None:
+def test_not_finite_is_never_free():
     for bad in (np.nan, np.inf):
         end = CIRCLE.copy()
         end[3, 1] = bad
@@ -166,7 +166,7 @@ def test_not_finite_is_never_free() -> None:
         assert not is_free(Mesh((60,)), end, CIRCLE)
 
 
-def test_thousands_of_components() -> None:
+def test_thousands_of_components():
     rng = np.random.default_rng(11)
     places = np.stack(np.meshgrid(*3 * [np.arange(12.0)], indexing="ij"), axis=-1).reshape(-1, 1, 3)
     start = (places + rng.uniform(-0.4, 0.4, size=(len(places), 3, 3))).reshape(-1, 3)
@@ -174,10 +174,10 @@ def test_thousands_of_components() -> None:
 
 
 @given(end=st.floats(0.01, 50.0), longest=st.floats(0.01, 5.0), seed=st.randoms())
-def test_a_walk_is_an_unbroken_chain_of_proved_legs(end, longest, seed) -> None:
-    asked: list[tuple[float, float, bool]] = []
+def test_a_walk_is_an_unbroken_chain_of_proved_legs(end, longest, seed):
+    asked = []
 
-    def leg(place: float, stride: float) -> str | None:
+    def leg(place, stride):
         asked.append((place, stride, seed.random() < 0.7))
         return "proved" if asked[-1][2] else None
 
@@ -190,7 +190,7 @@ def test_a_walk_is_an_unbroken_chain_of_proved_legs(end, longest, seed) -> None:
 
 
 @pytest.mark.parametrize(("shortest", "tried"), [(1.0, 1), (0.5, 2), (0.3, 2), (0.1, 4)])
-def test_strides_shorter_than_the_shortest_are_not_tried(shortest: float, tried: int) -> None:
-    strides: list[float] = []
+def test_strides_shorter_than_the_shortest_are_not_tried(shortest, tried):
+    strides = []
     assert list(walk(lambda _, stride: strides.append(stride), 1.0, 1.0, shortest)) == []
     assert strides == [0.5**k for k in range(tried)]

@@ -12,7 +12,7 @@ from solids import box, plate, rod, sphere
 
 @pytest.mark.parametrize("scale", [1.0, 2.0**-100, 2.0**100])
 @pytest.mark.parametrize("obstacle", [plate(2.0), Obstacle([[-9, 0, 2.0], [9, 0, 2.0]], [[0, 1]], "plate")])
-def test_a_wall_in_the_way(obstacle: Obstacle, scale: float) -> None:
+def test_a_wall_in_the_way(obstacle, scale):
     """A circle that turns up: its top meets what is at height 2 after two thirds of the way to 3."""
     curve = Curve(scale * regular_polygon(80).vertices[:, [2, 0, 1]])
     end = curve.vertices + scale * np.array([0.0, 0.0, 3.0])
@@ -27,7 +27,7 @@ def test_a_wall_in_the_way(obstacle: Obstacle, scale: float) -> None:
     assert is_free(curve.mesh, curve.vertices, curve.vertices + motion.time * (end - curve.vertices), (still,))
 
 
-def test_the_earlier_of_two_contacts_counts() -> None:
+def test_the_earlier_of_two_contacts_counts():
     link = hopf_link(100)
     end = link.vertices.copy()
     end[100:, 0] += 4.0  # the strands meet after a quarter of it
@@ -40,14 +40,14 @@ def test_the_earlier_of_two_contacts_counts() -> None:
     assert 0.98 * 0.05 < motion.time < 0.05
 
 
-def test_touching_or_piercing_at_the_start() -> None:
+def test_touching_or_piercing_at_the_start():
     circle = regular_polygon(20)
     for obstacle in (plate(0.0), rod(1.0, 0.0), box(-0.5, 2.0)):
         motion = free_motion(circle.mesh, circle.vertices, circle.vertices + 1.0, (obstacle,))
         assert (motion.time, motion.limit) == (0.0, Limit.TOUCHING_START)
 
 
-def test_a_point_a_segment_and_a_triangle_without_area_are_the_same_in_the_way() -> None:
+def test_a_point_a_segment_and_a_triangle_without_area_are_the_same_in_the_way():
     circle = regular_polygon(50)
     end = circle.vertices + np.array([0.0, 0.0, 1.0])
     corner = circle.vertices[7] + [0.0, 0.0, 0.5]
@@ -59,7 +59,7 @@ def test_a_point_a_segment_and_a_triangle_without_area_are_the_same_in_the_way()
 
 
 @pytest.mark.parametrize("seed", range(25))
-def test_the_earliest_of_all_contacts(seed: int) -> None:
+def test_the_earliest_of_all_contacts(seed):
     rng = np.random.default_rng(seed)
     n, mesh = 7, Mesh((7,))
     start = rng.normal(size=(n, 3))
@@ -68,7 +68,7 @@ def test_the_earliest_of_all_contacts(seed: int) -> None:
     obstacle = Obstacle(scattered.reshape(-1, 3), np.arange(18).reshape(6, 3))
     alone, motion = free_motion(mesh, start, end), free_motion(mesh, start, end, (obstacle,))
 
-    def hits(time: float) -> bool:
+    def hits(time):
         return any(
             until(meet_triangle, *(np.concatenate([points[[tail, head]], corners]) for points in (start, end)), time)
             for tail, head in zip(mesh.tails, mesh.heads, strict=True)
@@ -80,7 +80,7 @@ def test_the_earliest_of_all_contacts(seed: int) -> None:
     assert motion.time == alone.time or hits(min(1.0, motion.time / 0.98))
 
 
-def test_the_tree_of_obstacles_is_built_once() -> None:
+def test_the_tree_of_obstacles_is_built_once():
     obstacles = (sphere(4.0), plate(9.0))
     assert still_triangles(obstacles, 7) is still_triangles(obstacles, 7)
     still = still_triangles(obstacles, 7)

@@ -74,7 +74,7 @@ def random_legs(rng: np.random.Generator, kind: str, count: int) -> tuple[np.nda
 
 
 @pytest.mark.parametrize("kind", ["gaussian", "near", "parallel", "lattice"])
-def test_random_legs_against_an_exact_decision(kind: str) -> None:
+def test_random_legs_against_an_exact_decision(kind):
     """None that comes nearer is proved, and of the others most are; the checker decides exactly, too."""
     legs, width = random_legs(np.random.default_rng(2027), kind, COUNT)
     exact, ends = exactly_apart(legs, width), legs.astype(float)
@@ -88,7 +88,7 @@ def test_random_legs_against_an_exact_decision(kind: str) -> None:
 
 @pytest.mark.parametrize("first", range(0, 24, 6))
 @pytest.mark.parametrize("sizes", [(24, 24), (24, 8), (8, 24)])
-def test_closed_components_never_pass_through_each_other(sizes: tuple[int, int], first: int) -> None:
+def test_closed_components_never_pass_through_each_other(sizes, first):
     """Wherever numbers of vertices begin: rings that are unlinked by a motion, and the way back."""
     rings = [regular_polygon(n).vertices for n in sizes]
     start, end = (
@@ -101,7 +101,7 @@ def test_closed_components_never_pass_through_each_other(sizes: tuple[int, int],
 
 
 @pytest.mark.parametrize(("name", "share"), [("3_1", 0.999), ("L6a4", 0.999), ("goeritz", 0.9)])
-def test_thickness_is_the_largest_radius_of_smooth_curves(name: str, share: float) -> None:
+def test_thickness_is_the_largest_radius_of_smooth_curves(name, share):
     """But for sharp corners, where more than half of an edge may be an arc's, and more than half a circle is tested."""
     curve = knot(name, 200)
     thick = thickness(curve)
@@ -111,7 +111,7 @@ def test_thickness_is_the_largest_radius_of_smooth_curves(name: str, share: floa
 
 
 @pytest.mark.parametrize("away", [1e5, 1e9, 1e12])
-def test_far_away_a_rope_is_one_all_the_same(away: float) -> None:
+def test_far_away_a_rope_is_one_all_the_same(away):
     """Where coordinates leave it its digits; differences that are rounded prove nothing."""
     curve, radius = knot("4_1", 100), np.array([1.0])
     there = np.rint(curve.vertices * 1e3) + away
@@ -122,7 +122,7 @@ def test_far_away_a_rope_is_one_all_the_same(away: float) -> None:
 
 
 @pytest.mark.parametrize("edges", [4, 5, 24])
-def test_regular_polygons(edges: int) -> None:
+def test_regular_polygons(edges):
     """They are ropes up to the radius of their inscribed circle, which is that of all arcs at once."""
     polygon = regular_polygon(edges)
     inscribed = np.cos(np.pi / edges)
@@ -132,7 +132,7 @@ def test_regular_polygons(edges: int) -> None:
 
 
 @pytest.mark.parametrize("turn", [120.0, 160.0, 179.0])
-def test_however_sharp_corners_are_those_of_ropes(turn: float) -> None:
+def test_however_sharp_corners_are_those_of_ropes(turn):
     """Points of both edges that count are apart, though hardly."""
     theta = np.radians(turn)
     radius = 0.5 / np.tan(0.5 * theta)
@@ -143,7 +143,7 @@ def test_however_sharp_corners_are_those_of_ropes(turn: float) -> None:
     assert 1.0 < apart[a + b >= 1.0 + (np.pi - theta) * radius].min() / (2.0 * radius) < 1.3
 
 
-def test_a_motion_stops_where_strands_come_too_near() -> None:
+def test_a_motion_stops_where_strands_come_too_near():
     """Two parallel strands approach from a distance of 1 to none: ropes of .1 until it is .2."""
     t = np.linspace(0.0, 1.0, 11)
     start = [np.stack([t, 0 * t, np.full(11, z)], axis=1) for z in (0.0, 1.0)]
@@ -155,21 +155,21 @@ def test_a_motion_stops_where_strands_come_too_near() -> None:
 
 
 @pytest.mark.parametrize("first", range(6))
-def test_strands_behind_a_bend_are_near_wherever_vertices_are_counted_from(first: int) -> None:
+def test_strands_behind_a_bend_are_near_wherever_vertices_are_counted_from(first):
     given = [[10.0, 0, 0], [0, 0, 0], [0, 1, 0.5], [10, -1, 0.5], [14, -6, 3], [14, 6, -3]]
     vertices = np.roll(given, first, axis=0)
     assert not is_rope(Mesh((6,), (True,)), vertices, vertices, np.array([0.3]))
     assert is_rope(Mesh((6,), (True,)), vertices, vertices, np.array([0.1]))
 
 
-def test_nothing_is_proved_of_numbers_that_are_none() -> None:
+def test_nothing_is_proved_of_numbers_that_are_none():
     square = regular_polygon(4)
     lost = np.where(np.eye(4, 3) > 0, np.nan, square.vertices)
     for end, radius in ((square.vertices, np.nan), (square.vertices, np.inf), (lost, 0.1)):
         assert not is_rope(square.mesh, square.vertices, end, np.array([radius]))
 
 
-def test_a_corner_gets_sharper() -> None:
+def test_a_corner_gets_sharper():
     """A right angle with legs of 1 bends at radius ½; it is folded until its legs are parallel."""
     mesh = Mesh((3,), (False,))
     start = np.array([[1.0, 0, 0], [0, 0, 0], [0, 1.0, 0]])
@@ -180,7 +180,7 @@ def test_a_corner_gets_sharper() -> None:
     assert not is_rope(mesh, start, start, np.array([1.01]))  # all of an edge, since its other end is straight
 
 
-def test_an_obstacle_is_as_far_as_the_radius() -> None:
+def test_an_obstacle_is_as_far_as_the_radius():
     wall = Obstacle([[-5.0, -5, 0], [5, -5, 0], [0, 9, 0]], [[0, 1, 2]])
     mesh = Mesh((2,), (False,))
     start, end = np.array([[0.0, 0, 1], [1, 0, 1]]), np.array([[0.0, 0, 0.5], [1, 0, 0.5]])
@@ -190,7 +190,7 @@ def test_an_obstacle_is_as_far_as_the_radius() -> None:
     assert found.contact.obstacle is not None
 
 
-def test_ropes_are_free_of_contact() -> None:
+def test_ropes_are_free_of_contact():
     rng = np.random.default_rng(5)
     curve = knot("5_1", 80)
     radius = np.array([0.9 * thickness(curve)])
@@ -206,7 +206,7 @@ def test_ropes_are_free_of_contact() -> None:
     assert proved > 3
 
 
-def test_bounds_of_corners() -> None:
+def test_bounds_of_corners():
     rng = np.random.default_rng(11)
     e, f = (tuple(rng.standard_normal((2, 3, 500)) * 0.1 + [[[1.0]] * 3] * 2) for _ in range(2))
     low, high, _, _ = Corners(e, f).tangents()
@@ -217,14 +217,14 @@ def test_bounds_of_corners() -> None:
         assert (np.tan(half) <= high).all()
 
 
-def test_what_arcs_save_is_not_overrated() -> None:
+def test_what_arcs_save_is_not_overrated():
     x = np.linspace(0.0, 60.0, 600_001)
     exact = x - np.arctan(x)
     assert (shortcut(x) <= exact + 1e-15).all()
     assert (shortcut(x) >= exact - 0.03).all()
 
 
-def test_what_arcs_save_on_the_way() -> None:
+def test_what_arcs_save_on_the_way():
     """Each corner of a hexagon turns by 60°; those at the ends of arcs, and corners on the way that straighten, save
     none.
     """
@@ -237,7 +237,7 @@ def test_what_arcs_save_on_the_way() -> None:
 
 
 @pytest.mark.parametrize("radius", [0.05, 0.1])
-def test_ropes_that_grow_stay_ropes(radius: float) -> None:
+def test_ropes_that_grow_stay_ropes(radius):
     """Edges that are half a circle apart at the end only, and near each other at the start."""
     drawn = knot("8_19").vertices
     start = np.stack([drawn, 0.5 * (drawn + np.roll(drawn, -1, axis=0))], axis=1).reshape(-1, 3)

@@ -35,14 +35,14 @@ def stadium(cuts: Sequence[float]) -> Curve:
 
 
 @pytest.mark.parametrize("count", [3, 4, 7, 200])
-def test_regular_polygons_have_the_radius_of_their_inner_circle(count: int) -> None:
+def test_regular_polygons_have_the_radius_of_their_inner_circle(count):
     angle = 2.0 * np.pi * np.arange(count) / count
     circle = Curve(5.0 * np.column_stack([np.cos(angle), np.sin(angle), 0.0 * angle]))
     assert thickness(circle) == pytest.approx(5.0 * np.cos(np.pi / count))
     assert np.allclose(bending_radii(circle), 5.0 * np.cos(np.pi / count))
 
 
-def test_strands_side_by_side() -> None:
+def test_strands_side_by_side():
     curve = rope(2, 0.05, 120)
     assert thickness(curve) <= 0.025 + 1e-12
     hopf = knot("hopf", 200)
@@ -50,7 +50,7 @@ def test_strands_side_by_side() -> None:
 
 
 @pytest.mark.parametrize("cuts", [(4.0,), (4.0, 4.3, 4.6), (0.2, 4.0, 4.1)])
-def test_short_edges_beside_long_ones_on_a_straight_line(cuts: tuple[float, ...]) -> None:
+def test_short_edges_beside_long_ones_on_a_straight_line(cuts):
     """Their distance is small because they are near along the curve, however far apart their tails are."""
     curve = stadium(cuts)
     assert thickness(curve) == pytest.approx(float(bending_radii(curve).min()))
@@ -58,14 +58,14 @@ def test_short_edges_beside_long_ones_on_a_straight_line(cuts: tuple[float, ...]
 
 
 @pytest.mark.parametrize("name", ["3_1", "8_19", "L6a4"])
-def test_brute_force_and_scale(name: str) -> None:
+def test_brute_force_and_scale(name):
     curve = smooth_knot(name, 150)
     assert thickness(curve) == pytest.approx(slow_thickness(curve), rel=1e-3)
     assert thickness(curve.with_vertices(1e6 * curve.vertices)) == pytest.approx(1e6 * thickness(curve), rel=1e-9)
 
 
 @pytest.mark.parametrize("share", [0.5, 0.999, 1.001, 2.0])
-def test_only_what_is_less_is_looked_for(share: float) -> None:
+def test_only_what_is_less_is_looked_for(share):
     curve = knot("5_2", 120)
     whole = thickness(curve)
     assert thickness(curve, share * whole) == pytest.approx(min(share, 1.0) * whole, rel=1e-12)

@@ -62,7 +62,7 @@ def test_derivative_by_the_map(q):
     assert taylor_slope(along, terms, 1e-2) == pytest.approx(2.0, abs=0.1)
 
 
-def test_linked_squares_by_hand() -> None:
+def test_linked_squares_by_hand():
     """Two flat components cross, seen from anywhere, as often as signs make twice the linking number, or more."""
     square = np.array([[1.0, 1, 0], [-1, 1, 0], [-1, -1, 0], [1, -1, 0]])
     linked = Curve.from_components([square, square[:, [0, 2, 1]] + [1.0, 0, 0]])
@@ -75,7 +75,7 @@ def test_linked_squares_by_hand() -> None:
 
 
 @pytest.mark.parametrize("name", ["3_1", "5_2", "4_1"])
-def test_mirror_images_and_directions(name: str) -> None:
+def test_mirror_images_and_directions(name):
     curve = smooth_knot(name, 150)
     writhe, crossings = writhe_and_crossings(curve)
     mirrored = curve.with_vertices(curve.vertices * [1.0, 1.0, -1.0])
@@ -85,14 +85,14 @@ def test_mirror_images_and_directions(name: str) -> None:
     )
 
 
-def test_both_are_means_over_views() -> None:
+def test_both_are_means_over_views():
     curve = smooth_knot("5_2", 60)
     seen = np.array([(view.writhe, view.crossings) for view in list(views(curve, 600))[1:]])
     error = 4.0 * seen.std(axis=0) / np.sqrt(len(seen))
     assert (np.abs(seen.mean(axis=0) - writhe_and_crossings(curve)) < error).all()
 
 
-def test_the_arcs_without_one_edge_have_all_pairs_of_edges_but_those_with_it() -> None:
+def test_the_arcs_without_one_edge_have_all_pairs_of_edges_but_those_with_it():
     curve = smooth_knot("5_2", 40)
     arcs = [Curve(np.roll(curve.vertices, k, axis=0), Mesh((40,), (False,))) for k in range(40)]
     total = np.sum([writhe_and_crossings(arc) for arc in arcs], axis=0)
@@ -110,19 +110,19 @@ def of_all_pairs(curve: Curve, furthest: float = np.inf) -> float:
 
 
 @pytest.mark.parametrize("name", ["3_1", "8_19", "T(7,8)", "L6a4", "overhand"])
-def test_they_are_those_of_all_pairs(name: str) -> None:
+def test_they_are_those_of_all_pairs(name):
     curve = knot(name)
     for furthest in (0.01 * curve.length, 0.1 * curve.length, np.inf):
         assert nearest_strands(curve, RATIO, furthest) == of_all_pairs(curve, furthest)
 
 
-def test_unequal_edges_do_not_matter() -> None:
+def test_unequal_edges_do_not_matter():
     link = hopf_link(30)
     curve = Curve.from_components([refine(Curve(link.components[0]), 500).vertices, link.components[1][::3]])
     assert nearest_strands(curve, RATIO) == of_all_pairs(curve)
 
 
-def test_circles_vertices_that_coincide_and_arcs() -> None:
+def test_circles_vertices_that_coincide_and_arcs():
     """A circle has no other strand, most edges may have no length, and arcs have a vertex more than edges."""
     assert nearest_strands(regular_polygon(100), RATIO) == np.inf
     doubled = np.repeat(np.array([[0.0, 0.0, 0.0], [9.0, 0.0, 0.0], [9.0, 9.0, 0.0], [0.0, 9.0, 0.0]]), 3, axis=0)

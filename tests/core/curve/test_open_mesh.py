@@ -25,7 +25,7 @@ def listed_edges() -> list[tuple[int, int, int]]:
     return edges
 
 
-def test_edges() -> None:
+def test_edges():
     assert list(zip(MESH.tails, MESH.heads, MESH.edge_component, strict=True)) == listed_edges()
     assert (MESH.edges, MESH.size) == (20, 23)
     assert MESH.edge_counts.tolist() == [5, 1, 2, 4, 5, 3]
@@ -35,7 +35,7 @@ def test_edges() -> None:
     assert (Mesh((4, 5)).all_closed, MESH.all_closed) == (True, False)
 
 
-def test_neighbours_are_themselves_where_there_are_none() -> None:
+def test_neighbours_are_themselves_where_there_are_none():
     edges = listed_edges()
     for number, (tail, head, _) in enumerate(edges):
         after = [k for k, edge in enumerate(edges) if edge[0] == head]
@@ -49,7 +49,7 @@ def test_neighbours_are_themselves_where_there_are_none() -> None:
         assert (vertex in MESH.inner) == (bool(out) and bool(into))
 
 
-def test_index_distance_is_that_of_the_graph_of_edges() -> None:
+def test_index_distance_is_that_of_the_graph_of_edges():
     edges = listed_edges()
     for i, (*first, component) in enumerate(edges):
         reached, distance, front = {i: 0}, 0, {i}
@@ -65,7 +65,7 @@ def test_index_distance_is_that_of_the_graph_of_edges() -> None:
         assert len(first) == 2
 
 
-def test_scatter_is_the_transposed_incidence() -> None:
+def test_scatter_is_the_transposed_incidence():
     rng = np.random.default_rng(3)
     at_tails, at_heads = rng.normal(size=(2, MESH.edges, 3))
     average, difference = MESH.average.toarray(), MESH.difference.toarray()
@@ -84,7 +84,7 @@ def test_scatter_is_the_transposed_incidence() -> None:
         ((3,), False, "closed is False; it must have True or False for each of 1 components"),
     ],
 )
-def test_refusals(sizes, closed, reason) -> None:
+def test_refusals(sizes, closed, reason):
     with pytest.raises(CurveError) as caught:
         Mesh(sizes, closed)
     assert str(caught.value) == reason
@@ -93,12 +93,12 @@ def test_refusals(sizes, closed, reason) -> None:
             Curve.from_components([np.eye(3)], closed)
 
 
-def test_what_is_for_closed_components_says_so() -> None:
+def test_what_is_for_closed_components_says_so():
     with pytest.raises(CurveError, match=r"^component 2 is open; knot types are for closed components$"):
         check_closed(opened(Curve.from_components([np.eye(3), np.eye(3) + 1]), 1), "knot types")
 
 
-def test_there_is_one_way_along_an_arc() -> None:
+def test_there_is_one_way_along_an_arc():
     curve = opened(Curve.from_components([half_circle(6).vertices, torus_trefoil(9).vertices]), 0)
     edge = float(curve.edge_lengths[0])
     i, j = np.array([0, 6, 0, 2]), np.array([6, 1, 8, 2])
@@ -110,7 +110,7 @@ def test_there_is_one_way_along_an_arc() -> None:
 
 
 @pytest.mark.parametrize("vertices", [None, 40, 41])
-def test_refined_arcs_are_the_same_arcs(vertices: int | None) -> None:
+def test_refined_arcs_are_the_same_arcs(vertices):
     curve = opened(Curve(torus_trefoil(30).vertices), 0)
     fine = refine(curve, vertices)
     assert vertices in (None, len(fine))

@@ -121,7 +121,7 @@ def test_lagrangian_hessian_has_slope_three_on_the_constraint_set():
     v /= np.abs(v).max()
     hessian = lagrangian_hessian(point)
 
-    def along(t: float) -> float:
+    def along(t):
         trial = point.retract(point.vertices + t * v, point.residual)
         return trial.energy
 
@@ -145,14 +145,8 @@ def test_trefoil_is_a_minimum_with_four_flat_and_two_soft_modes(minimum):
     [
         ({"energy": 5}, "energy is 5; it must be a name or an energy"),
         ({"energy": MoebiusEnergy}, "it must be a name or an energy"),
-        (
-            {"edge_lengths": [1.0, -1.0]},
-            "a name or as many numbers above 0 as there are edges",
-        ),
-        (
-            {"edge_lengths": np.ones(59), "vertices": 60},
-            "has 59 numbers, but the refined curve has 60 edges",
-        ),
+        ({"edge_lengths": [1.0, -1.0]}, "a name or as many numbers above 0 as there are edges"),
+        ({"edge_lengths": np.ones(59), "vertices": 60}, "has 59 numbers, but the refined curve has 60 edges"),
         ({"quadrature_points": 2, "metric": "l2"}, "has no such rule"),
         ({"penalty": 5.0}, "has no penalty"),
         ({"method": "trust-region", "terms": [("bending", 0.1)]}, "second derivative"),

@@ -16,7 +16,7 @@ from mobius_flow.core.descent.second_order import TrustRegion, step_off
 from mobius_flow.lab.methods import Accelerated, BackwardEuler, WeakWolfe
 
 
-def test_armijo_asks_for_half_of_the_predicted_decrease() -> None:
+def test_armijo_asks_for_half_of_the_predicted_decrease():
     """There are trials that gain, but less than half of what the slope promises: they are not taken."""
     far = FirstTrial(max_displacement=10.0)
     strict = LineSearch(SteepestDescent(), Armijo(first=far))
@@ -36,7 +36,7 @@ def test_armijo_asks_for_half_of_the_predicted_decrease() -> None:
 
 
 @pytest.mark.parametrize("geometry", GEOMETRIES)
-def test_wolfe_does_not_take_steps_that_are_too_short(geometry: str) -> None:
+def test_wolfe_does_not_take_steps_that_are_too_short(geometry):
     """A first trial of 10⁻⁴ of a good step gains, but the slope is still what it was."""
     point = start(geometry)
     direction = -1e-4 * point.gradient
@@ -53,7 +53,7 @@ class Underestimating(Objective):
         return 0.5 * super().hessian(curve)
 
 
-def test_trust_region_rejects_what_the_model_did_not_foresee() -> None:
+def test_trust_region_rejects_what_the_model_did_not_foresee():
     """Nothing is taken whose actual reduction is less than the required fraction of the predicted one."""
     point = start()
     point = point.within(replace(point.problem, objective=Underestimating()))
@@ -72,7 +72,7 @@ def ratio(start: Point, end: Point) -> float:
     return (start.energy - end.energy) / predicted
 
 
-def test_trust_region_uses_the_last_gradient() -> None:
+def test_trust_region_uses_the_last_gradient():
     """Far from the minimum steps lie in the plane of this gradient and the last one, not in the line of this one."""
     rule = TrustRegion(newton_threshold=1e-12)
     point, state = start(), SearchState()
@@ -87,7 +87,7 @@ def test_trust_region_uses_the_last_gradient() -> None:
         assert (np.linalg.norm(rest) < 0.02 * np.linalg.norm(s)) == inside
 
 
-def test_backward_euler_takes_the_gradient_at_the_end() -> None:
+def test_backward_euler_takes_the_gradient_at_the_end():
     """w + τ S_P DE(Q) = 0 to a few per cent; with the gradient at the start it is not even near."""
     point = start()
     step, _ = taken(BackwardEuler(first_step=1.0).step(point, SearchState()))
@@ -99,7 +99,7 @@ def test_backward_euler_takes_the_gradient_at_the_end() -> None:
     assert norm(w - explicit) > 0.2 * norm(w)
 
 
-def test_nesterov_goes_on_in_the_direction_of_the_last_step() -> None:
+def test_nesterov_goes_on_in_the_direction_of_the_last_step():
     rule = Accelerated()
     point, state = start("penalised"), SearchState()
     points = [point]
@@ -119,7 +119,7 @@ def test_nesterov_goes_on_in_the_direction_of_the_last_step() -> None:
     assert beta == pytest.approx((t - 1.0) / (0.5 * (1 + np.sqrt(1 + 4 * t * t))), rel=1e-6)
 
 
-def test_escape_leaves_a_maximum_along_a_line() -> None:
+def test_escape_leaves_a_maximum_along_a_line():
     """From a point of negative curvature both ways lead down by the required decrease."""
     point = start()
     direction = point.gradient / point.gradient_norm  # not critical, but one of the two ways leads down all the same

@@ -29,7 +29,7 @@ def counted(point: Point) -> tuple[Point, list[Curve]]:
     return point.within(replace(point.problem, metric=metric)), metric.curves
 
 
-def test_a_metric_serves_several_steps() -> None:
+def test_a_metric_serves_several_steps():
     point, curves = counted(start())
     state, steps = SearchState(), []
     for _ in range(7):
@@ -42,7 +42,7 @@ def test_a_metric_serves_several_steps() -> None:
     assert steps[2].inner_product is steps[0].inner_product
 
 
-def test_a_metric_serves_no_longer_where_contact_limits_a_step() -> None:
+def test_a_metric_serves_no_longer_where_contact_limits_a_step():
     point, curves = counted(start())
     point, state = narrow(point, 1e-3), SearchState()
     for _ in range(3):
@@ -60,7 +60,7 @@ class Unless:
         return NoStep("old") if point.metric_age else Armijo().along(point, direction, natural, last)
 
 
-def test_a_search_that_fails_gets_the_metric_of_its_curve() -> None:
+def test_a_search_that_fails_gets_the_metric_of_its_curve():
     rule = LineSearch(LimitedMemoryBFGS(), Unless(), metric_steps=3)
     step, state = taken(rule.step(start(), SearchState()))
     assert step.point.metric_age == 1
@@ -68,7 +68,7 @@ def test_a_search_that_fails_gets_the_metric_of_its_curve() -> None:
     assert step.point.metric_age == 1  # that of the point at which the search succeeded
 
 
-def test_a_curve_has_converged_only_in_its_own_metric() -> None:
+def test_a_curve_has_converged_only_in_its_own_metric():
     """The gradient may be small enough in the metric of the step before, and not in that of the curve."""
     curve, options = start().curve, RelaxOptions(vertices=60, tolerance=1e-3)
     early = list(relax(curve, replace(options, max_iterations=2)))[-1]

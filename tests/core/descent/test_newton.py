@@ -24,7 +24,7 @@ FIXED = RelaxOptions(radius="none", vertices=80, mesh="fixed")
 
 
 @pytest.mark.parametrize("name", EXACT)
-def test_systems_are_those_of_dense_algebra(name: str) -> None:
+def test_systems_are_those_of_dense_algebra(name):
     """Solutions on a basis of the tangent space, and the number of eigenvalues below −σ, with arcs, links and pins."""
     point, shift = POINTS[name](), 0.3
     curvature = Curvature(point)
@@ -41,7 +41,7 @@ def test_systems_are_those_of_dense_algebra(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", EXACT)
-def test_the_matrix_is_that_of_the_products(name: str) -> None:
+def test_the_matrix_is_that_of_the_products(name):
     """On tangent vectors, block rows of barycenters among them."""
     point = POINTS[name]()
     hessian, matrix = lagrangian_hessian(point), lagrangian_matrix(point)
@@ -52,11 +52,11 @@ def test_the_matrix_is_that_of_the_products(name: str) -> None:
         np.testing.assert_allclose((matrix @ v.ravel()).reshape(v.shape), image, atol=1e-10 * np.abs(image).max())
 
 
-def test_the_shift_grows_where_steps_are_short(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_shift_grows_where_steps_are_short(monkeypatch):
     """Here steps are, as no vertex may move by more than a millionth; the Hessian is not assembled again."""
     curvature, shifts, shifted = Curvature(POINTS["saddle"]()), [], Curvature.shifted
 
-    def noted(self: Curvature, shift: float) -> FactorisedHessian:
+    def noted(self, shift):
         shifts.append(shift)
         return shifted(self, shift)
 
@@ -71,9 +71,7 @@ def test_the_shift_grows_where_steps_are_short(monkeypatch: pytest.MonkeyPatch) 
 
 @pytest.mark.parametrize("pins", [(), (0, 1, 17)])
 @pytest.mark.parametrize("points", [1, 2])
-def test_energies_at_rest_are_exact_on_their_mesh(
-    pins: tuple[int, ...], points: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_energies_at_rest_are_exact_on_their_mesh(pins, points, monkeypatch):
     """Though gradients are those of the default tolerance a run to the last digits gains nothing more."""
     change(monkeypatch, Settle, gradient=1e-300)  # L-BFGS goes as far as it has to
     wanted = replace(FIXED, quadrature_points=points)
@@ -84,7 +82,7 @@ def test_energies_at_rest_are_exact_on_their_mesh(
     assert abs(found.energies[-1] - exact.energies[-1]) < 1e-8 * exact.energies[-1]
 
 
-def test_the_index_comes_with_the_end() -> None:
+def test_the_index_comes_with_the_end():
     """Symmetric torus knots rest at saddles."""
     for p, q, index in ((2, 3, 0), (3, 4, 2)):
         result = minimize(torus_knot(p, q, 160), replace(FIXED, vertices=160))
@@ -92,7 +90,7 @@ def test_the_index_comes_with_the_end() -> None:
         assert ("saddle" in result.message) == (index > 0)
 
 
-def test_second_derivatives_take_over_from_gradients(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_second_derivatives_take_over_from_gradients(monkeypatch):
     """Along the valleys of Möbius maps L-BFGS takes several times as many steps in the metric."""
     sharp = replace(FIXED, tolerance=1e-7)
     few = minimize(lattice_knot("4_1"), sharp)
@@ -104,13 +102,13 @@ def test_second_derivatives_take_over_from_gradients(monkeypatch: pytest.MonkeyP
     assert len(few.energies) < 0.7 * len(many.energies)
 
 
-def test_where_steps_gain_little_gradients_end_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_where_steps_gain_little_gradients_end_the_run(monkeypatch):
     """As in a curved valley; here since vertices may hardly move."""
-    assembled: set[Curvature] = set()
+    assembled = set()
     definite = Newton.definite
     short = Newton(search=Armijo(decrease=0.1, first=FirstTrial(max_displacement=3e-5)))
 
-    def noted(self: Newton, curvature: Curvature, shift: float) -> tuple[FactorisedHessian, int, float]:
+    def noted(self, curvature, shift):
         assembled.add(curvature)
         return definite(self, curvature, shift)
 
@@ -121,11 +119,11 @@ def test_where_steps_gain_little_gradients_end_the_run(monkeypatch: pytest.Monke
     assert 3 <= len(assembled) < 15
 
 
-def test_loose_tolerances_ask_for_no_more_than_gradients() -> None:
+def test_loose_tolerances_ask_for_no_more_than_gradients():
     assert minimize(torus_trefoil(80), replace(FIXED, tolerance=1e-3)).outcome.negative_eigenvalues is None
 
 
-def test_where_nothing_makes_it_definite_gradients_end_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_where_nothing_makes_it_definite_gradients_end_the_run(monkeypatch):
     point = POINTS[EXACT[0]]()
     monkeypatch.setattr(FactorisedHessian, "negative", 1)
     with pytest.raises(np.linalg.LinAlgError, match="no multiple of the metric"):
@@ -140,7 +138,7 @@ def starts(point: Point) -> FloatArray:
 
 
 @pytest.mark.parametrize("name", POINTS)
-def test_all_soft_modes_are_those_of_the_matrix(name: str) -> None:
+def test_all_soft_modes_are_those_of_the_matrix(name):
     """Differences make the hierarchical products, to five digits; its metric is solved with to two."""
     point = POINTS[name]()
     expected, _ = dense_modes(point)
@@ -153,7 +151,7 @@ def test_all_soft_modes_are_those_of_the_matrix(name: str) -> None:
 
 @pytest.mark.parametrize("factorised", [True, False])
 @pytest.mark.parametrize("name", POINTS)
-def test_the_index_is_that_of_the_matrix(name: str, factorised: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_index_is_that_of_the_matrix(name, factorised, monkeypatch):
     """Whether factors tell it or Ritz values."""
     if not factorised:
         monkeypatch.setattr(Curvature, "is_known", lambda point: False)
@@ -162,7 +160,7 @@ def test_the_index_is_that_of_the_matrix(name: str, factorised: bool, monkeypatc
     assert found.index == np.count_nonzero(dense_modes(point)[0] < -found.zero)
 
 
-def test_soft_modes_are_tangent_orthonormal_and_end_at_pins() -> None:
+def test_soft_modes_are_tangent_orthonormal_and_end_at_pins():
     for point in (saddle(), POINTS["pins"]()):
         vectors = soft_modes(point, starts(point), most=32).vectors
         assert max(np.abs(point.tangent_space.constraints.apply(u)).max() for u in vectors) < 1e-9
@@ -171,7 +169,7 @@ def test_soft_modes_are_tangent_orthonormal_and_end_at_pins() -> None:
         assert not vectors[:, point.problem.constraints.pins.vertices].any()
 
 
-def test_a_few_products_find_the_ways_down_from_a_saddle() -> None:
+def test_a_few_products_find_the_ways_down_from_a_saddle():
     """Ritz values are above the eigenvalues in their places, and residuals bound how far one is."""
     expected, _ = dense_modes(saddle())
     found = soft_modes(saddle(), starts(saddle()), most=32)
@@ -182,7 +180,7 @@ def test_a_few_products_find_the_ways_down_from_a_saddle() -> None:
     assert found.residuals.max() > 1e-3
 
 
-def test_every_eigenvalue_is_found_if_that_is_asked_for() -> None:
+def test_every_eigenvalue_is_found_if_that_is_asked_for():
     """Beyond the last one there are no more dimensions."""
     regular = torus_knot(3, 4, 24)
     point = at(regular.with_vertices(regular.vertices + np.random.default_rng(7).normal(0.0, 0.03, (24, 3))))
@@ -191,13 +189,13 @@ def test_every_eigenvalue_is_found_if_that_is_asked_for() -> None:
     np.testing.assert_allclose(found.values, expected, atol=1e-8)
 
 
-def test_nothing_is_soft_where_nothing_can_move() -> None:
+def test_nothing_is_soft_where_nothing_can_move():
     held = at(torus_trefoil(12), pins=tuple(range(12)))
     assert len(soft_modes(held, starts(held)).values) == 0
     assert stability(held).index == 0
 
 
-def test_what_is_not_near_enough_is_no_index(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_not_near_enough_is_no_index(monkeypatch):
     """Where Ritz values tell the index, because the matrix is too large."""
     monkeypatch.setattr(Curvature, "is_known", lambda point: False)
     assert stability(saddle()).index is not None

@@ -28,7 +28,7 @@ from taylor import taylor_slope
 @pytest.mark.parametrize("geometry", GEOMETRIES)
 @pytest.mark.parametrize("direction", DIRECTIONS)
 @pytest.mark.parametrize("search", SEARCHES)
-def test_line_searches_keep_their_promises(search: str, direction: str, geometry: str) -> None:
+def test_line_searches_keep_their_promises(search, direction, geometry):
     point, state = start(geometry), SearchState()
     for _ in range(4):
         along, _ = DIRECTIONS[direction].propose(point, state.memory)
@@ -43,7 +43,7 @@ def test_line_searches_keep_their_promises(search: str, direction: str, geometry
 
 
 @pytest.mark.parametrize("name", RULES)
-def test_other_rules_keep_theirs(name: str) -> None:
+def test_other_rules_keep_theirs(name):
     rule, geometry = RULES[name]
     point, state = start(geometry), SearchState()
     for _ in range(4):
@@ -55,7 +55,7 @@ def test_other_rules_keep_theirs(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", [*RULES, *(f"{s} {g}" for s in SEARCHES for g in GEOMETRIES)])
-def test_no_leg_is_taken_that_is_not_proved(name: str) -> None:
+def test_no_leg_is_taken_that_is_not_proved(name):
     rule, geometry = RULES.get(name) or (LineSearch(SteepestDescent(), SEARCHES[name.split()[0]]), name.split()[1])
     width = 1e-3
     point = narrow(start(geometry), width)
@@ -67,7 +67,7 @@ def test_no_leg_is_taken_that_is_not_proved(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", [*RULES, *(f"{s} {g}" for s in SEARCHES for g in GEOMETRIES)])
-def test_what_can_not_be_proved_is_said(name: str) -> None:
+def test_what_can_not_be_proved_is_said(name):
     rule, geometry = RULES.get(name) or (LineSearch(SteepestDescent(), SEARCHES[name.split()[0]]), name.split()[1])
     step, _ = rule.step(narrow(start(geometry), 0.0), SearchState())
     assert isinstance(step, NoStep)
@@ -75,7 +75,7 @@ def test_what_can_not_be_proved_is_said(name: str) -> None:
     assert "edge 1 and edge 3 are so close" in step.reason
 
 
-def test_a_chord_through_a_strand_is_rejected() -> None:
+def test_a_chord_through_a_strand_is_rejected():
     """Both ends are good, the straight way between them is not."""
     link = hopf_link(20)
     point = with_geometry(point_on(link), Penalised())
@@ -95,7 +95,7 @@ def crossed_rods() -> Point:
     return point_on(Curve.from_components([lower, upper]))
 
 
-def test_the_first_trial_is_two_thirds_of_the_first_contact() -> None:
+def test_the_first_trial_is_two_thirds_of_the_first_contact():
     point = crossed_rods()
     down = (np.arange(6) >= 3)[:, None] * [0.0, 0.0, -1.0]
     contact = 1.0 / point.problem.units.scale
@@ -104,7 +104,7 @@ def test_the_first_trial_is_two_thirds_of_the_first_contact() -> None:
     assert sorted(met.edges) == [0, 3]
 
 
-def test_the_first_trial_is_bounded() -> None:
+def test_the_first_trial_is_bounded():
     point = crossed_rods()
     up = (np.arange(6) >= 3)[:, None] * [0.0, 0.0, 4.0]
     assert FirstTrial()(point, up, np.inf) == (0.5 / 4.0, None)
@@ -113,7 +113,7 @@ def test_the_first_trial_is_bounded() -> None:
 
 
 @pytest.mark.parametrize(("lengths", "bounded"), [("keep", True), ("equal", False)])
-def test_step_sizes_recover_where_the_way_to_the_lengths_made_them_short(lengths: str, bounded: bool) -> None:
+def test_step_sizes_recover_where_the_way_to_the_lengths_made_them_short(lengths, bounded):
     point = point_on(start().curve, edge_lengths=lengths)
     step = Armijo().along(point, -point.gradient, np.inf, 1e-100)
     assert isinstance(step, Step) != bounded  # a motion of 10⁻¹⁰⁰ changes no coordinate
@@ -121,14 +121,14 @@ def test_step_sizes_recover_where_the_way_to_the_lengths_made_them_short(lengths
         assert 1e-5 < np.abs(step.size * point.gradient).max() <= 1e-3
 
 
-def test_steps_grow_by_a_bounded_factor() -> None:
+def test_steps_grow_by_a_bounded_factor():
     point = start()
     step, _ = taken(LineSearch(SteepestDescent(), Armijo()).step(point, SearchState(None, 1e-5)))
     assert step.size <= 4e-5
 
 
 @pytest.mark.parametrize("geometry", GEOMETRIES)
-def test_conjugate_gradients_by_their_formula(geometry: str) -> None:
+def test_conjugate_gradients_by_their_formula(geometry):
     rule = ConjugateGradient()
     last = start(geometry)
     before, memory = rule.propose(last, None)
@@ -148,7 +148,7 @@ def test_conjugate_gradients_by_their_formula(geometry: str) -> None:
     assert max(betas) > 0.05
 
 
-def test_lbfgs_satisfies_the_secant_equation() -> None:
+def test_lbfgs_satisfies_the_secant_equation():
     """H y = s for the last displacement s and difference y of gradients, where nothing is constrained.
 
     The same pair once more, from the end back to the start, leaves H as it is.
@@ -167,7 +167,7 @@ def test_lbfgs_satisfies_the_secant_equation() -> None:
 
 
 @pytest.mark.parametrize("penalty", [1.0, 1e4])
-def test_the_penalised_energy_has_slope_two(penalty: float) -> None:
+def test_the_penalised_energy_has_slope_two(penalty):
     curve = torus_trefoil(40)
     point = with_geometry(point_on(curve), Penalised(penalty))
     rng = np.random.default_rng(5)

@@ -6,14 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, RelaxOptions, Status, minimize, relax
-from mobius_flow.core.curve.refine import (
-    SPLIT,
-    Resolution,
-    collapsed,
-    graded_spacing,
-    onto_chords,
-    superfluous,
-)
+from mobius_flow.core.curve.refine import SPLIT, Resolution, collapsed, graded_spacing, onto_chords, superfluous
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.driver.run import Run
 from mobius_flow.core.knots import knot

@@ -4,7 +4,7 @@ import itertools
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, Hand, Iterate, MoebiusEnergy, RelaxOptions, Result, Status, minimize, relax
+from mobius_flow.core import Curve, Hand, MoebiusEnergy, RelaxOptions, Status, minimize, relax
 from mobius_flow.core.curve.measures import bending
 from mobius_flow.core.descent import Point, Step
 from mobius_flow.core.driver.moves import balance
@@ -25,7 +25,7 @@ def unbalanced(curve: Curve, *v: float) -> Curve:
 
 
 def point(curve: Curve, **options: object) -> Point:
-    return start_problem(curve, RelaxOptions(**options)).at_curve(curve)  # type: ignore[arg-type]
+    return start_problem(curve, RelaxOptions(**options)).at_curve(curve)
 
 
 def run_at(start: Point) -> Run:
@@ -40,7 +40,7 @@ def largest_chord(curve: Curve) -> float:
     return float(np.linalg.norm(curve.vertices[:, None] - curve.vertices[None], axis=2).max())
 
 
-def test_the_balanced_image_by_itself() -> None:
+def test_the_balanced_image_by_itself():
     given = unbalanced(torus_trefoil(120), 0.3, 0.1, -0.2)
     image = balance.balanced(given)
     assert bending(image) < 0.9 * bending(given)
@@ -49,7 +49,7 @@ def test_the_balanced_image_by_itself() -> None:
 
 
 @pytest.mark.parametrize("curve", [torus_trefoil(120), dual_circles(60)], ids=["trefoil", "Hopf link"])
-def test_images_keep_length_place_and_the_ratios_of_edges(curve: Curve) -> None:
+def test_images_keep_length_place_and_the_ratios_of_edges(curve):
     images = MoebiusImages(curve, curve.edge_lengths)
     image = images.at(np.array([1.0, 0.2, -0.1, 0.3]))
     assert image.length == pytest.approx(curve.length)
@@ -62,7 +62,7 @@ def test_images_keep_length_place_and_the_ratios_of_edges(curve: Curve) -> None:
     assert np.abs(itself.vertices - curve.vertices).max() < 5e-3 * largest_chord(curve)
 
 
-def test_derivative_that_is_minimised_with() -> None:
+def test_derivative_that_is_minimised_with():
     images = MoebiusImages(torus_trefoil(60), torus_trefoil(60).edge_lengths)
     q, u = np.array([0.8, 0.1, 0.2, -0.3]), np.array([0.3, -0.2, 0.5, 0.1])
     value, derivative = images.of_vertices(q)
@@ -71,7 +71,7 @@ def test_derivative_that_is_minimised_with() -> None:
 
 
 @pytest.mark.parametrize("v", [(0.3, 0.1, 0.2), (-0.1, 0.3, 0.0), (0.4, 0.3, -0.7)])
-def test_a_symmetric_knot_is_found_again_by_a_proved_way(v: tuple[float, ...]) -> None:
+def test_a_symmetric_knot_is_found_again_by_a_proved_way(v):
     """The Clifford torus knot bends least of all its images; a map and the way back leave nothing of the map."""
     symmetric = torus_knot(2, 3, 200)
     start = point(unbalanced(symmetric, *v))
@@ -86,7 +86,7 @@ def test_a_symmetric_knot_is_found_again_by_a_proved_way(v: tuple[float, ...]) -
 
 
 @pytest.mark.parametrize("curve", [regular_polygon(60), torus_knot(2, 3, 120)], ids=["circle", "trefoil"])
-def test_what_bends_least_stays(curve: Curve) -> None:
+def test_what_bends_least_stays(curve):
     assert way_to_balance(point(curve)) == ()
 
 
@@ -95,7 +95,7 @@ def uneven_circle() -> Curve:
     return Curve.from_components([np.stack([np.cos(angles), np.sin(angles), np.zeros(30)], axis=1)])
 
 
-def test_the_identity_is_no_gain(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_identity_is_no_gain(monkeypatch):
     """Its image, smooth and even, bends less than an uneven polygon; but there is no way to go, and no axis of it."""
     bumpy = uneven_circle().with_vertices(uneven_circle().vertices * np.where(np.arange(30) % 3, 1.0, 1.03)[:, None])
     start, identity = point(bumpy, edge_lengths="equal"), np.array([1.0, 0.0, 0.0, 0.0])
@@ -105,13 +105,13 @@ def test_the_identity_is_no_gain(monkeypatch: pytest.MonkeyPatch) -> None:
     assert way_to_balance(start) == ()
 
 
-def test_what_the_flow_takes_back_is_not_told_as_a_gain() -> None:
+def test_what_the_flow_takes_back_is_not_told_as_a_gain():
     result = minimize(uneven_circle(), RelaxOptions(balance=True, vertices=30, edge_lengths="keep"))
     assert result.status is Status.CONVERGED
     assert "balanced: " not in result.message
 
 
-def test_no_way_leads_through_a_strand() -> None:
+def test_no_way_leads_through_a_strand():
     """The pole inside a circle, in its plane: it would have to come through the circle from wherever it comes."""
     start, inside = point(regular_polygon(60)), np.array([1.0, -2.0, 0.0, 0.0])
     images = MoebiusImages(start.curve, start.curve.edge_lengths)
@@ -123,11 +123,11 @@ def test_no_way_leads_through_a_strand() -> None:
     assert way(start, images, -outside, start.problem) == (), "the long way is through the circle"
 
 
-def test_the_next_best_where_there_is_no_way_to_the_best(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_next_best_where_there_is_no_way_to_the_best(monkeypatch):
     start = point(unbalanced(torus_knot(2, 3, 120), 0.3, 0.1, 0.2))
     asked = []
 
-    def no_way(*arguments: object) -> tuple[()]:
+    def no_way(*arguments):
         asked.append(arguments[3])
         return ()
 
@@ -137,14 +137,14 @@ def test_the_next_best_where_there_is_no_way_to_the_best(monkeypatch: pytest.Mon
     np.testing.assert_array_equal(asked[::2], -np.array(asked[1::2]))
 
 
-def test_images_that_bend_more_than_their_vertices_promised_are_passed_over(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_images_that_bend_more_than_their_vertices_promised_are_passed_over(monkeypatch):
     start = point(unbalanced(torus_knot(2, 3, 120), 0.3, 0.1, 0.2))
     found = balance.least_bending(MoebiusImages(start.curve, start.curve.edge_lengths), 3)
     monkeypatch.setattr(balance, "least_bending", lambda *_: [np.array([0.6, 0.8, 0.0, 0.0]), *found])
     assert bending(way_to_balance(start)[-1].point.curve) < 0.96 * bending(start.curve)
 
 
-def test_lengths_of_links_follow_their_images() -> None:
+def test_lengths_of_links_follow_their_images():
     """Components shrink and grow in a Möbius image: the targets are what they have there, and as even as before."""
     start = point(unbalanced(dual_circles(80), 0.3, 0.4, 0.0))
     steps = way_to_balance(start)
@@ -157,13 +157,13 @@ def test_lengths_of_links_follow_their_images() -> None:
 
 
 @pytest.fixture(scope="module")
-def runs() -> dict[bool, tuple[Result, list[Iterate]]]:
+def runs():
     return {
         balanced: proved(knot("8_19"), balance=balanced, mesh="fixed", tolerance=1e-3) for balanced in (False, True)
     }
 
 
-def test_a_balanced_run_bends_less_at_no_more_energy(runs) -> None:
+def test_a_balanced_run_bends_less_at_no_more_energy(runs):
     (plain, before), (result, iterates) = runs[False], runs[True]
     assert result.status is Status.CONVERGED
     assert bending(result.curve) < 0.7 * bending(plain.curve)
@@ -184,7 +184,7 @@ def test_a_balanced_run_bends_less_at_no_more_energy(runs) -> None:
         pytest.param(1.0, 11, True, marks=pytest.mark.slow),
     ],
 )
-def test_the_limit_of_iterations_holds_on_the_way(part: float, more: int, said: bool, runs) -> None:
+def test_the_limit_of_iterations_holds_on_the_way(part, more, said, runs):
     limit = int(part * runs[False][0].last.index) + more
     result = minimize(knot("8_19"), RelaxOptions(balance=True, mesh="fixed", tolerance=1e-3, max_iterations=limit))
     assert result.status is Status.ITERATION_LIMIT
@@ -195,13 +195,13 @@ def test_the_limit_of_iterations_holds_on_the_way(part: float, more: int, said: 
     assert "balanced: " not in result.message
 
 
-def test_what_is_balanced_already_is_said_to_be() -> None:
+def test_what_is_balanced_already_is_said_to_be():
     result = minimize(knot("3_1"), RelaxOptions(balance=True))
     assert result.message.endswith("; no other shape of the same energy that can be reached bends less")
 
 
 @pytest.mark.parametrize("method", ["flow-moebius", "penalty-lbfgs"])
-def test_every_geometry_goes_there(method: str) -> None:
+def test_every_geometry_goes_there(method):
     start = unbalanced(torus_knot(2, 3, 120), 0.3, 0.1, 0.2)
     result = minimize(start, RelaxOptions(balance=True, method=method, tolerance=1e-2))
     assert result.status is Status.CONVERGED
@@ -209,7 +209,7 @@ def test_every_geometry_goes_there(method: str) -> None:
     assert bending(result.curve) < 0.95 * bending(start)
 
 
-def test_what_a_hand_has_pulled_is_balanced_again_but_for_its_pins() -> None:
+def test_what_a_hand_has_pulled_is_balanced_again_but_for_its_pins():
     """A trefoil is pulled far out as soon as it is at rest, and let go, and once more, when a pin is left there."""
     options = RelaxOptions(vertices=60, mesh="fixed", balance=True, tolerance=1e-3)
     least = bending(minimize(torus_knot(2, 3, 60), options).curve)

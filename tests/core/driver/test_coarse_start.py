@@ -17,7 +17,7 @@ from tasks import proved
 
 
 @pytest.fixture
-def everywhere(monkeypatch: pytest.MonkeyPatch) -> None:
+def everywhere(monkeypatch):
     """Also for curves that are small enough for tests."""
     change(monkeypatch, CoarseStart, min_vertices=100)
 
@@ -37,7 +37,7 @@ def relaxed(curve: Curve, **options: object) -> list[Iterate]:
     family([bent(torus_trefoil(200)), hard_unknot(20, seed=3), bent(knot("L2a1", 400))]),
     ids=["trefoil", "hard unknot", "Hopf link"],
 )
-def test_fewer_vertices_at_first_and_all_in_the_end(curve: Curve) -> None:
+def test_fewer_vertices_at_first_and_all_in_the_end(curve):
     fine = refine(curve, 3 * len(curve))
     iterates = relaxed(fine)
     counts = [len(iterate.curve) for iterate in iterates]
@@ -49,7 +49,7 @@ def test_fewer_vertices_at_first_and_all_in_the_end(curve: Curve) -> None:
 
 
 @pytest.mark.usefixtures("everywhere")
-def test_the_same_minimum_in_fewer_steps_on_the_fine_mesh() -> None:
+def test_the_same_minimum_in_fewer_steps_on_the_fine_mesh():
     curve = bent(torus_trefoil(300))
     fixed = relaxed(curve, mesh="fixed", method="cg")  # which second derivatives do not end
     iterates = relaxed(curve, method="cg")
@@ -62,7 +62,7 @@ def test_the_same_minimum_in_fewer_steps_on_the_fine_mesh() -> None:
     ("least", "limit"),
     [(1, 0), (1, 5), (1, 33), *((CoarseStart.min_iterations, k) for k in (1, 12, CoarseStart.min_iterations))],
 )
-def test_a_run_that_is_cut_short_has_all_vertices(least: int, limit: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_run_that_is_cut_short_has_all_vertices(least, limit, monkeypatch):
     """The way back is within the limit, and ends on the smooth curve: no corners of the coarse one are left."""
     change(monkeypatch, CoarseStart, min_iterations=least)
     options = RelaxOptions(vertices=300, max_iterations=limit, tolerance=1e-9, method="flow-h1")
@@ -74,7 +74,7 @@ def test_a_run_that_is_cut_short_has_all_vertices(least: int, limit: int, monkey
 
 @pytest.mark.usefixtures("everywhere")
 @pytest.mark.parametrize("limit", family([CoarseStart.min_iterations, 34]))
-def test_a_run_that_is_cut_short_ends_on_the_constraints(limit: int) -> None:
+def test_a_run_that_is_cut_short_ends_on_the_constraints(limit):
     """Between strands the smooth curve with all vertices is a hundredth off."""
     result = minimize(hard_unknot(20, seed=3), RelaxOptions(vertices=600, max_iterations=limit, untangle="never"))
     assert result.message.startswith(f"stopped at the iteration limit ({limit}); changes of mesh")
@@ -82,7 +82,7 @@ def test_a_run_that_is_cut_short_ends_on_the_constraints(limit: int) -> None:
     assert result.certified
 
 
-def test_lengths_that_are_not_reached_at_the_limit_are_told_of() -> None:
+def test_lengths_that_are_not_reached_at_the_limit_are_told_of():
     result = minimize(bent(torus_trefoil(300)), RelaxOptions(vertices=300, max_iterations=1))
     off = 100 * result.last.edge_length_error
     assert off > 1
@@ -90,14 +90,14 @@ def test_lengths_that_are_not_reached_at_the_limit_are_told_of() -> None:
 
 
 @pytest.mark.usefixtures("everywhere")
-def test_few_iterations_are_all_for_untangling() -> None:
+def test_few_iterations_are_all_for_untangling():
     iterates = relaxed(torus_trefoil(600), max_iterations=4)
     assert iterates[-1].energy < 0.95 * iterates[0].energy
 
 
 @pytest.mark.usefixtures("everywhere")
 @pytest.mark.parametrize("corners", family([3, 4]))
-def test_no_component_has_more_vertices_at_first_than_in_the_end(corners: int) -> None:
+def test_no_component_has_more_vertices_at_first_than_in_the_end(corners):
     """A polygon around a ring is coarser than its gap; it may keep that, but what is added could not be left out."""
     square = regular_polygon(corners).vertices[:, [0, 2, 1]] + np.array([1.0, 0.0, 0.0])
     iterates = relaxed(Curve.from_components([regular_polygon(900).vertices, 0.9 * square]))
@@ -117,16 +117,16 @@ def test_no_component_has_more_vertices_at_first_than_in_the_end(corners: int) -
     ids=str,
 )
 @pytest.mark.usefixtures("everywhere")
-def test_where_vertices_are_to_stay_they_do(options: dict[str, object]) -> None:
+def test_where_vertices_are_to_stay_they_do(options):
     iterates = relaxed(bent(torus_trefoil(300)), **{"max_iterations": 3} | options)
     assert {len(iterate.curve) for iterate in iterates} == {300}
 
 
 @pytest.mark.usefixtures("everywhere")
 @pytest.mark.parametrize("options", [{"vertices": 420}, {"mesh": "adaptive"}], ids=["coarse start", "adaptive"])
-def test_rises_of_the_energy_with_the_mesh_are_told_of(options: dict[str, object]) -> None:
-    iterates: list[Iterate] = []
-    result = minimize(bent(torus_trefoil(420)), RelaxOptions(**options), iterates.append)  # type: ignore[arg-type]
+def test_rises_of_the_energy_with_the_mesh_are_told_of(options):
+    iterates = []
+    result = minimize(bent(torus_trefoil(420)), RelaxOptions(**options), iterates.append)
     energies, told = result.energies, []
     changed = [k for k, iterate in enumerate(iterates) if k and iterate.step_size == 0.0]
     for _, group in itertools.groupby(enumerate(changed), lambda place: place[1] - place[0]):
@@ -151,7 +151,7 @@ def test_rises_of_the_energy_with_the_mesh_are_told_of(options: dict[str, object
         ([[4, 4.5], [3, 3.5], [2, 2.25], [1, 1.125], [1, 1.0625]], "… 9, and in 2 further changes by 0.188 in total"),
     ],
 )
-def test_rises_are_told_one_by_one_and_further_ones_added_up(changes: list[list[float]], told: str) -> None:
+def test_rises_are_told_one_by_one_and_further_ones_added_up(changes, told):
     curve, rises = regular_polygon(5), Rises()
     for k, energies in enumerate(changes, 1):
         iterates = [Iterate(3 * k, curve, energy, 1.0, 0.0, (), True, 0.0, "lbfgs") for energy in energies]

@@ -54,7 +54,7 @@ class Lopsided(L2Metric):
 
 
 def start(**options: object) -> None:
-    next(relax(torus_trefoil(40), RelaxOptions(vertices=40, **options)))  # type: ignore[arg-type]
+    next(relax(torus_trefoil(40), RelaxOptions(vertices=40, **options)))
 
 
 @pytest.mark.parametrize(
@@ -69,17 +69,17 @@ def start(**options: object) -> None:
         (Height(flat=True), r"has a derivative that is of shape \(40,\); give finite numbers, of shape \(40, 3\)"),
     ],
 )
-def test_a_term_is_right_or_its_fault_is_told(term: Height, said: str | None) -> None:
+def test_a_term_is_right_or_its_fault_is_told(term, said):
     with pytest.raises(OptionError, match=f"term 'height' {said}") if said else nullcontext():
         start(terms=((term, 0.1),))
 
 
-def test_an_energy_whose_derivative_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_energy_whose_derivative_is_wrong(monkeypatch):
     own = ENERGIES["tangent-point"]
     start(energy=own)
     right = KPointEnergy.value_and_derivative
 
-    def wrong(self: KPointEnergy, curve: Curve) -> tuple[float, FloatArray]:
+    def wrong(self, curve):
         value, derivative = right(self, curve)
         return value, -derivative
 
@@ -107,7 +107,7 @@ class RealOnly(TangentPointDensity):
         (np.cbrt, "energy 'own' has no second derivative by complex steps: ufunc 'cbrt' not supported"),
     ],
 )
-def test_a_density_for_real_numbers_alone(more: dict[str, object], function: np.ufunc, said: str) -> None:
+def test_a_density_for_real_numbers_alone(more, function, said):
     densities = RealOnly(function=function), TangentPointDensity()
     own, right = (KPointEnergy("own", "own", density, ENDS) for density in densities)
     start(energy=own)
@@ -123,7 +123,7 @@ def test_a_density_for_real_numbers_alone(more: dict[str, object], function: np.
         (Lopsided(factor=-1.0), "metric 'l2' has ⟨u, u⟩ = -.* for some u; it must be above 0"),
     ],
 )
-def test_a_metric_that_is_none(metric: Lopsided, said: str) -> None:
+def test_a_metric_that_is_none(metric, said):
     start(metric=Lopsided())
     with pytest.raises(OptionError, match=said):
         start(metric=metric)

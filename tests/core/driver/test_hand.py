@@ -42,7 +42,7 @@ def pulled(curve: Curve, away: float = 1.0, component: int = 0) -> Pull:
 
 
 @pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)
-def test_derivatives_of_the_pull_and_a_stiffness_that_is_no_less(curve: Curve) -> None:
+def test_derivatives_of_the_pull_and_a_stiffness_that_is_no_less(curve):
     v, stiffness = np.random.default_rng(5).normal(size=curve.vertices.shape), pulled(curve).stiffness(curve).toarray()
     for away in (0.0, 0.1, 30.0):
         pull = pulled(curve, away)
@@ -56,7 +56,7 @@ def test_derivatives_of_the_pull_and_a_stiffness_that_is_no_less(curve: Curve) -
     assert stiffness.sum() == pytest.approx(40.0)
 
 
-def test_the_force_is_bounded_and_that_of_a_spring_nearby() -> None:
+def test_the_force_is_bounded_and_that_of_a_spring_nearby():
     curve = regular_polygon(50)
     for away, force in ((1e-6, 1e-6 * np.sqrt(14.0) * 40.0), (1e9, REACH * 40.0)):
         _, derivative = pulled(curve, away).value_and_derivative(curve)
@@ -64,7 +64,7 @@ def test_the_force_is_bounded_and_that_of_a_spring_nearby() -> None:
 
 
 @pytest.mark.parametrize("solver", ["dense", "hierarchical"])
-def test_the_metric_has_the_stiffness(solver: str) -> None:
+def test_the_metric_has_the_stiffness(solver):
     curve = torus_trefoil(60)
     point = point_on(curve, solver=solver)
     pull = Pull.at(point.curve, 0, 0.3, 40.0)
@@ -72,7 +72,7 @@ def test_the_metric_has_the_stiffness(solver: str) -> None:
     np.testing.assert_allclose(held - plain, pull.stiffness(curve).toarray(), atol=1e-9 * np.abs(plain).max())
 
 
-def test_what_a_moved_target_keeps_is_what_would_be_computed_anew() -> None:
+def test_what_a_moved_target_keeps_is_what_would_be_computed_anew():
     point = point_on(torus_trefoil(60))
     pull = Pull.at(point.curve, 0, 0.3, 40.0)
     held = point.pulled(pull)
@@ -88,7 +88,7 @@ def test_what_a_moved_target_keeps_is_what_would_be_computed_anew() -> None:
 
 
 @pytest.mark.parametrize("curve", [hopf_link(40), opened(hopf_link(40), 1)], ids=["closed", "open"])
-def test_shares_of_lengths_are_found_again(curve: Curve) -> None:
+def test_shares_of_lengths_are_found_again(curve):
     for component in (0, 1):
         for share in (0.1, 0.35, 0.8):
             pull = Pull.at(curve, component, share, 1.0)
@@ -125,7 +125,7 @@ def place_outside(curve: Curve) -> np.ndarray:
 
 
 @pytest.mark.parametrize("settings", family([{"mesh": "adaptive"}, {}, {"solver": "hierarchical"}]), ids=str)
-def test_the_curve_follows_rests_and_relaxes_on(settings: dict[str, object]) -> None:
+def test_the_curve_follows_rests_and_relaxes_on(settings):
     moves = {2: held, 3: pulled_out}
     rested, outcome = drag(knot("3_1"), Hand(), dict(moves), **settings)
     curve = rested[-1].curve
@@ -140,7 +140,7 @@ def test_the_curve_follows_rests_and_relaxes_on(settings: dict[str, object]) -> 
         check(iterates)
 
 
-def test_what_is_held_does_not_end_and_its_energies_are_those_without_the_hand() -> None:
+def test_what_is_held_does_not_end_and_its_energies_are_those_without_the_hand():
     moves = {2: held, 3: pulled_out, 25: lambda hand, _: hand.release()}
     iterates, outcome = drag(torus_trefoil(60), Hand(), moves, max_iterations=15)
     assert len(iterates) > 25
@@ -150,7 +150,7 @@ def test_what_is_held_does_not_end_and_its_energies_are_those_without_the_hand()
         assert iterate.energy == pytest.approx(problem.at_curve(iterate.curve).energy, rel=1e-9)
 
 
-def test_at_rest_the_run_asks_once_more_and_then_ends() -> None:
+def test_at_rest_the_run_asks_once_more_and_then_ends():
     hand, rests = Hand(stays=True), []
     run = WithOutcome(relax(regular_polygon(60), RelaxOptions(**FIXED), hand=hand))
     for iterate in run:
@@ -167,11 +167,11 @@ def test_at_rest_the_run_asks_once_more_and_then_ends() -> None:
     assert rests == sorted(set(rests))
 
 
-def test_a_pin_is_left_where_the_hand_lets_go_and_undo_takes_the_drag_back_with_it() -> None:
+def test_a_pin_is_left_where_the_hand_lets_go_and_undo_takes_the_drag_back_with_it():
     plain, _ = drag(knot("4_1"), Hand(), {}, vertices=80)
-    pinned: list[Iterate] = []
+    pinned = []
 
-    def undone(hand: Hand, _iterate: Iterate) -> None:
+    def undone(hand, _iterate):
         hand.undo()
         hand.undo()  # there is nothing else
 
@@ -190,7 +190,7 @@ def test_a_pin_is_left_where_the_hand_lets_go_and_undo_takes_the_drag_back_with_
 
 
 @pytest.mark.parametrize("mesh", ["adaptive", "finer"])
-def test_undo_goes_back_to_the_mesh_that_there_was(mesh: str) -> None:
+def test_undo_goes_back_to_the_mesh_that_there_was(mesh):
     """A curve that is pulled far is given other vertices; those from before are there again, and the run goes on."""
     hand, seen, undone = Hand(), [], False
     for iterate in relax(torus_trefoil(60), RelaxOptions(vertices=60, mesh=mesh, tolerance=1e-3), hand=hand):
@@ -209,7 +209,7 @@ def test_undo_goes_back_to_the_mesh_that_there_was(mesh: str) -> None:
     check(seen)
 
 
-def test_what_is_no_place_or_no_point_is_refused() -> None:
+def test_what_is_no_place_or_no_point_is_refused():
     hand = Hand()
     for component, share in [(0, -0.1), (0, 1.1), (0, np.nan), ("x", 0.1), (0.5, 0.1)]:
         with pytest.raises(MobiusFlowError):
@@ -223,8 +223,8 @@ def test_what_is_no_place_or_no_point_is_refused() -> None:
     ("component", "target", "said"),
     [(1, [], "component is 1"), (-1, [], "component is -1"), (0, [1.0, 2.0], "target has 2 coordinates; give 3")],
 )
-def test_what_does_not_fit_the_curve_ends_the_run_in_a_sentence(component: int, target: list[float], said: str) -> None:
-    def grab(hand: Hand, _iterate: Iterate) -> None:
+def test_what_does_not_fit_the_curve_ends_the_run_in_a_sentence(component, target, said):
+    def grab(hand, _iterate):
         hand.grab(component, 0.5)
         if target:
             hand.move(target)
@@ -233,7 +233,7 @@ def test_what_does_not_fit_the_curve_ends_the_run_in_a_sentence(component: int, 
         drag(torus_trefoil(60), Hand(), {1: grab})
 
 
-def test_what_is_pinned_stays_and_a_hand_that_holds_nothing_does_nothing() -> None:
+def test_what_is_pinned_stays_and_a_hand_that_holds_nothing_does_nothing():
     task = Task(curve=torus_trefoil(60), pins=tuple(range(60)))
     iterates, _ = drag(task, Hand(), {0: held})
     assert all(np.array_equal(iterate.curve.vertices, task.curve.vertices) for iterate in iterates)
@@ -292,7 +292,7 @@ def violent(task: Task, options: RelaxOptions, drags: int, seed: int) -> list[It
 
 @pytest.mark.parametrize("drags", [6, pytest.param(130, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", TASKS)
-def test_violent_drags_go_through_nothing(name: str, drags: int) -> None:
+def test_violent_drags_go_through_nothing(name, drags):
     """With the slow ones they are a thousand."""
     task, settings = TASKS[name]
     iterates = violent(task, RelaxOptions(**{"mesh": "fixed"} | settings), drags, 7)
@@ -303,7 +303,7 @@ def test_violent_drags_go_through_nothing(name: str, drags: int) -> None:
 
 
 @pytest.mark.parametrize("method", family(METHODS, every=8))
-def test_every_method_follows(method: str) -> None:
+def test_every_method_follows(method):
     iterates = violent(TASKS["trefoil"][0], RelaxOptions(vertices=60, mesh="fixed", method=method), 4, 3)
     assert all(iterate.certified for iterate in iterates)
     check(iterates)

@@ -1,6 +1,5 @@
 """Hops lead lower or nowhere, by proved motions that a seed determines, and an interrupt loses nothing."""
 
-from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
 from itertools import cycle, islice, pairwise
@@ -11,7 +10,7 @@ from families import family
 from mobius_flow.core import Curve, Iterate, Mesh, Obstacle, RelaxOptions, Result, Status, minimize
 from mobius_flow.core.collision import FreeMotion, Limit
 from mobius_flow.core.curve import refine
-from mobius_flow.core.descent import Point, Step
+from mobius_flow.core.descent import Point
 from mobius_flow.core.driver.move import iterates
 from mobius_flow.core.driver.moves import MOVES
 from mobius_flow.core.driver.moves.hops import (
@@ -19,7 +18,6 @@ from mobius_flow.core.driver.moves.hops import (
     MAY_BE_UNKNOT,
     MOTIONS,
     Hops,
-    RandomMotion,
     Stir,
     is_circle,
     radius,
@@ -51,12 +49,12 @@ def recorded(**changes: object) -> Recorded:
 
 
 @pytest.fixture(scope="module")
-def hopped() -> Recorded:
+def hopped():
     return recorded()
 
 
 @pytest.fixture(scope="module")
-def plain() -> Recorded:
+def plain():
     return recorded(hops=0)
 
 
@@ -69,7 +67,7 @@ def same(a: list[Iterate], b: list[Iterate]) -> bool:
     return all(np.array_equal(x.curve.vertices, y.curve.vertices) for x, y in zip(a, b, strict=True))
 
 
-def test_a_hop_leads_lower_by_a_certified_way_and_is_told(hopped: Recorded, plain: Recorded) -> None:
+def test_a_hop_leads_lower_by_a_certified_way_and_is_told(hopped, plain):
     found, result = hopped
     assert result.status is Status.CONVERGED
     assert result.certified
@@ -82,13 +80,13 @@ def test_a_hop_leads_lower_by_a_certified_way_and_is_told(hopped: Recorded, plai
     assert hop_of(found).edge_length_error < 1e-6
 
 
-def test_without_hops_nothing_changes_and_with_them_nothing_before(hopped: Recorded, plain: Recorded) -> None:
+def test_without_hops_nothing_changes_and_with_them_nothing_before(hopped, plain):
     bare = list(iterates(run_of(), [each for each in MOVES if each is not Hops]))
     assert same(plain[0], bare)
     assert same(hopped[0][: len(bare)], bare)
 
 
-def test_the_same_seed_gives_the_same_bits(hopped: Recorded) -> None:
+def test_the_same_seed_gives_the_same_bits(hopped):
     run = run_of()
     again = WithOutcome(iterates(run, MOVES))
     assert same(hopped[0], list(again))
@@ -102,10 +100,10 @@ def test_the_same_seed_gives_the_same_bits(hopped: Recorded) -> None:
     assert np.abs(other - hop.path[0]).max() > 1e-3
 
 
-def test_motions_take_turns_in_runs_and_in_starts_of_a_batch(monkeypatch: pytest.MonkeyPatch) -> None:
-    turns: list[type] = []
+def test_motions_take_turns_in_runs_and_in_starts_of_a_batch(monkeypatch):
+    turns = []
 
-    def still(motion: RandomMotion, *_: object) -> Iterator[Step]:
+    def still(motion, *_):
         turns.append(type(motion))
         return iter(())
 
@@ -123,10 +121,8 @@ def test_motions_take_turns_in_runs_and_in_starts_of_a_batch(monkeypatch: pytest
     ("error", "said"),
     [(KeyboardInterrupt, "interrupted: "), (np.linalg.LinAlgError, "; hops that lowered the energy: 0 of 1")],
 )
-def test_a_trial_that_fails_keeps_the_lowest_curve(
-    error: type, said: str, plain: Recorded, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def fails(*_: object) -> None:
+def test_a_trial_that_fails_keeps_the_lowest_curve(error, said, plain, monkeypatch):
+    def fails(*_):
         raise error
 
     monkeypatch.setattr(type(MOTIONS[0]), "__call__", fails)
@@ -135,8 +131,8 @@ def test_a_trial_that_fails_keeps_the_lowest_curve(
     assert said in result.message
 
 
-def test_a_way_is_certified_only_if_all_its_steps_are() -> None:
-    def unproved(point: Point, rng: np.random.Generator) -> Iterator[Step]:
+def test_a_way_is_certified_only_if_all_its_steps_are():
+    def unproved(point, rng):
         step = next(MOTIONS[0](point, rng))
         yield replace(step, legs=tuple(leg._replace(proof=FreeMotion(1.0, limit=Limit.UNTESTED)) for leg in step.legs))
 
@@ -147,7 +143,7 @@ def test_a_way_is_certified_only_if_all_its_steps_are() -> None:
 
 
 @pytest.mark.parametrize("left", family([0, 1, 10], every=2))
-def test_iterations_of_trials_count(plain: Recorded, left: int) -> None:
+def test_iterations_of_trials_count(plain, left):
     """With too few of them for a trial to lead lower, the run stays where it has converged, and says so."""
     found, result = recorded(max_iterations=plain[1].last.index + left)
     assert same(found, plain[0])
@@ -155,7 +151,7 @@ def test_iterations_of_trials_count(plain: Recorded, left: int) -> None:
     assert ("hops that lowered the energy: 0 of 1" in result.message) == (left > 0)
 
 
-def test_a_trial_takes_no_more_iterations_than_are_left(plain: Recorded) -> None:
+def test_a_trial_takes_no_more_iterations_than_are_left(plain):
     """Its motion and its relaxation together."""
     run = run_of(replace(OPTIONS, max_iterations=plain[1].last.index + 10))
     list(WithOutcome(iterates(run, MOVES)))
@@ -179,13 +175,13 @@ STRAIGHT = Curve(np.linspace(0.0, 1.0, 13)[:, None] * [1.0, 2.0, 2.0], Mesh((13,
     ],
     ids=["circle", "straight arc", "slack arc", "all pinned", "penalised lengths", "composite"],
 )
-def test_where_there_is_nothing_to_look_for_nothing_hops(curve: Curve, options: dict[str, object]) -> None:
+def test_where_there_is_nothing_to_look_for_nothing_hops(curve, options):
     message = minimize(*wanted(curve, hops=2, **options)).message
     assert "hop" not in message
     assert ("composite" in message) == (curve.mesh.size > 60 and "tolerance" in options)
 
 
-def test_hops_keep_pins_move_nothing_that_lengths_hold_and_may_leave_a_circle_that_is_held() -> None:
+def test_hops_keep_pins_move_nothing_that_lengths_hold_and_may_leave_a_circle_that_is_held():
     """Only where nothing is in the way has no curve less energy."""
     task, options = wanted(regular_polygon(16), hops=1, pins=(0, 8), vertices=16, mesh="fixed", tolerance=1e-2)
     assert "of 1" in minimize(task, options).message
@@ -208,7 +204,7 @@ def saddle(**options: object) -> Point:
 
 
 @pytest.mark.parametrize("motion", MOTIONS, ids=lambda motion: type(motion).__name__)
-def test_motions_stay_on_the_constraints_below_their_ceilings_and_go_far(motion: RandomMotion) -> None:
+def test_motions_stay_on_the_constraints_below_their_ceilings_and_go_far(motion):
     start = saddle()
     steps = list(motion(start, np.random.default_rng(0)))
     assert len(steps) > 20
@@ -219,12 +215,12 @@ def test_motions_stay_on_the_constraints_below_their_ceilings_and_go_far(motion:
     assert 1.0 < max(step.point.energy for step in low) / start.energy < 1.02
 
 
-def test_motions_fit_where_lengths_are_prescribed() -> None:
+def test_motions_fit_where_lengths_are_prescribed():
     assert all(motion.fits(saddle(energy=energy)) for motion in MOTIONS for energy in ("moebius", "edge"))
     assert not any(motion.fits(saddle(method="penalty-lbfgs")) for motion in MOTIONS)
 
 
-def test_flows_have_no_divergence_and_what_constraints_hold_back_moves_nothing() -> None:
+def test_flows_have_no_divergence_and_what_constraints_hold_back_moves_nothing():
     flow = Stir().field(saddle(), np.random.default_rng(0))
     x, h = np.array([[0.3, -0.2, 0.1]]), 1e-5
     divergence = sum((flow(x + h * e)[0] - flow(x - h * e)[0]) @ e for e in np.eye(3)) / (2.0 * h)
@@ -233,12 +229,12 @@ def test_flows_have_no_divergence_and_what_constraints_hold_back_moves_nothing()
     assert not list(Stir().along(saddle(), np.ones_like, np.inf))
 
 
-def test_a_way_is_as_long_as_asked_and_steps_grow_again_where_there_is_room() -> None:
+def test_a_way_is_as_long_as_asked_and_steps_grow_again_where_there_is_room():
     """From a start with little room below the ceiling, and then turning about an axis, which costs nothing."""
     start, stride = saddle(), 0.2
     rough = np.random.default_rng(4).normal(size=start.vertices.shape)
 
-    def field(x: np.ndarray) -> np.ndarray:
+    def field(x):
         return rough if np.array_equal(x, start.vertices) else np.cross([0.0, 0.0, 1.0], x)
 
     steps = list(Stir(stride=stride, shortest=1e-3).along(start, field, 1.02 * start.energy))
@@ -253,14 +249,14 @@ def test_a_way_is_as_long_as_asked_and_steps_grow_again_where_there_is_room() ->
 
 
 @pytest.mark.parametrize(("hops", "advice"), [(0, "hops may reach it"), (1, "more hops may reach it")])
-def test_an_unknot_above_the_circle_is_never_called_done(hops: int, advice: str) -> None:
+def test_an_unknot_above_the_circle_is_never_called_done(hops, advice):
     at_rest = RelaxOptions(tolerance=1e6, edge_lengths="keep", mesh="fixed", max_iterations=1, hops=hops)
     result = minimize(knot("culprit"), at_rest)
     assert result.status is Status.CONVERGED
     assert result.message.endswith(f"; {IS_UNKNOT}: {advice}")
 
 
-def test_no_hop_is_recommended_to_what_is_confined() -> None:
+def test_no_hop_is_recommended_to_what_is_confined():
     """A circle pressed flat between walls is an unknot and no circle, and can become none."""
     ellipse = regular_polygon(60).with_vertices(regular_polygon(60).vertices * [2.0, 0.4, 1.0])
     walls = [Obstacle(wall.vertices[:, [0, 2, 1]], wall.faces) for wall in (plate(0.5), plate(-0.5))]
@@ -284,11 +280,11 @@ def test_no_hop_is_recommended_to_what_is_confined() -> None:
     ],
     ids=["double", "eight", "culprit", "too many", "8_19", "link", "circle", "plane"],
 )
-def test_unknots_are_told_from_what_may_be_one(curve: Curve, said: str | None) -> None:
+def test_unknots_are_told_from_what_may_be_one(curve, said):
     assert unknot_message(curve) == said
 
 
-def test_a_circle_is_told_from_what_is_wound_like_one() -> None:
+def test_a_circle_is_told_from_what_is_wound_like_one():
     angles = np.sort(np.random.default_rng(3).uniform(0.0, 2.0 * np.pi, 60))
     uneven = np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], axis=1)
     assert is_circle(Curve(uneven))

@@ -21,7 +21,7 @@ EXACT = RelaxOptions(method="trust-region", tolerance=1e-7, stability=True, mesh
     ],
     ids=["circle", "fine circle", "plane", "arc"],
 )
-def test_circles_and_arcs(curve: Curve, kind: str, thickness: float, energy: float) -> None:
+def test_circles_and_arcs(curve, kind, thickness, energy):
     found = info(curve)
     assert str(found.type) == kind
     assert found.energies["moebius"] == pytest.approx(energy)
@@ -31,7 +31,7 @@ def test_circles_and_arcs(curve: Curve, kind: str, thickness: float, energy: flo
     assert found.open or found.rest.sentence == "at rest at a minimum"
 
 
-def test_a_relaxed_trefoil_is_at_rest_and_its_start_is_not() -> None:
+def test_a_relaxed_trefoil_is_at_rest_and_its_start_is_not():
     start = knot("3_1", 80)
     result = minimize(start, EXACT)
     before, after = info(start), info(result.curve)
@@ -43,7 +43,7 @@ def test_a_relaxed_trefoil_is_at_rest_and_its_start_is_not() -> None:
     assert after.type.names == before.type.names == ("3_1",)
 
 
-def test_a_saddle_has_its_index() -> None:
+def test_a_saddle_has_its_index():
     """Some torus knots are critical points by their symmetry, and no minima."""
     result = minimize(torus_knot(3, 4, 120), EXACT)
     assert result.outcome.converged
@@ -51,7 +51,7 @@ def test_a_saddle_has_its_index() -> None:
     assert found.index == result.outcome.negative_eigenvalues
 
 
-def test_what_takes_too_long_is_left_out_and_what_touches_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_takes_too_long_is_left_out_and_what_touches_refused(monkeypatch):
     monkeypatch.setattr("mobius_flow.core.driver.info.REST_UP_TO", 50)
     assert info(regular_polygon(50)).rest is not None
     assert info(regular_polygon(51)).rest is None
@@ -60,7 +60,7 @@ def test_what_takes_too_long_is_left_out_and_what_touches_refused(monkeypatch: p
         info(Curve([[0.0, 0, 0], [1, 1, 0], [1, 0, 0], [0, 1, 0]]))
 
 
-def test_a_curve_at_rest_is_told_which_minimum_it_stands_for() -> None:
+def test_a_curve_at_rest_is_told_which_minimum_it_stands_for():
     smooth = info(minimize(knot("m3_1", 60), RelaxOptions(vertices=60)).curve).smooth
     assert smooth.sentence.startswith("74.41204")
     assert smooth.sentence.endswith("the least known of 3_1")
@@ -79,5 +79,5 @@ def test_a_curve_at_rest_is_told_which_minimum_it_stands_for() -> None:
         (147.3, 0.01, None, "147.300 ± 0.01"),
     ],
 )
-def test_other_minima_are_told_apart_from_the_least_known(energy: float, error: float, name: str, told: str) -> None:
+def test_other_minima_are_told_apart_from_the_least_known(energy, error, name, told):
     assert Smooth(energy, error, name, (100.0, 1e-5) if name else None).sentence == told

@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 from families import crossed
 from mobius_flow.core import METHODS, Curve, Trajectory
-from mobius_flow.core.base.types import FloatArray
-from mobius_flow.core.collision import FreeMotion
 from mobius_flow.core.curve.symmetry import Symmetry, symmetries
 from mobius_flow.core.descent import problem
 from mobius_flow.core.knots import smooth_knot
@@ -22,12 +20,12 @@ Proofs = set[tuple[bytes, bytes]]
 
 
 @pytest.fixture
-def proofs(monkeypatch: pytest.MonkeyPatch) -> Proofs:
+def proofs(monkeypatch):
     """The motions that are proved while a test runs, each by the bits of its ends."""
-    found: Proofs = set()
+    found = set()
     prove = problem.Problem.free_motion
 
-    def recorded(given: problem.Problem, start: FloatArray, end: FloatArray) -> FreeMotion:
+    def recorded(given, start, end):
         motion = prove(given, start, end)
         if motion.proved:
             found.add((start.tobytes(), end.tobytes()))
@@ -76,7 +74,7 @@ KINDS = {
     ("method", "kind"),
     [each for each in crossed(METHODS, KINDS) if each.values[1] != "growing" or each.values[0] not in PENALISED],
 )
-def test_every_method_on_every_kind_of_task(method: str, kind: str, proofs: Proofs) -> None:
+def test_every_method_on_every_kind_of_task(method, kind, proofs):
     curve, settings = KINDS[kind]
     usual = {"vertices": len(curve), "mesh": "fixed", "edge_lengths": "keep", "max_iterations": 6, "untangle": "never"}
     result, iterates = proved(curve, **usual | settings, method=method)
@@ -99,7 +97,7 @@ def test_every_method_on_every_kind_of_task(method: str, kind: str, proofs: Proo
     assert all(np.array_equal(leg[held], curve.vertices[held]) for each in iterates for leg in each.path)
 
 
-def test_without_walls_a_trefoil_goes_where_they_are() -> None:
+def test_without_walls_a_trefoil_goes_where_they_are():
     """Those above are about something."""
     curve, _ = KINDS["walls"]
     result, _ = proved(curve, max_iterations=6, vertices=60, mesh="fixed")
@@ -116,7 +114,7 @@ FAR_TRIANGLE = [
 
 @pytest.mark.parametrize("mesh", ["fixed", "adaptive"])
 @pytest.mark.parametrize("method", PENALISED)
-def test_part_of_a_proved_motion_is_proved_as_it_is_rounded(method: str, mesh: str, proofs: Proofs) -> None:
+def test_part_of_a_proved_motion_is_proved_as_it_is_rounded(method, mesh, proofs):
     rng = np.random.default_rng(17)
     shapes = [rng.normal(size=(int(rng.integers(3, 9)), 3)) for _ in range(3)]
     for curve in (Curve(FAR_TRIANGLE), *[Curve(1e6 * each + 1e9 * rng.choice([-1, 1], size=3)) for each in shapes]):

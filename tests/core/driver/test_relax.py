@@ -38,7 +38,7 @@ FOUR = np.stack([np.cos(t), np.sin(t), 0.4 * np.cos(2 * t), 0.4 * np.sin(3 * t)]
     ],
     ids=["trefoil", "Hopf link", "lattice unknot", "plane", "four dimensions", "triangle"],
 )
-def test_curves_come_to_their_minima(curve: Curve, energy: float) -> None:
+def test_curves_come_to_their_minima(curve, energy):
     result = minimize(curve, RelaxOptions(vertices=200 if len(curve) == 200 else None))
     assert result.status is Status.CONVERGED
     assert result.energies[-1] == pytest.approx(energy, rel=6e-4 if energy < 5 else 7e-5 if energy > 70 else 1e-3)
@@ -47,7 +47,7 @@ def test_curves_come_to_their_minima(curve: Curve, energy: float) -> None:
 
 
 @pytest.mark.parametrize("seed", family([1, 5, 6]))
-def test_noisy_circles_do_not_crumple(seed: int) -> None:
+def test_noisy_circles_do_not_crumple(seed):
     """Beside corners of few degrees edges keep their lengths; evening them out would fold the corners."""
     circle = regular_polygon(24).vertices
     result = minimize(Curve(circle + 0.15 * np.random.default_rng(seed).standard_normal(circle.shape)))
@@ -57,7 +57,7 @@ def test_noisy_circles_do_not_crumple(seed: int) -> None:
 
 
 @pytest.mark.parametrize(("scale", "shift"), [(1e-6, 0.0), (1e6, 0.0), (3.0, 1e3)])
-def test_units_and_place_do_not_matter(scale: float, shift: float) -> None:
+def test_units_and_place_do_not_matter(scale, shift):
     curve = torus_trefoil(60)
     here, there = minimize(curve, SHORT), minimize(curve.with_vertices(scale * (curve.vertices + shift)), SHORT)
     np.testing.assert_allclose(there.energies, here.energies, rtol=1e-6)
@@ -65,7 +65,7 @@ def test_units_and_place_do_not_matter(scale: float, shift: float) -> None:
 
 
 @pytest.mark.parametrize("offset", [0.0, 1e9, 1e12, 1e14])
-def test_every_energy_is_that_of_the_curve_given_back(offset: float) -> None:
+def test_every_energy_is_that_of_the_curve_given_back(offset):
     """Far from the origin rounding to the user's units is felt; report and message speak of the rounded curve."""
     curve = regular_polygon(40)
     result = minimize(curve.with_vertices(offset + curve.vertices * [3, 2, 1]), RelaxOptions(vertices=60))
@@ -75,7 +75,7 @@ def test_every_energy_is_that_of_the_curve_given_back(offset: float) -> None:
     assert measure(result.curve) == result.report()["final_energy"]
 
 
-def test_iterates_result_report_and_trajectory_tell_the_same(tmp_path: object) -> None:
+def test_iterates_result_report_and_trajectory_tell_the_same(tmp_path):
     iterates, trajectory = [], Trajectory()
     result = minimize(torus_trefoil(60), SHORT, lambda each: (iterates.append(each), trajectory.add(each)))
     assert [iterate.index for iterate in iterates] == list(range(6))
@@ -96,8 +96,8 @@ def test_iterates_result_report_and_trajectory_tell_the_same(tmp_path: object) -
         np.testing.assert_array_equal(arrays["stage_000"], [each.curve.vertices for each in iterates])
 
 
-def test_a_trajectory_is_of_one_run_and_complete() -> None:
-    def run(count: int) -> list:
+def test_a_trajectory_is_of_one_run_and_complete():
+    def run(count):
         return list(relax(torus_trefoil(40), RelaxOptions(vertices=count, max_iterations=4)))
 
     iterates, other_mesh = run(40), run(50)
@@ -111,7 +111,7 @@ def test_a_trajectory_is_of_one_run_and_complete() -> None:
     assert len(trajectory.arrays()["stage_000"]) == 4
 
 
-def test_runs_of_no_iterations() -> None:
+def test_runs_of_no_iterations():
     result = minimize(torus_trefoil(60), RelaxOptions(max_iterations=0))
     assert (result.status, len(result.energies)) == (Status.ITERATION_LIMIT, 1)
     relaxation = relax(regular_polygon(200))
@@ -122,11 +122,11 @@ def test_runs_of_no_iterations() -> None:
 
 
 @pytest.mark.parametrize(("mesh", "at"), [("auto", 3), ("adaptive", 12)])
-def test_an_interrupt_keeps_the_curve_reached(mesh: str, at: int) -> None:
+def test_an_interrupt_keeps_the_curve_reached(mesh, at):
     """That an adaptive mesh has fewer vertices than at the start is no promise of more."""
     seen = []
 
-    def interrupt(iterate: object) -> None:
+    def interrupt(iterate):
         seen.append(iterate)
         if iterate.index == at:
             raise KeyboardInterrupt
@@ -141,7 +141,7 @@ def test_an_interrupt_keeps_the_curve_reached(mesh: str, at: int) -> None:
     assert mesh == "auto" or fewer
 
 
-def test_a_mesh_that_cannot_be_finer_ends_the_run_in_good_order(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_mesh_that_cannot_be_finer_ends_the_run_in_good_order(monkeypatch):
     monkeypatch.setattr(MoebiusMetric, "most_vertices", 80)
     result = minimize(lattice_knot("3_1"), RelaxOptions(vertices=60, mesh="finer"))
     assert len(result.curve) == 60
@@ -179,6 +179,6 @@ def test_a_mesh_that_cannot_be_finer_ends_the_run_in_good_order(monkeypatch: pyt
     ],
     ids=str,
 )
-def test_options_that_cannot_be_are_refused(options: dict[str, object], said: str) -> None:
+def test_options_that_cannot_be_are_refused(options, said):
     with pytest.raises(OptionError, match=said):
         relax(torus_trefoil(60), RelaxOptions(**options))

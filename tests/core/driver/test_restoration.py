@@ -39,7 +39,7 @@ CURVES = {
 
 
 @pytest.mark.parametrize("name", CURVES)
-def test_corrections_solve_the_linearised_constraints_by_the_shortest_way(name: str) -> None:
+def test_corrections_solve_the_linearised_constraints_by_the_shortest_way(name):
     """u = −Lᵀ (L Lᵀ)⁻¹ Φ and translations, L the rows of the lengths."""
     curve, parts = CURVES[name]
     n, m = curve.vertices.shape
@@ -55,7 +55,7 @@ def test_corrections_solve_the_linearised_constraints_by_the_shortest_way(name: 
         np.testing.assert_allclose(translation, translation[:1].repeat(len(translation), axis=0), atol=1e-9)
 
 
-def test_short_steps_do_not_drift_away_from_the_lengths() -> None:
+def test_short_steps_do_not_drift_away_from_the_lengths():
     """A step that misses them by less than the tolerance is led back like any other."""
     base = point_on(rough(torus_trefoil(60)))
     move = 5e-6 * base.gradient / base.gradient_norm
@@ -77,7 +77,7 @@ class Counting(TangentSpace):
 
 
 @pytest.mark.parametrize(("size", "solves"), [(0.001, 0), (0.01, 1), (0.03, 3)])
-def test_the_metric_is_asked_only_for_large_corrections(size: float, solves: int) -> None:
+def test_the_metric_is_asked_only_for_large_corrections(size, solves):
     point = point_on(torus_trefoil(60))
     direction = point.tangent_space.project(np.random.default_rng(47).normal(size=point.vertices.shape))
     direction *= size / np.abs(direction).max()
@@ -89,7 +89,7 @@ def test_the_metric_is_asked_only_for_large_corrections(size: float, solves: int
     assert space.solves == solves
 
 
-def test_the_last_corrections_converge_quadratically() -> None:
+def test_the_last_corrections_converge_quadratically():
     """From below 10⁻³ two of them do; at the rate of (42) they take more."""
     point = point_on(torus_trefoil(60))
     direction = point.tangent_space.project(np.random.default_rng(53).normal(size=point.vertices.shape))
@@ -101,7 +101,7 @@ def test_the_last_corrections_converge_quadratically() -> None:
     assert with_geometry(point, replace(few, small=1e-300)).retract(aimed, point.residual) is None
 
 
-def test_edges_much_shorter_than_others_are_left_to_the_metric() -> None:
+def test_edges_much_shorter_than_others_are_left_to_the_metric():
     """The shortest corrections would turn them by a thousand times the residual."""
     point = point_on(uneven(torus_trefoil(60), 1000.0, seed=5))
     aimed = point.vertices - 1e-3 / np.abs(point.gradient).max() * point.gradient
@@ -115,7 +115,7 @@ def test_edges_much_shorter_than_others_are_left_to_the_metric() -> None:
     assert np.linalg.norm(tau - before, axis=1).max() < 10.0 * Geometry().small
 
 
-def test_a_polygon_within_a_line_is_given_up() -> None:
+def test_a_polygon_within_a_line_is_given_up():
     """There one edge cannot become longer than the others, which take it back to where it began."""
     point = point_on(torus_trefoil(60))
     flat = np.zeros_like(point.vertices)
@@ -125,7 +125,7 @@ def test_a_polygon_within_a_line_is_given_up() -> None:
     assert point.retract(flat, level) is None
 
 
-def test_long_chains_are_led_back_although_sums_along_them_are_rounded() -> None:
+def test_long_chains_are_led_back_although_sums_along_them_are_rounded():
     """Σ ℓ_I m_I is some 10⁶ on this chain; with a tolerance of 10⁻¹¹ for it the energy went down by 0.2."""
     curve = chain_of_rings(400, (4,))
     options = RelaxOptions(max_iterations=1, solver="hierarchical", vertices=len(curve), mesh="fixed")

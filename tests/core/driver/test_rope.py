@@ -26,7 +26,7 @@ WALL = Obstacle([[-9.0, -9, 0], [9, -9, 0], [0, 18, 0]], [[0, 1, 2]])
 def kept(task: Task, **options: object) -> float:
     """The least thickness of all iterates over that of the start; each leg is that of the rope of the last radius."""
     iterates = []
-    result = minimize(task, RelaxOptions(**options), callback=iterates.append)  # type: ignore[arg-type]
+    result = minimize(task, RelaxOptions(**options), callback=iterates.append)
     assert result.certified
     assert result.last.radius is not None
     radius = np.array(result.last.radius)
@@ -54,7 +54,7 @@ def kept(task: Task, **options: object) -> float:
     ],
     ids=["unknot", "link", "arc", "obstacle", "hierarchical", "growth"],
 )
-def test_nine_tenths_of_the_thickness_are_kept(task: Task, options: dict[str, object]) -> None:
+def test_nine_tenths_of_the_thickness_are_kept(task, options):
     task = Task(
         curve=task.curve.with_vertices(task.curve.vertices + np.array([0, 0, 4.0 if task.obstacles else 0.0])),
         obstacles=task.obstacles,
@@ -64,19 +64,19 @@ def test_nine_tenths_of_the_thickness_are_kept(task: Task, options: dict[str, ob
     assert kept(task, **options) >= 0.89
 
 
-def test_without_a_rope_it_gets_thinner() -> None:
+def test_without_a_rope_it_gets_thinner():
     iterates = []
     minimize(knot("goeritz"), RelaxOptions(radius="none"), callback=lambda each: iterates.append(each.curve))
     assert min(map(thickness, iterates)) < 0.6 * thickness(iterates[0])
 
 
-def test_radii_of_components() -> None:
+def test_radii_of_components():
     link = knot("L6a4", 120)
     result = minimize(link, RelaxOptions(radius=(0.05, 0.1, 0.02), max_iterations=8))
     assert result.last.radius == (0.05, 0.1, 0.02)
 
 
-def test_the_radius_gives_way_where_it_is_in_its_own_way() -> None:
+def test_the_radius_gives_way_where_it_is_in_its_own_way():
     """So that it ends no higher than without a rope; 8_10 has a strand that wants to be thin."""
     start, options = knot("8_10", 70), {"vertices": 70, "mesh": "fixed"}
     free, rope = (minimize(start, RelaxOptions(radius=each, **options)) for each in ("none", "keep"))
@@ -85,11 +85,11 @@ def test_the_radius_gives_way_where_it_is_in_its_own_way() -> None:
     assert rope.last.radius[0] < 0.8 * thickness(start)
 
 
-def test_it_gives_way_where_steps_gain_little_of_what_that_promises() -> None:
+def test_it_gives_way_where_steps_gain_little_of_what_that_promises():
     run = begin(Task.of(knot("3_1", 60)), RelaxOptions(radius="keep", vertices=60, mesh="fixed"))
     point = run.point
 
-    def answers(gain: float) -> list[bool]:
+    def answers(gain):
         """To steps that have gained so much, each."""
         move, answered = GiveWay(run), []
         for k in range(21):
@@ -105,7 +105,7 @@ def test_it_gives_way_where_steps_gain_little_of_what_that_promises() -> None:
     assert not any(answers(0.01 * point.energy))
 
 
-def test_what_a_thinner_rope_promises() -> None:
+def test_what_a_thinner_rope_promises():
     """−⟨P, ∂E/∂P⟩ is r ∂E/∂r, but for the lengths that weigh terms."""
     curve = knot("4_1", 150)
     radius = np.array([0.8 * thickness(curve)])
@@ -116,7 +116,7 @@ def test_what_a_thinner_rope_promises() -> None:
 
 
 @pytest.mark.parametrize("name", ["4_1", "L6a4", "goeritz"])
-def test_edges_of_a_rope_are_split_as_its_bending_radii_bear(name: str) -> None:
+def test_edges_of_a_rope_are_split_as_its_bending_radii_bear(name):
     """Without a rope corners get radii a quarter as large."""
     task = Task.of(knot(name))
     for radius in ("keep", "none"):
@@ -130,7 +130,7 @@ def test_edges_of_a_rope_are_split_as_its_bending_radii_bear(name: str) -> None:
             assert least >= (1 - 1e-9) * rope.min()
 
 
-def test_sharp_corners_leave_a_thinner_rope_or_none() -> None:
+def test_sharp_corners_leave_a_thinner_rope_or_none():
     """Near a corner of 120° strands come nearer than two radii, as far along as half a circle is long."""
     triangle = Curve([[0.0, 0, 0], [1, 0, 0], [0.5, 0.75**0.5, 0]])
     result = minimize(triangle, RelaxOptions(max_iterations=3))
@@ -139,7 +139,7 @@ def test_sharp_corners_leave_a_thinner_rope_or_none() -> None:
     assert np.isfinite(result.energies).all()
 
 
-def test_a_given_radius_does_not_give_way() -> None:
+def test_a_given_radius_does_not_give_way():
     start = knot("8_10", 100)
     radius = 0.95 * thickness(start)
     result = minimize(start, RelaxOptions(radius=radius, vertices=100, mesh="fixed", max_iterations=80))
@@ -155,13 +155,13 @@ def test_a_given_radius_does_not_give_way() -> None:
         ({"radius": 0.1, "method": "penalty-lbfgs"}, OptionError, "radius needs lengths that stay"),
     ],
 )
-def test_what_cannot_be(options: dict[str, object], error: type[Exception], said: str) -> None:
+def test_what_cannot_be(options, error, said):
     with pytest.raises(error, match=said):
-        minimize(knot("4_1", 60), RelaxOptions(**options))  # type: ignore[arg-type]
+        minimize(knot("4_1", 60), RelaxOptions(**options))
 
 
 @pytest.mark.parametrize(("heights", "why"), [((0.05, 1.0), "obstacle is in the way"), ((0.4, 0.5), "strands are too")])
-def test_why_a_radius_is_refused(heights: tuple[float, float], why: str) -> None:
+def test_why_a_radius_is_refused(heights, why):
     rings = [regular_polygon(40).vertices + np.array([0, 0, z]) for z in heights]
     with pytest.raises(CurveError, match=f"{why}.*one of radius"):
         minimize(Task(curve=Curve.from_components(rings), obstacles=(WALL,)), RelaxOptions(radius=0.1))
@@ -170,7 +170,7 @@ def test_why_a_radius_is_refused(heights: tuple[float, float], why: str) -> None
 TRIANGLE = Curve([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]])
 
 
-def test_coarse_polygons_have_a_radius_that_is_told() -> None:
+def test_coarse_polygons_have_a_radius_that_is_told():
     first = minimize(TRIANGLE, RelaxOptions(max_iterations=1)).last
     assert np.isfinite(first.energy)
     with pytest.raises(CurveError, match=f"it is one of radius {first.radius[0]:.4g}") as error:
@@ -178,22 +178,22 @@ def test_coarse_polygons_have_a_radius_that_is_told() -> None:
     assert not error.value.place.vertices, "the user knows none of the refined curve"
 
 
-def test_far_from_the_origin_it_is_a_rope_too() -> None:
+def test_far_from_the_origin_it_is_a_rope_too():
     result, _ = proved(Curve(1e9 + np.round(knot("3_1", 60).vertices, 3)), max_iterations=1)
     assert result.last.radius is not None
 
 
 @pytest.mark.parametrize("radius", [0.0, -1.0, float("nan"), float("inf"), "thick", (), (0.1, 0.0)])
-def test_what_is_no_radius(radius: object) -> None:
+def test_what_is_no_radius(radius):
     with pytest.raises(OptionError, match="radius"):
-        RelaxOptions(radius=radius)  # type: ignore[arg-type]
+        RelaxOptions(radius=radius)
 
 
-def test_strands_of_a_rope_move_as_its_radius_allows() -> None:
+def test_strands_of_a_rope_move_as_its_radius_allows():
     assert kept(Task.of(knot("goeritz")), radius="keep", untangle="always", max_iterations=1) > 0.89
 
 
-def test_no_rope_is_thicker_for_its_length_than_a_hopf_links() -> None:
+def test_no_rope_is_thicker_for_its_length_than_a_hopf_links():
     """A circle's would fill it, so that it could not move; what grows has none."""
     circle = regular_polygon(60)
     radius = minimize(circle, RelaxOptions(max_iterations=0)).last.radius
@@ -201,7 +201,7 @@ def test_no_rope_is_thicker_for_its_length_than_a_hopf_links() -> None:
     assert minimize(circle, RelaxOptions(grow=1.1, max_iterations=0)).last.radius is None
 
 
-def test_balancing_lets_a_rope_go_that_only_keeps_its_thickness() -> None:
+def test_balancing_lets_a_rope_go_that_only_keeps_its_thickness():
     curve = minimize(torus_knot(2, 3, 60), RelaxOptions(radius="none", vertices=60)).curve
     away = curve.vertices - np.array([0.9, 0.4, 0.9])  # an inversion near the knot
     uneven = Curve(3 * away / np.square(away).sum(axis=1, keepdims=True))
@@ -211,7 +211,7 @@ def test_balancing_lets_a_rope_go_that_only_keeps_its_thickness() -> None:
     assert iterates[-1].radius is None
 
 
-def test_a_curve_at_rest_by_itself_stays() -> None:
+def test_a_curve_at_rest_by_itself_stays():
     """Though it is a rope that is hardly thinner than its own thickness."""
     rest = minimize(knot("4_1", 60), RelaxOptions(radius="none", vertices=60, mesh="fixed")).curve
     again = minimize(rest, RelaxOptions(vertices=60, mesh="fixed"))
@@ -220,7 +220,7 @@ def test_a_curve_at_rest_by_itself_stays() -> None:
     assert again.last.radius == (0.9 * thickness(rest),)
 
 
-def test_a_rope_that_has_let_go_gives_way_where_its_proof_is_in_the_way_but_not_to_a_hand() -> None:
+def test_a_rope_that_has_let_go_gives_way_where_its_proof_is_in_the_way_but_not_to_a_hand():
     run = begin(Task.of(knot("3_1", 60)), RelaxOptions(radius="keep", vertices=60, mesh="fixed"))
     step, contact, before = run.step(), Contact((0, 30)), run.point
     assert isinstance(step, Step)
@@ -230,18 +230,18 @@ def test_a_rope_that_has_let_go_gives_way_where_its_proof_is_in_the_way_but_not_
     assert move.stuck(NoStep("no step")) is None
     for change in (move.stepped(replace(step, limited_by=contact)), move.stuck(NoStep("no step", contact))):
         assert change.point.problem.objective.rope is not None
-        assert (change.point.problem.radius < before.problem.radius).all()  # type: ignore[operator]
+        assert (change.point.problem.radius < before.problem.radius).all()
     for point in (run.point, before):
         run.view(point.pulled(Pull.at(point.curve, 0, 0.25, 5.0)))
         assert GiveWay(run).stuck(NoStep("no step", contact)) is None
 
 
-def test_a_rope_gives_way_only_where_it_acts() -> None:
+def test_a_rope_gives_way_only_where_it_acts():
     """Where a run is stuck for other reasons, a rope that touches nothing stays as it is."""
     run = begin(Task.of(knot("3_1", 60)), RelaxOptions(radius="keep", vertices=60, mesh="fixed"))
     stuck, point = NoStep("no step"), run.point
     change = GiveWay(run).stuck(stuck)
-    assert (change.point.problem.radius < point.problem.radius).all()  # type: ignore[operator]
+    assert (change.point.problem.radius < point.problem.radius).all()
     thin = point.problem.as_rope(0.1 * np.asarray(point.problem.radius))
     run.view(point.changing(objective=thin.objective, radius=thin.radius))
     assert GiveWay(run).stuck(stuck) is None

@@ -20,11 +20,11 @@ from shapes import torus_trefoil
 
 
 def start(**options: object) -> Iterate:
-    return next(relax(torus_trefoil(300), RelaxOptions(vertices=300, **options)))  # type: ignore[arg-type]
+    return next(relax(torus_trefoil(300), RelaxOptions(vertices=300, **options)))
 
 
 @pytest.mark.parametrize("accuracy", [1e-2, 1e-4, 1e-8])
-def test_solvers_agree_as_far_as_the_option_says(accuracy: float) -> None:
+def test_solvers_agree_as_far_as_the_option_says(accuracy):
     """The hierarchical metric is another one, and the error of the energy does not depend on the accuracy."""
     dense, fast = start(solver="dense"), start(solver="hierarchical", accuracy=accuracy)
     assert fast.energy == pytest.approx(dense.energy, rel=2e-6)
@@ -41,12 +41,12 @@ def test_solvers_agree_as_far_as_the_option_says(accuracy: float) -> None:
         ({"energy": "tangent-point"}, "energy 'tangent-point' needs all pairs of edges one by one"),
     ],
 )
-def test_what_needs_dense_matrices_is_refused_in_one_sentence(options: dict[str, object], obstacle: str) -> None:
+def test_what_needs_dense_matrices_is_refused_in_one_sentence(options, obstacle):
     with pytest.raises(OptionError, match=f"^{obstacle}; solver='hierarchical' does without: leave it out$"):
         start(solver="hierarchical", **options)
 
 
-def test_a_search_compares_energies_by_the_block_list_of_its_start() -> None:
+def test_a_search_compares_energies_by_the_block_list_of_its_start():
     """Between the lists of two curves the value jumps, by more than the last steps of a relaxation gain."""
     curve, options = torus_trefoil(2000), RelaxOptions(vertices=2000, solver="hierarchical")
     run = Run(start_problem(curve, options), curve, options)
@@ -57,7 +57,7 @@ def test_a_search_compares_energies_by_the_block_list_of_its_start() -> None:
 
 def is_hierarchical(curve: Curve, **options: object) -> bool:
     """By what a problem is solved that starts from a curve."""
-    wanted = RelaxOptions(**options)  # type: ignore[arg-type]
+    wanted = RelaxOptions(**options)
     problem = start_problem(curve, wanted)
     chosen = isinstance(problem.objective.energy, HierarchicalMoebiusEnergy)
     assert problem.solver.hierarchical == chosen
@@ -77,7 +77,7 @@ def is_hierarchical(curve: Curve, **options: object) -> bool:
         ("freedman-he-wang", 3500, False),
     ],
 )
-def test_the_solver_is_the_one_that_was_measured_to_be_faster(name: str, vertices: int, faster: bool) -> None:
+def test_the_solver_is_the_one_that_was_measured_to_be_faster(name, vertices, faster):
     """Processor seconds of dense iterations against hierarchical ones; the curve decides, not only its size."""
     curve = bent_trefoil(vertices) if name == "bent" else refine(knot(name), vertices)
     assert len(curve) == vertices
@@ -87,8 +87,8 @@ def test_the_solver_is_the_one_that_was_measured_to_be_faster(name: str, vertice
     assert not is_hierarchical(curve, method="trust-region")
 
 
-def test_small_and_large_curves_are_not_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
-    def counted(curve: Curve) -> int:
+def test_small_and_large_curves_are_not_looked_at(monkeypatch):
+    def counted(curve):
         raise AssertionError("blocks are counted")
 
     monkeypatch.setattr("mobius_flow.core.driver.solver.block_count", counted)

@@ -23,7 +23,7 @@ def error(last: Iterate, *others: Iterate) -> float:
     return max(kept.on(each.curve).error(each.curve) for each in (last, *others))
 
 
-def test_a_motion_to_a_symmetric_curve_comes_first() -> None:
+def test_a_motion_to_a_symmetric_curve_comes_first():
     start = smooth_knot("3_1")
     result, (given, moved, meshed, *others) = proved(start, symmetry="D3", vertices=70, max_iterations=9)
     assert given.symmetry == moved.symmetry == ""
@@ -35,8 +35,8 @@ def test_a_motion_to_a_symmetric_curve_comes_first() -> None:
     assert result.report()["symmetry"] == "D3"
 
 
-def test_finer_meshes_and_second_derivatives_keep_a_rotary_reflection() -> None:
-    iterates: list[Iterate] = []
+def test_finer_meshes_and_second_derivatives_keep_a_rotary_reflection():
+    iterates = []
     shape = smooth_knot("4_1")
     flat = shape.with_vertices(shape.vertices @ standing(shape, symmetries(shape)).T * [1.0, 1.0, 0.6])
     result = minimize(flat, RelaxOptions(symmetry="auto", vertices=None), iterates.append)
@@ -47,14 +47,14 @@ def test_finer_meshes_and_second_derivatives_keep_a_rotary_reflection() -> None:
     assert "symmetry S4 was kept, which the start missed by 0.000" in result.message
 
 
-def test_links_are_symmetric_across_components() -> None:
+def test_links_are_symmetric_across_components():
     result = minimize(smooth_knot("L6a4"), RelaxOptions(symmetry="Th", vertices=192, max_iterations=12))
     assert len(set(result.curve.mesh.component_sizes)) == 1
     assert error(result.last) < EXACT
 
 
 @pytest.mark.parametrize(("p", "q", "index"), [(3, 4, 2), pytest.param(3, 5, 4, marks=pytest.mark.slow)])
-def test_torus_knots_are_saddles_that_only_broken_symmetry_leaves(p: int, q: int, index: int) -> None:
+def test_torus_knots_are_saddles_that_only_broken_symmetry_leaves(p, q, index):
     options = {"vertices": 32 * q, "mesh": "fixed", "escape_saddles": True}
     symmetric = minimize(torus_knot(p, q), RelaxOptions(symmetry=f"D{q}", hops=1, **options))
     assert symmetric.outcome.negative_eigenvalues == index
@@ -72,14 +72,14 @@ def test_torus_knots_are_saddles_that_only_broken_symmetry_leaves(p: int, q: int
 
 
 @pytest.mark.parametrize(("p", "q"), [(2, 3), pytest.param(3, 4, marks=pytest.mark.slow)])
-def test_energies_are_those_of_kim_and_kusner(p: int, q: int) -> None:
+def test_energies_are_those_of_kim_and_kusner(p, q):
     options = RelaxOptions(symmetry="auto", vertices=32 * q, mesh="fixed", tolerance=1e-7)
     found = extrapolated(minimize(torus_knot(p, q), options).curve, options)
     assert found.energy == pytest.approx(torus_knot_minimum(p, q), rel=1e-6)
     assert found.order == pytest.approx(2.0, abs=0.05)
 
 
-def test_balance_takes_images_of_the_same_symmetry() -> None:
+def test_balance_takes_images_of_the_same_symmetry():
     """There are such maps along the axis of C2, which meets the curve; D3 leaves none."""
     curve = minimize(torus_knot(2, 3), RelaxOptions(symmetry="D3", vertices=120, mesh="fixed")).curve
     pole = 0.7 * curve.vertices[0] / np.linalg.norm(curve.vertices[0])  # where a two-fold axis is
@@ -94,7 +94,7 @@ def test_balance_takes_images_of_the_same_symmetry() -> None:
     assert "no other shape of the same energy that can be reached bends less" in rigid.message
 
 
-def test_lengths_reach_their_targets_where_the_barycenter_moves() -> None:
+def test_lengths_reach_their_targets_where_the_barycenter_moves():
     """The image of a relaxed curve has uneven edges; evening them out changes its length on the way."""
     curve = minimize(torus_knot(2, 3), RelaxOptions(symmetry="D3", vertices=120, mesh="fixed")).curve
     image = curve.with_vertices(moebius_image(curve.vertices / 2.0, np.array([1.0, 0.0, 0.0, 0.3])))
@@ -103,7 +103,7 @@ def test_lengths_reach_their_targets_where_the_barycenter_moves() -> None:
     assert result.last.edge_length_error < 1e-9
 
 
-def test_without_symmetry_or_iterations_none_is_kept() -> None:
+def test_without_symmetry_or_iterations_none_is_kept():
     result = minimize(smooth_knot("6_3"), RelaxOptions(symmetry="auto", max_iterations=2))
     assert result.message.endswith("; symmetry C1, so that there was none to keep")
     assert result.report()["symmetry"] is None
@@ -115,7 +115,7 @@ def test_without_symmetry_or_iterations_none_is_kept() -> None:
     assert "symmetry" not in result.message
 
 
-def test_strands_that_meet_on_the_axis_are_refused() -> None:
+def test_strands_that_meet_on_the_axis_are_refused():
     """A rose of four leaves, whose strands pass its axis at different heights, which are the same in the mean."""
     t = 2.0 * np.pi * np.arange(400) / 400
     radius, height = np.cos(2.0 * t), 0.02 * np.cos(t + 0.3)
@@ -134,7 +134,7 @@ def test_strands_that_meet_on_the_axis_are_refused() -> None:
         (regular_polygon(20, 2), {}, "the curve is in dimension 2; symmetries are for curves in space"),
     ],
 )
-def test_what_has_or_allows_no_symmetry_is_refused(given: Curve | Task, more: dict[str, str], said: str) -> None:
+def test_what_has_or_allows_no_symmetry_is_refused(given, more, said):
     with pytest.raises((CurveError, OptionError)) as caught:
         minimize(given, RelaxOptions(**{"symmetry": "C3", **more}))
     assert str(caught.value).startswith(said)

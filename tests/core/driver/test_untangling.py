@@ -6,18 +6,7 @@ from itertools import count, islice
 
 import numpy as np
 import pytest
-from mobius_flow.core import (
-    Curve,
-    Iterate,
-    Objective,
-    Obstacle,
-    RelaxOptions,
-    Result,
-    Status,
-    Task,
-    minimize,
-    relax,
-)
+from mobius_flow.core import Curve, Objective, Obstacle, RelaxOptions, Status, Task, minimize, relax
 from mobius_flow.core.base.deadline import TimeLimit, check_time
 from mobius_flow.core.base.messages import Message
 from mobius_flow.core.collision import check_embedded
@@ -44,13 +33,13 @@ def plates(curve: Curve, part: float) -> tuple[Obstacle, Obstacle]:
     return plate(low - gap, name="below"), plate(high + gap, name="above")
 
 
-def test_by_default_the_flow_comes_first_and_is_all_that_is_needed() -> None:
+def test_by_default_the_flow_comes_first_and_is_all_that_is_needed():
     result = minimize(GOERITZ)
     assert (result.status, result.last.strand_moves) == (Status.CONVERGED, None)
     assert result.final_energy == pytest.approx(4.0, abs=1e-4)
 
 
-def test_where_the_flow_makes_no_headway_strands_are_moved_and_the_flow_ends_it(monkeypatch) -> None:
+def test_where_the_flow_makes_no_headway_strands_are_moved_and_the_flow_ends_it(monkeypatch):
     monkeypatch.setattr(untangling.Untangling, "often", 0)
     result, iterates = proved(GOERITZ)
     assert result.status is Status.CONVERGED
@@ -67,7 +56,7 @@ def test_where_the_flow_makes_no_headway_strands_are_moved_and_the_flow_ends_it(
     assert len(result.curve) >= len(iterates[0].curve)
 
 
-def test_headway_is_a_hundredth_of_the_energy_in_a_hundred_iterations() -> None:
+def test_headway_is_a_hundredth_of_the_energy_in_a_hundred_iterations():
     curve = Task.of(knot("0_1")).refined(None).curve
     run = Run(start_problem(Task.of(curve), RelaxOptions()), curve, RelaxOptions())
     for fall, headway in ((0.0, False), (0.009, False), (0.011, True)):
@@ -79,23 +68,23 @@ def test_headway_is_a_hundredth_of_the_energy_in_a_hundred_iterations() -> None:
 
 
 @pytest.mark.slow
-def test_the_flow_alone_is_stuck_on_hakens_unknot_but_not_with_strand_moves() -> None:
+def test_the_flow_alone_is_stuck_on_hakens_unknot_but_not_with_strand_moves():
     result, iterates = proved(knot("haken"))
     assert result.final_energy == pytest.approx(4.0, abs=1e-4)
     assert next(each.index for each in iterates if each.strand_moves) > untangling.Untangling.often
 
 
 @pytest.fixture(scope="module")
-def easy() -> tuple[Result, list[Iterate]]:
+def easy():
     """A run with strand moves, two iterations of the flow, and a clock that ticks when somebody looks."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(untangling.time, "perf_counter", count().__next__)
         return proved(EASY, untangle="always", max_iterations=2, tolerance=1e-9)
 
 
-def test_energies_within_a_move_are_those_of_its_end(easy) -> None:
+def test_energies_within_a_move_are_those_of_its_end(easy):
     _, iterates = easy
-    moves: dict[object, list[Iterate]] = {}
+    moves = {}
     for each in iterates[1:-2]:
         moves.setdefault(each.strand_moves and each.strand_moves._replace(iterates=0), []).append(each)
     for each in moves.values():
@@ -106,7 +95,7 @@ def test_energies_within_a_move_are_those_of_its_end(easy) -> None:
     assert left == sorted(left, reverse=True)
 
 
-def test_strand_moves_are_no_iterations(easy) -> None:
+def test_strand_moves_are_no_iterations(easy):
     result, _ = easy
     assert (result.status, result.iterations) == (Status.ITERATION_LIMIT, 2)
     assert result.message.startswith("stopped at the iteration limit (2)")
@@ -132,8 +121,8 @@ def _cut(monkeypatch: pytest.MonkeyPatch, crossings: int, stop: Callable[[], Non
 @pytest.mark.parametrize(
     ("ending", "crossings", "kept"), [("time limit", 8, False), ("interrupt", 8, False), ("time limit", 3, True)]
 )
-def test_what_is_cut_short_within_a_move_says_where_it_stands(ending, crossings, kept, monkeypatch) -> None:
-    def stop() -> None:
+def test_what_is_cut_short_within_a_move_says_where_it_stands(ending, crossings, kept, monkeypatch):
+    def stop():
         monkeypatch.setattr(TimeLimit, "is_reached", True)
         check_time()
         raise KeyboardInterrupt
@@ -151,14 +140,14 @@ def test_what_is_cut_short_within_a_move_says_where_it_stands(ending, crossings,
     assert kept or len(iterates) == 2
 
 
-def test_seconds_of_all_moves_are_counted(easy) -> None:
+def test_seconds_of_all_moves_are_counted(easy):
     seconds = sorted({each.strand_moves.seconds for each in easy[1] if each.strand_moves})
     assert seconds == list(range(1, len(seconds) + 1))
     assert len(seconds) > 1
 
 
-def test_interrupted_runs_say_where_they_stand() -> None:
-    def interrupt(iterate: Iterate) -> None:
+def test_interrupted_runs_say_where_they_stand():
+    def interrupt(iterate):
         if iterate.strand_moves and iterate.strand_moves.moves > 0:
             raise KeyboardInterrupt
 
@@ -170,14 +159,14 @@ def test_interrupted_runs_say_where_they_stand() -> None:
     assert (result.iterations, [phase.iterations for phase in result.phases]) == (0, [0])
 
 
-def test_components_have_their_own_lengths_again() -> None:
+def test_components_have_their_own_lengths_again():
     curve = scramble(knot("L2a1", 40), 2, moves=800)
     result, _ = proved(curve, untangle="always", max_iterations=2)
     assert result.last.strand_moves.left == 2
     np.testing.assert_allclose(result.curve.component_lengths, curve.component_lengths, rtol=1e-6)
 
 
-def test_arcs_between_pins_have_their_lengths_again() -> None:
+def test_arcs_between_pins_have_their_lengths_again():
     curve = scramble(knot("3_1", 30), 1, moves=600)
     result, iterates = proved(curve, pins=(0, 12), untangle="always", max_iterations=40)
     shortest = min(each.curve.length for each in iterates)
@@ -205,14 +194,14 @@ def test_arcs_between_pins_have_their_lengths_again() -> None:
     ],
     ids=["no iterations", "confined", "all pinned", "plane", "pinned ends"],
 )
-def test_where_strands_are_not_moved_it_is_told(curve: Curve, options: dict[str, object], said: str) -> None:
+def test_where_strands_are_not_moved_it_is_told(curve, options, said):
     result, _ = proved(curve, **{"untangle": "always", "max_iterations": 1} | options)
     assert said in result.message
     assert result.report()["strand_moves"] is None
 
 
 @pytest.mark.slow
-def test_moves_that_leave_more_crossings_than_go_are_in_vain(monkeypatch) -> None:
+def test_moves_that_leave_more_crossings_than_go_are_in_vain(monkeypatch):
     monkeypatch.setattr(untangling.Untangling, "often", 0)
     curve = knot("tuzun-sikora")
     start, stuck, after = islice(relax(Task(curve=curve, obstacles=plates(curve, 0.003))), 3)
@@ -220,8 +209,8 @@ def test_moves_that_leave_more_crossings_than_go_are_in_vain(monkeypatch) -> Non
     assert after.strand_moves is None
 
 
-def test_moves_that_stretch_the_curve_between_pins_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    def far(curve: Curve, pins: np.ndarray, *_: object) -> Iterator[object]:
+def test_moves_that_stretch_the_curve_between_pins_are_refused(monkeypatch):
+    def far(curve, pins, *_):
         away = 9.0 * curve.length * ~np.isin(np.arange(len(curve)), pins)
         yield Legs(curve, (), ViewCount(2, 0))
         yield Legs(curve, (curve.vertices + away[:, None],), ViewCount(1, 1))
@@ -232,8 +221,8 @@ def test_moves_that_stretch_the_curve_between_pins_are_refused(monkeypatch: pyte
     assert "strand moves: none are made: others would stretch the curve between pins" in result.message
 
 
-def test_what_fails_within_moves_loses_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    def fails(*_: object) -> Iterator[object]:
+def test_what_fails_within_moves_loses_nothing(monkeypatch):
+    def fails(*_):
         raise np.linalg.LinAlgError("singular")
         yield
 
@@ -243,12 +232,12 @@ def test_what_fails_within_moves_loses_nothing(monkeypatch: pytest.MonkeyPatch) 
 
 
 @pytest.mark.parametrize(("gone", "left", "made"), [(25, 30, False), (0, 0, False), (25, 25, True)])
-def test_at_rest_no_more_crossings_may_stay_than_go(gone, left, made, monkeypatch) -> None:
+def test_at_rest_no_more_crossings_may_stay_than_go(gone, left, made, monkeypatch):
     monkeypatch.setattr(untangling, "worth", lambda *_: (gone, left))
     result = minimize(GOERITZ, RelaxOptions(tolerance=1.0))
     assert (result.last.strand_moves is not None or "strand moves" in result.message) is made
 
 
-def test_what_stalls_instead_keeps_what_else_was_said() -> None:
+def test_what_stalls_instead_keeps_what_else_was_said():
     outcome = converged(1e-5, 1e-4).adding("one thing").stalling("another")
     assert (outcome.status, outcome.clauses) == (Status.STALLED, ("stalled: another", "one thing"))

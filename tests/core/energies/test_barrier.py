@@ -26,7 +26,7 @@ def one_pair(x0: list[float], x1: list[float], y0: list[float], y1: list[float])
     ("gap", "by_midpoints", "by_integral"),
     [(0.5, 4.188574125, 2.769582087), (0.1, 13.993463424, 11.235155010), (0.02, 2.124182083, 21.440754439)],
 )
-def test_one_pair(gap: float, by_midpoints: float, by_integral: float) -> None:
+def test_one_pair(gap, by_midpoints, by_integral):
     pair = one_pair([0, 0, 0], [1, 0, 0], [0.3, -0.6, gap], [0.5, 0.4, gap])
     assert midpoint(pair).value[0] == pytest.approx(by_midpoints, abs=1e-9)
     assert exact(pair).value[0] == pytest.approx(by_integral, abs=1e-9)
@@ -49,7 +49,7 @@ def brute_force_pairs(curve: Curve) -> set[tuple[int, int]]:
 
 @given(seed=st.integers(0, 999), spread=st.floats(0, 3))
 @settings(max_examples=25, deadline=None)
-def test_near_pairs_are_complete(seed: int, spread: float) -> None:
+def test_near_pairs_are_complete(seed, spread):
     rng = np.random.default_rng(seed)
     steps = rng.normal(size=(40, 3)) * 10.0 ** rng.uniform(-spread, 0, size=(40, 1))
     curve = Curve.from_components([np.cumsum(steps[:25], axis=0), np.cumsum(steps[25:], axis=0)])
@@ -61,7 +61,7 @@ def test_near_pairs_are_complete(seed: int, spread: float) -> None:
 
 
 @pytest.mark.parametrize("curve", [lattice_knot("4_1"), knot("thistlethwaite")], ids=["lattice", "diagram"])
-def test_coarse_knots(curve: Curve) -> None:
+def test_coarse_knots(curve):
     found = brute_force_pairs(curve)
     assert len(found) > 100
     total, ends = 0.0, curve.vertices[np.stack([curve.mesh.tails, curve.mesh.heads], axis=1)]
@@ -80,7 +80,7 @@ def test_coarse_knots(curve: Curve) -> None:
         np.testing.assert_allclose(whole, sum(parts), atol=1e-10 * np.abs(parts[0]).max())
 
 
-def test_it_grows_without_bound_where_strands_meet() -> None:
+def test_it_grows_without_bound_where_strands_meet():
     """Across straight strands the energy grows by 2 · 2π/sin θ · log of the gap's inverse, unlike the midpoint sum."""
     growth = np.diff([Objective().value(crossing(10.0**-k, 40)) for k in range(3, 9)])
     assert np.all(growth > 0)
@@ -96,8 +96,8 @@ def test_it_grows_without_bound_where_strands_meet() -> None:
     assert np.isfinite(derivative).all()
 
 
-def test_the_cutoff_joins_with_two_derivatives() -> None:
-    def with_derivatives(q: float) -> list[np.ndarray]:
+def test_the_cutoff_joins_with_two_derivatives():
+    def with_derivatives(q):
         return [*cutoff(np.array([q])), change(cutoff(stepped(np.array([q]), np.ones(1)))[1])]
 
     for q, value in ((0.2, 1.0), (1.0, 1.0), (2.25, 0.0), (3.0, 0.0)):
@@ -109,7 +109,7 @@ def test_the_cutoff_joins_with_two_derivatives() -> None:
 
 
 @pytest.mark.parametrize("gap", [1e-4, 1e-6, 1e-8, 1e-9])
-def test_the_objective_keeps_its_digits_where_midpoint_energies_are_astronomical(gap: float) -> None:
+def test_the_objective_keeps_its_digits_where_midpoint_energies_are_astronomical(gap):
     """Two coaxial polygons: midpoint energies of some 1/g² would cancel to some 1/g, and leave rounding errors."""
     ring, rng = regular_polygon(40).vertices, np.random.default_rng(3)
     curve = Curve.from_components([ring, ring + [0.0, 0.0, gap] + 0.05 * gap * rng.normal(size=ring.shape)])

@@ -17,7 +17,7 @@ CURVES = {
 
 
 @pytest.mark.parametrize("name", CURVES)
-def test_derivatives(name: str) -> None:
+def test_derivatives(name):
     curve, shares = CURVES[name], ComponentShares(CURVES[name])
     v = np.random.default_rng(11).normal(size=curve.vertices.shape)
     product = shares.second_derivative(v)
@@ -37,7 +37,7 @@ def test_derivatives(name: str) -> None:
     np.testing.assert_allclose((hessian @ v.ravel()).reshape(v.shape), product, atol=1e-12)
 
 
-def test_shares() -> None:
+def test_shares():
     assert ComponentShares(hopf_link(9)).value() == 2.0
     arc = half_circle(60)
     share = ComponentShares(arc).value()
@@ -70,7 +70,7 @@ SMOOTH = {
 
 
 @pytest.mark.parametrize("name", SMOOTH)
-def test_energy_and_derivative_of_arcs_converge(name: str) -> None:
+def test_energy_and_derivative_of_arcs_converge(name):
     """To O'Hara's integral; differences between meshes of the derivative along a smooth field fall by four each."""
     curve_at, length = SMOOTH[name]
     expected, counts, errors, slopes = o_hara(curve_at, length), [50, 100, 200, 400], [], []

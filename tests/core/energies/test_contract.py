@@ -66,7 +66,7 @@ def direction_for(curve: Curve) -> np.ndarray:
         *(pytest.param(Objective(), c, 0.01, id=k) for k, c in COARSE.items()),
     ],
 )
-def test_values_and_derivatives_fit_together(energy: Term, curve: Curve, largest: float) -> None:
+def test_values_and_derivatives_fit_together(energy, curve, largest):
     v = direction_for(curve)
     value, derivative = energy.value_and_derivative(curve)
     assert energy.value(curve) == pytest.approx(value, rel=1e-14)
@@ -75,7 +75,7 @@ def test_values_and_derivatives_fit_together(energy: Term, curve: Curve, largest
         return
     assert hessian_slope(energy, curve, v, largest) == pytest.approx(3, abs=0.05)
 
-    def along(t: float) -> np.ndarray:
+    def along(t):
         return energy.value_and_derivative(curve.with_vertices(curve.vertices + t * v))[1]
 
     assert taylor_slope(along, [derivative, energy.hessian_product(curve, v)], largest) == pytest.approx(2, abs=0.05)
@@ -83,7 +83,7 @@ def test_values_and_derivatives_fit_together(energy: Term, curve: Curve, largest
 
 @pytest.mark.parametrize("energy", ASSEMBLED, ids=lambda each: each.name)
 @pytest.mark.parametrize("curve", [*CURVES.values(), crossing(0.05), dual_circles(150)], ids=[*CURVES, "near", "tiles"])
-def test_hessians_are_symmetric_and_have_the_products(energy: Objective, curve: Curve) -> None:
+def test_hessians_are_symmetric_and_have_the_products(energy, curve):
     matrix, v = energy.hessian(curve), direction_for(curve)
     rounding = 8 * curve.mesh.edges * np.finfo(float).eps  # an entry is a sum over the edges, added in either order
     np.testing.assert_allclose(matrix, matrix.T, rtol=0, atol=rounding * np.abs(matrix).max())
@@ -113,7 +113,7 @@ POLYGONS |= {"plane": random_polygon(3, (8,), 2), "lattice": lattice_knot("4_1")
 
 @pytest.mark.parametrize("name", REFERENCES)
 @pytest.mark.parametrize("curve", POLYGONS.values(), ids=POLYGONS)
-def test_sums_over_pairs(name: str, curve: Curve) -> None:
+def test_sums_over_pairs(name, curve):
     constant, density, points, weights = REFERENCES[name]
     slow = constant * len(curve.components) + pair_sum(curve, density, points, weights)
     assert ENERGIES[name].value(curve) == pytest.approx(slow, rel=1e-12)
@@ -135,7 +135,7 @@ KNOWN = {
 
 @pytest.mark.parametrize("name", [name for name, each in ENERGIES.items() if is_moebius_invariant(each)])
 @pytest.mark.parametrize("of", KNOWN)
-def test_known_energies_are_approached(name: str, of: str) -> None:
+def test_known_energies_are_approached(name, of):
     """Leaving out neighbours costs O(N⁻¹) whatever the rule, but for the default energy, whose density is 0 there."""
     curve, exact = KNOWN[of]
     counts = np.array([100, 200, 400, 800])
@@ -169,7 +169,7 @@ def is_one_sided(energy: Term) -> bool:
     return not np.allclose(np.sort(points), np.sort(1.0 - points))
 
 
-def test_exponents_sides_and_the_barrier_are_those_of_these_tests() -> None:
+def test_exponents_sides_and_the_barrier_are_those_of_these_tests():
     assert next(iter(ENERGIES)) == "moebius"
     assert {name: scale_exponent(each) for name, each in ALL.items() if scale_exponent(each)} == {"tangent-point": -1}
     assert {name for name, energy in ALL.items() if is_one_sided(energy)} == {"vertex"}
@@ -180,7 +180,7 @@ def test_exponents_sides_and_the_barrier_are_those_of_these_tests() -> None:
 @ENERGY
 @given(seed=st.integers(0, 999), log_scale=st.floats(-30, 30))
 @settings(max_examples=10, deadline=None)
-def test_similarities(energy: Term, seed: int, log_scale: float) -> None:
+def test_similarities(energy, seed, log_scale):
     curve, scale = wound(seed), 10.0**log_scale
     rotation = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0]
     moved = curve.with_vertices(scale * (curve.vertices @ rotation + [1.0, -2.0, 3.0]))
@@ -193,7 +193,7 @@ def test_similarities(energy: Term, seed: int, log_scale: float) -> None:
 
 
 @ENERGY
-def test_far_from_the_origin(energy: Term) -> None:
+def test_far_from_the_origin(energy):
     curve, away = SMOOTH_CURVES["trefoil"].polygon(60), np.array([1e6, -2e6, 3e6])
     far = curve.with_vertices(curve.vertices + away)
     rounded = far.with_vertices(far.vertices - away)  # what is left of the curve, exactly
@@ -204,7 +204,7 @@ def test_far_from_the_origin(energy: Term) -> None:
 
 
 @ENERGY
-def test_arcs(energy: Term) -> None:
+def test_arcs(energy):
     """They do not depend on place, size and direction either; straight ones have no energy if it is a Möbius energy."""
     if is_moebius_invariant(energy):
         assert energy.value(straight_arc(40)) == pytest.approx(0.0, abs=1e-12)
@@ -217,7 +217,7 @@ def test_arcs(energy: Term) -> None:
 
 
 @pytest.mark.parametrize("name", ["moebius", "moebius-k2"])
-def test_sphere_inversions_in_the_limit(name: str) -> None:
+def test_sphere_inversions_in_the_limit(name):
     """Möbius transformations change the energy of polygons by O(N⁻²), that of more points by O(N⁻¹)."""
     differences = []
     for n in (200, 400):

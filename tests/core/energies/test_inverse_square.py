@@ -39,7 +39,7 @@ def pairs_of(points: Points) -> EdgePairs:
 
 
 @pytest.mark.parametrize(("shape", "gap"), crossed(SHAPES, [1e-2, 1e-5, 1e-9]))
-def test_value(shape: str, gap: float) -> None:
+def test_value(shape, gap):
     x0, x1, y0, y1 = points_of(shape, gap)
     reference = float(inverse_square_integral(x0, x1, y0, y1))
     # the geometry itself is rounded: a gap of 1e-9 is known to 1e-7 of itself, and the integral sees its logarithm
@@ -50,7 +50,7 @@ def test_value(shape: str, gap: float) -> None:
 
 @pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("dimension", [2, 3, 4])
-def test_random_pairs(seed: int, dimension: int) -> None:
+def test_random_pairs(seed, dimension):
     points = np.random.default_rng(seed).normal(size=(4, dimension))
     if dimension == 2:
         points[2:] += 4.0  # in the plane edges must not cross
@@ -59,10 +59,9 @@ def test_random_pairs(seed: int, dimension: int) -> None:
 
 
 @pytest.mark.parametrize(
-    ("shape", "gap"),
-    crossed(["crossing", "parallel", "tip at tip", "collinear", "short and long"], [0.1, 1e-4]),
+    ("shape", "gap"), crossed(["crossing", "parallel", "tip at tip", "collinear", "short and long"], [0.1, 1e-4])
 )
-def test_derivatives(shape: str, gap: float) -> None:
+def test_derivatives(shape, gap):
     points = points_of(shape, gap)
     velocity = np.random.default_rng(7).normal(size=(4, 3))
     dx0, dx1, dy0, dy1 = velocity
@@ -70,7 +69,7 @@ def test_derivatives(shape: str, gap: float) -> None:
     jet = inverse_square(pairs_of(tuple(map(stepped, points, velocity))))
     step = mp.mpf(gap) / 10**4
 
-    def moved(steps: int) -> mp.mpf:
+    def moved(steps):
         ends = zip(points, velocity, strict=True)
         return inverse_square_integral(*([c + steps * step * w for c, w in zip(p, v, strict=True)] for p, v in ends))
 

@@ -7,7 +7,7 @@ from descent_contracts import point_on
 from mobius_flow.core import Curve
 from mobius_flow.core.base.errors import OptionError
 from mobius_flow.core.descent.hessian import lagrangian_hessian
-from mobius_flow.core.energies import KPointEnergy, Rule, moebius_kpoint
+from mobius_flow.core.energies import Rule, moebius_kpoint
 from mobius_flow.core.energies.barrier import exact
 from mobius_flow.core.energies.density import TangentPointDensity
 from mobius_flow.core.energies.edge_pairs import EdgePairs
@@ -29,7 +29,7 @@ def quadrature_error(points: int, size: float, seed: int) -> float:
 
 
 @pytest.mark.parametrize("points", [1, 2, 3])
-def test_order_of_the_rule_on_far_pairs(points: int) -> None:
+def test_order_of_the_rule_on_far_pairs(points):
     """W_IJ → ∬ F at the order 2k of the k-point rule as edges shrink."""
     sizes = [0.2, 0.1, 0.05]
     errors = [np.mean([quadrature_error(points, size, seed) for seed in range(12)]) for size in sizes]
@@ -38,16 +38,14 @@ def test_order_of_the_rule_on_far_pairs(points: int) -> None:
 
 @ARC
 @pytest.mark.parametrize("sizes", [(12,), (5, 8)])
-def test_the_derivative_has_that_of_arcs(energy: KPointEnergy, sizes: tuple[int, ...]) -> None:
+def test_the_derivative_has_that_of_arcs(energy, sizes):
     curve = random_polygon(7, sizes, 3)
     v = np.random.default_rng(3).normal(size=curve.vertices.shape)
     assert derivative_slope(energy, curve, v, largest=1e-3) == pytest.approx(2, abs=0.01)
 
 
 @ARC
-def test_second_derivatives_along_the_constraints_are_symmetric_where_arcs_are_equally_long(
-    energy: KPointEnergy,
-) -> None:
+def test_second_derivatives_along_the_constraints_are_symmetric_where_arcs_are_equally_long(energy):
     for curve in (random_polygon(7, (12,), 3), regular_polygon(12), hopf_link(10)):
         point = point_on(curve, energy=energy)
         basis = tangent_basis(point.tangent_space.constraints)
@@ -71,7 +69,7 @@ def test_second_derivatives_along_the_constraints_are_symmetric_where_arcs_are_e
         (lambda: TangentPointDensity(float("nan"), 4.0), "alpha is nan"),
     ],
 )
-def test_options_are_checked(make: object, message: str) -> None:
+def test_options_are_checked(make, message):
     assert callable(make)
     with pytest.raises(OptionError, match=message):
         make()

@@ -17,7 +17,7 @@ EVOLVER = shutil.which("evolver")
 
 @pytest.mark.parametrize("n", [3, 4, 5, 6, 7, 17, 64, 301, 1000])
 @pytest.mark.parametrize("dimension", [2, 3, 4])
-def test_regular_polygons_have_energy_4_and_are_critical(n: int, dimension: int) -> None:
+def test_regular_polygons_have_energy_4_and_are_critical(n, dimension):
     curve = regular_polygon(n, dimension)
     energy, derivative = ENERGY.value_and_derivative(curve)
     assert energy == pytest.approx(4, abs=1e-12)
@@ -31,7 +31,7 @@ def test_regular_polygons_have_energy_4_and_are_critical(n: int, dimension: int)
 
 
 @pytest.mark.parametrize("n", [60, 400])
-def test_energy_per_length(n: int) -> None:
+def test_energy_per_length(n):
     curve = torus_trefoil(n)
     by_length = moebius_by_length(curve)
     assert by_length @ curve.edge_lengths + 4 == pytest.approx(ENERGY.value(curve), rel=1e-12)
@@ -79,6 +79,6 @@ def evolver_energy(curve: Curve, folder: Path) -> float:
 @pytest.mark.skipif(EVOLVER is None, reason="Surface Evolver (evolver) is not installed")
 @pytest.mark.parametrize("n", [17, 40, 120])
 @pytest.mark.parametrize("name", ["wave", "trefoil", "figure-eight"])
-def test_surface_evolver_agrees(name: str, n: int, tmp_path: Path) -> None:
+def test_surface_evolver_agrees(name, n, tmp_path):
     curve = equilateral(SMOOTH_CURVES[name].polygon(n))
     assert MoebiusEnergy().value(curve) == pytest.approx(4 + evolver_energy(curve, tmp_path), rel=1e-10)

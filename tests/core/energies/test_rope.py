@@ -29,7 +29,7 @@ CURVES = {
 
 
 @pytest.mark.parametrize("name", [name for name in CURVES if name != "plane"])
-def test_derivatives(name: str) -> None:
+def test_derivatives(name):
     curve = CURVES[name]()
     rope, v = tight(curve), np.random.default_rng(7).standard_normal(curve.vertices.shape)
     assert rope.value(curve) > 0.0
@@ -41,14 +41,14 @@ def test_derivatives(name: str) -> None:
     )
 
 
-def test_two_dimensions() -> None:
+def test_two_dimensions():
     curve = Curve(regular_polygon(30, 2).vertices * [1.0, 0.4])
     rope, v = tight(curve), np.random.default_rng(9).standard_normal((30, 2))
     assert rope.value(curve) > 0.0
     assert derivative_slope(rope, curve, v, 1e-5) == pytest.approx(2.0, abs=0.05)
 
 
-def test_thin_ropes_cost_nothing_and_thick_ones_everything() -> None:
+def test_thin_ropes_cost_nothing_and_thick_ones_everything():
     curve = knot("4_1", 150)
     thick = thickness(curve)
     assert Rope(np.array([0.4 * thick])).value(curve) == 0.0
@@ -57,14 +57,14 @@ def test_thin_ropes_cost_nothing_and_thick_ones_everything() -> None:
     assert Rope(np.array([1.001 * thick])).value(curve) == np.inf
 
 
-def test_it_does_not_depend_on_the_unit() -> None:
+def test_it_does_not_depend_on_the_unit():
     curve = knot("L6a4", 90)
     scaled = curve.with_vertices(1e3 * curve.vertices)
     radius = np.full(3, 0.9 * thickness(curve))
     assert Rope(1e3 * radius).value(scaled) == pytest.approx(Rope(radius).value(curve), rel=1e-9)
 
 
-def test_radii_of_components() -> None:
+def test_radii_of_components():
     """Two straight strands a distance of 1 apart are ropes of .3 and .6, but not of .5 each."""
     t = np.linspace(0.0, 4.0, 41)
     strands = [np.stack([t, 0 * t, np.full(41, z)], axis=1) for z in (0.0, 1.0)]
@@ -75,7 +75,7 @@ def test_radii_of_components() -> None:
     assert Rope(np.array([0.1, 0.2])).value(curve) == 0.0
 
 
-def test_what_is_frozen_stays_until_lengths_change() -> None:
+def test_what_is_frozen_stays_until_lengths_change():
     curve = knot("3_1", 60)
     rope = tight(curve)
     assert rope.frozen_at(curve) is rope
@@ -83,7 +83,7 @@ def test_what_is_frozen_stays_until_lengths_change() -> None:
     assert rope.frozen_at(curve.with_vertices(1.1 * curve.vertices)) is not rope
 
 
-def test_split_edges_may_bend_as_they_do() -> None:
+def test_split_edges_may_bend_as_they_do():
     """A polygon whose edges have been split looks twice as sharp at its old corners: no wall, until it gets smooth."""
     curve = regular_polygon(12)
     finer = Curve(np.repeat(curve.vertices, 2, axis=0) * 1.0)
@@ -98,7 +98,7 @@ def test_split_edges_may_bend_as_they_do() -> None:
 
 
 @pytest.mark.parametrize("step", [1e-3, 0.05, 0.5, 3.0])
-def test_pairs_in_reach_are_found_again(step: float) -> None:
+def test_pairs_in_reach_are_found_again(step):
     """Of curves nearby, which are looked for among those of the first, and further away."""
     curve = knot("7_7", 150)
     rope, rng = tight(curve, 0.8), np.random.default_rng(3)
@@ -110,7 +110,7 @@ def test_pairs_in_reach_are_found_again(step: float) -> None:
 
 
 @pytest.mark.parametrize("pieces", [10, 20, 40])
-def test_a_lone_sharp_corner_has_room_wherever_the_proof_says_so(pieces: int) -> None:
+def test_a_lone_sharp_corner_has_room_wherever_the_proof_says_so(pieces):
     """Near one of 120° strands half a circle apart along the polygon come nearer than two radii."""
     triangle = Curve([[0.0, 0, 0], [1, 0, 0], [0.5, 0.75**0.5, 0]])
     curve, ropes = subdivide(triangle, np.full(3, pieces)), 0
@@ -122,8 +122,8 @@ def test_a_lone_sharp_corner_has_room_wherever_the_proof_says_so(pieces: int) ->
 
 
 @pytest.mark.parametrize("z", [0.02, 0.3, 0.9])
-def test_the_barrier_function_has_its_derivatives(z: float) -> None:
-    def value(t: float) -> float:
+def test_the_barrier_function_has_its_derivatives(z):
+    def value(t):
         return float(phi(np.array(z + t))[0])
 
     assert taylor_slope(value, [float(each) for each in phi(np.array(z))], largest=0.01) > 2.9

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, MobiusFlowError, MoebiusEnergy, Objective, OptionError, RelaxOptions, minimize
-from mobius_flow.core.energies import ENERGIES, TERMS, Bending, Term, Weighted, is_moebius_invariant
+from mobius_flow.core.energies import ENERGIES, TERMS, Bending, Weighted, is_moebius_invariant
 from shapes import regular_polygon, torus_trefoil
 from smooth_curves import random_polygon
 from taylor import derivative_slope
@@ -12,7 +12,7 @@ TERM = pytest.mark.parametrize("term", TERMS.values(), ids=lambda term: term.nam
 
 
 @TERM
-def test_taylor_slope(term: Term) -> None:
+def test_taylor_slope(term):
     """Of a weighted sum, beside the barrier; those of terms alone are in `test_contract`."""
     curve, objective = random_polygon(3, (5, 7), 3), Objective(further=(Weighted(term, 0.3),))
     v = np.random.default_rng(5).normal(size=curve.vertices.shape)
@@ -21,7 +21,7 @@ def test_taylor_slope(term: Term) -> None:
     assert derivative_slope(objective, curve, v, largest=1e-4) == pytest.approx(2, abs=0.01)
 
 
-def test_the_stiffness_of_bending_is_its_second_derivative_across_a_nearly_straight_curve() -> None:
+def test_the_stiffness_of_bending_is_its_second_derivative_across_a_nearly_straight_curve():
     curve, term = regular_polygon(400), Bending()
     t = 2.0 * np.pi * np.arange(400) / 400
     v = np.zeros_like(curve.vertices)
@@ -31,7 +31,7 @@ def test_the_stiffness_of_bending_is_its_second_derivative_across_a_nearly_strai
     assert form == pytest.approx(along[0] - 2.0 * along[1] + along[2], rel=0.05)
 
 
-def test_the_stiffness_of_several_terms_adds_up() -> None:
+def test_the_stiffness_of_several_terms_adds_up():
     curve, term = regular_polygon(20), Bending()
     both = Objective(further=(Weighted(term, 2.0), Weighted(term, 0.5)))
     np.testing.assert_allclose(both.stiffness(curve).toarray(), 2.5 * term.stiffness(curve).toarray())
@@ -50,7 +50,7 @@ class Height:
         return self.value(curve), np.full_like(curve.vertices, 1.0) * [0.0, 0.0, 1.0]
 
 
-def test_capabilities_are_those_of_all_terms() -> None:
+def test_capabilities_are_those_of_all_terms():
     plain, bent = Objective.of(MoebiusEnergy()), Objective.of(MoebiusEnergy(), further=[Weighted(Bending())])
     own = Objective.of(MoebiusEnergy(), further=[Weighted(Height())])
     assert [each.sees_size for each in (plain, bent, own)] == [False, False, True]
@@ -72,9 +72,9 @@ def test_capabilities_are_those_of_all_terms() -> None:
         ({"terms": [Bending]}, "a pair of a term and its weight"),
     ],
 )
-def test_what_does_not_go_together_is_refused(options: dict[str, object], said: str) -> None:
+def test_what_does_not_go_together_is_refused(options, said):
     with pytest.raises(OptionError, match=said):
-        minimize(torus_trefoil(40), RelaxOptions(vertices=40, max_iterations=0, **options))  # type: ignore[arg-type]
+        minimize(torus_trefoil(40), RelaxOptions(vertices=40, max_iterations=0, **options))
 
 
 @pytest.mark.parametrize(
@@ -85,6 +85,6 @@ def test_what_does_not_go_together_is_refused(options: dict[str, object], said: 
         (10**400, "it must be a pair of a term and its weight"),
     ],
 )
-def test_weights_that_no_run_survives_are_refused(weight: float, said: str) -> None:
+def test_weights_that_no_run_survives_are_refused(weight, said):
     with pytest.raises(MobiusFlowError, match=said):
         minimize(torus_trefoil(40), RelaxOptions(vertices=40, max_iterations=1, terms=[("bending", weight)]))

@@ -80,7 +80,7 @@ READ |= {f"noted_{name}": (text, [TRIANGLE], (True,), note) for name, (text, not
 
 
 @pytest.mark.parametrize("name", READ)
-def test_what_is_understood_and_what_is_noted(tmp_path: Path, name: str, caplog: pytest.LogCaptureFixture) -> None:
+def test_what_is_understood_and_what_is_noted(tmp_path, name, caplog):
     text, expected, closed, note = READ[name]
     with caplog.at_level(logging.WARNING):
         curve = read_curve(_write(tmp_path, name, text))
@@ -112,9 +112,7 @@ PROTEINS = {
 
 
 @pytest.mark.parametrize("name", PROTEINS)
-def test_chains_of_proteins_are_arcs_of_alpha_carbons(
-    tmp_path: Path, name: str, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_chains_of_proteins_are_arcs_of_alpha_carbons(tmp_path, name, caplog):
     text, chains = PROTEINS[name]
     with caplog.at_level(logging.WARNING):
         curve = read_curve(_write(tmp_path, name, text))
@@ -123,7 +121,7 @@ def test_chains_of_proteins_are_arcs_of_alpha_carbons(
     assert np.array_equal(curve.vertices, 3.0 * np.concatenate([TRIANGLE, SQUARE][:chains]))
 
 
-def test_missing_residues_are_noted(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+def test_missing_residues_are_noted(tmp_path, caplog):
     text = CHAIN[0] + _atom(7, 7, [9, 0, 0])
     with caplog.at_level(logging.WARNING):
         assert len(read_curve(_write(tmp_path, "gap.pdb", text))) == 2
@@ -162,7 +160,7 @@ C
 """
 
 
-def test_chains_of_cif_files(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+def test_chains_of_cif_files(tmp_path, caplog):
     with caplog.at_level(logging.WARNING):
         curve = read_curve(_write(tmp_path, "one.cif", CIF.format(more="")))
     assert not caplog.records
@@ -188,7 +186,7 @@ def test_chains_of_cif_files(tmp_path: Path, caplog: pytest.LogCaptureFixture) -
         (FEW, "has no Cartn_x, Cartn_y, Cartn_z"),
     ],
 )
-def test_cif_files_that_are_none(tmp_path: Path, text: str, reason: str) -> None:
+def test_cif_files_that_are_none(tmp_path, text, reason):
     text = text if reason else text.replace("3 0 0 A", "x 0 0 A")
     with pytest.raises(CurveFileError, match=reason or "not a number"):
         read_curve(_write(tmp_path, "odd.cif", text))
@@ -204,13 +202,13 @@ CODES = {
 
 
 @pytest.mark.parametrize("name", CODES)
-def test_codes_are_read_as_drawings(tmp_path: Path, name: str) -> None:
+def test_codes_are_read_as_drawings(tmp_path, name):
     curve = read_curve(_write(tmp_path, name, CODES[name]))
     assert str(knot_type(curve)) == "3_1"
 
 
 @pytest.mark.parametrize("suffix", [".pd", ".gauss"])
 @pytest.mark.parametrize("name", ["3_1", "L5a1"])
-def test_codes_that_are_written_are_of_the_same_knot(tmp_path: Path, suffix: str, name: str) -> None:
+def test_codes_that_are_written_are_of_the_same_knot(tmp_path, suffix, name):
     write_curve(tmp_path / f"k{suffix}", knot(name))
     assert knot_type(read_curve(tmp_path / f"k{suffix}")).names == knot_type(knot(name)).names

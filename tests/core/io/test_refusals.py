@@ -1,7 +1,6 @@
 """Every bad file gives one sentence that names the file, the line and the reason; never a traceback."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -101,7 +100,7 @@ REFUSED: dict[str, tuple[str, int | None, str]] = {
 
 
 @pytest.mark.parametrize("name", REFUSED)
-def test_refused_with_file_line_and_reason(tmp_path: Path, name: str) -> None:
+def test_refused_with_file_line_and_reason(tmp_path, name):
     text, line, reason = REFUSED[name]
     path = tmp_path / name
     path.write_text(text)
@@ -116,7 +115,7 @@ def test_refused_with_file_line_and_reason(tmp_path: Path, name: str) -> None:
 
 @pytest.mark.parametrize("data", [b"\x89PNG\r\n\x1a\n\x00\x00", b"0 0 0\n1 \xff 0\n", "0 0 0".encode("utf-16")])
 @pytest.mark.parametrize("suffix", FORMATS)
-def test_binary_files(tmp_path: Path, suffix: str, data: bytes) -> None:
+def test_binary_files(tmp_path, suffix, data):
     path = tmp_path / f"curve{suffix}"
     path.write_bytes(data)
     with pytest.raises(CurveFileError, match=r"line [123]: not a text file in UTF-8"):
@@ -124,7 +123,7 @@ def test_binary_files(tmp_path: Path, suffix: str, data: bytes) -> None:
 
 
 @pytest.mark.parametrize("suffix", FORMATS)
-def test_missing_directory_and_impossible_paths(tmp_path: Path, suffix: str) -> None:
+def test_missing_directory_and_impossible_paths(tmp_path, suffix):
     for name in ("missing", "dir", "a\0b", "x" * 300):
         path = tmp_path / f"{name}{suffix}"
         if name == "dir":
@@ -141,13 +140,13 @@ def test_missing_directory_and_impossible_paths(tmp_path: Path, suffix: str) -> 
         ("a.vct", r"did you mean \.vect\?"),
     ],
 )
-def test_unknown_suffixes_list_the_known(tmp_path: Path, name: str, found: str) -> None:
+def test_unknown_suffixes_list_the_known(tmp_path, name, found):
     with pytest.raises(CurveFileError, match=found):
         read_curve(tmp_path / name)
 
 
 @pytest.mark.parametrize(("suffix", "end"), crossed(FORMATS, ["\n", "\r", "\r\n"]))
-def test_files_longer_than_any_curve(tmp_path: Path, suffix: str, end: str) -> None:
+def test_files_longer_than_any_curve(tmp_path, suffix, end):
     path = tmp_path / f"long{suffix}"
     for data, said in (
         (b"0 0 0\n" * (Source.max_bytes // 6 + 1), "longer than 16 MB"),
@@ -169,7 +168,7 @@ GRAMMAR = st.lists(st.sampled_from(PIECES), max_size=60).map(lambda pieces: "".j
 )
 @example(data=b"VECT 1 3 0 -3 0" + b" 0" * 9)
 @settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
-def test_any_bytes_give_a_curve_or_one_sentence(tmp_path: Path, suffix: str, data: bytes) -> None:
+def test_any_bytes_give_a_curve_or_one_sentence(tmp_path, suffix, data):
     path = tmp_path / f"fuzz{suffix}"
     path.write_bytes(data)
     message = None
@@ -182,7 +181,7 @@ def test_any_bytes_give_a_curve_or_one_sentence(tmp_path: Path, suffix: str, dat
     assert message is None or "\n" not in message
 
 
-def test_later_errors_find_file_and_line(tmp_path: Path) -> None:
+def test_later_errors_find_file_and_line(tmp_path):
     path = tmp_path / "a.txt"
     path.write_text("# two triangles\n0 0 0\n1 0 0\n0 1 0\n\n0 0 5\n# here\n1 0 5\n0 1 5\n")
     file = load_curve(path)

@@ -1,7 +1,6 @@
 """What is written is read back: bit for bit, in every format."""
 
 import logging
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -31,7 +30,7 @@ def curves(draw: st.DrawFn, dimension: int = 3) -> Curve:
 @pytest.mark.parametrize("suffix", OF_VERTICES)
 @given(curve=curves())
 @settings(max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
-def test_round_trip_is_exact(tmp_path: Path, suffix: str, curve: Curve) -> None:
+def test_round_trip_is_exact(tmp_path, suffix, curve):
     path = tmp_path / f"curve{suffix}"
     write_curve(path, curve)
     again = read_curve(path)
@@ -42,7 +41,7 @@ def test_round_trip_is_exact(tmp_path: Path, suffix: str, curve: Curve) -> None:
 @pytest.mark.parametrize(
     ("suffix", "dimension"), [(".txt", 2), (".csv", 2), (".json", 2), (".json", 5), (".obj", 2), (".vect", 2)]
 )
-def test_other_dimensions_round_trip_or_get_a_third_coordinate(tmp_path: Path, suffix: str, dimension: int) -> None:
+def test_other_dimensions_round_trip_or_get_a_third_coordinate(tmp_path, suffix, dimension):
     points = np.random.default_rng(5).normal(size=(7, dimension))
     write_curve(tmp_path / f"curve{suffix}", Curve(points))
     more = 1 if suffix in (".obj", ".vect") else 0
@@ -50,22 +49,20 @@ def test_other_dimensions_round_trip_or_get_a_third_coordinate(tmp_path: Path, s
 
 
 @pytest.mark.parametrize("suffix", [".txt", ".csv", ".obj", ".vect"])
-def test_four_dimensions_are_refused_and_leave_no_file(tmp_path: Path, suffix: str) -> None:
+def test_four_dimensions_are_refused_and_leave_no_file(tmp_path, suffix):
     path = tmp_path / f"curve{suffix}"
     with pytest.raises(CurveFileError, match=r"dimension.*json"):
         write_curve(path, Curve(np.eye(4)))
     assert list(tmp_path.iterdir()) == []
 
 
-def test_suffixes_are_not_case_sensitive(tmp_path: Path) -> None:
+def test_suffixes_are_not_case_sensitive(tmp_path):
     write_curve(tmp_path / "CURVE.OBJ", Curve(np.eye(3)))
     assert len(read_curve(str(tmp_path / "CURVE.OBJ"))) == 3
 
 
 @pytest.mark.parametrize("suffix", OF_VERTICES)
-def test_what_is_written_is_read_silently_and_in_order(
-    tmp_path: Path, caplog: pytest.LogCaptureFixture, suffix: str
-) -> None:
+def test_what_is_written_is_read_silently_and_in_order(tmp_path, caplog, suffix):
     link = lattice_knot("L6a4")
     write_curve(tmp_path / f"link{suffix}", link)
     with caplog.at_level(logging.WARNING):

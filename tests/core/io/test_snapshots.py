@@ -3,7 +3,6 @@
 import re
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -29,7 +28,7 @@ def read(path: Path, text: str) -> list[Snapshot]:
     return list(snapshots(path))
 
 
-def test_lammps_dumps(tmp_path: Path) -> None:
+def test_lammps_dumps(tmp_path):
     path = tmp_path / "a.lammpstrj"
     first, second = read(path, dump(POINTS, POINTS + 1.0))
     assert np.array_equal(second.points, POINTS + 1.0)
@@ -46,7 +45,7 @@ def test_lammps_dumps(tmp_path: Path) -> None:
     assert tilted.cell.tolist() == [[3, 0, 0], [1, 5.5, 0], [-2, 0.5, 5]]
 
 
-def test_xyz_plain_and_extended(tmp_path: Path) -> None:
+def test_xyz_plain_and_extended(tmp_path):
     rows = "".join(f"C {' '.join(map(str, point))}\n" for point in POINTS.tolist())
     plain, other = read(tmp_path / "a.xyz", f"3\n\n{rows}3\nanother\n{rows}\n")
     assert np.array_equal(plain.points, POINTS)
@@ -85,13 +84,13 @@ def test_xyz_plain_and_extended(tmp_path: Path) -> None:
         ("a.xyz", "", "there are no frames"),
     ],
 )
-def test_damage_is_told(name: str, text: str, said: str, tmp_path: Path) -> None:
+def test_damage_is_told(name, text, said, tmp_path):
     (tmp_path / name).write_bytes(text.encode("latin1"))
     with pytest.raises(MobiusFlowError, match=f"^{re.escape(str(tmp_path / name))}.*{re.escape(said)}"):
         audit(tmp_path / name, 3)
 
 
-def test_a_missing_file_is_told(tmp_path: Path) -> None:
+def test_a_missing_file_is_told(tmp_path):
     for name in ("a.xyz", "a.lammpstrj"):
         with pytest.raises(CurveFileError, match="cannot be read: No such file"):
             list(snapshots(tmp_path / name))
@@ -123,9 +122,7 @@ def write_by_mdanalysis(path: Path, frames: list[Array], box: float) -> None:
     ("name", "write", "unit"),
     [("a.gsd", write_gsd, 1.0), ("a.xtc", write_by_mdanalysis, 10.0), ("a.dcd", write_by_mdanalysis, 1.0)],
 )
-def test_binary_trajectories(
-    name: str, write: Callable[[Path, list[Array], float], None], unit: float, tmp_path: Path
-) -> None:
+def test_binary_trajectories(name, write, unit, tmp_path):
     path, frames = tmp_path / name, [np.vstack([POINTS, POINTS[0] + 0.5]), np.vstack([POINTS, POINTS[1]]) + 0.25]
     write(path, frames, 8.0)
     found = list(snapshots(path))
@@ -147,10 +144,10 @@ def test_binary_trajectories(
             list(snapshots(path))
 
 
-def test_bonds_make_chains_and_rings(tmp_path: Path) -> None:
+def test_bonds_make_chains_and_rings(tmp_path):
     from mobius_flow.core.io.chains import Topology
 
-    def of(*bonds: tuple[int, int]) -> Any:
+    def of(*bonds):
         frame = Snapshot(np.zeros((9, 3)), np.zeros((3, 3)), bonds=np.array(bonds))
         found = Topology.of(frame, None, closed=True)
         return [(chain.tolist(), ring) for chain, ring in zip(found.chains, found.closed, strict=True)]

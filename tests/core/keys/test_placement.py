@@ -8,14 +8,7 @@ from mobius_flow.core.collision import is_rope
 from mobius_flow.core.curve import refine
 from mobius_flow.core.keys.key_options import Timing
 from mobius_flow.core.keys.motion import Recording
-from mobius_flow.core.keys.placement import (
-    Link,
-    Measure,
-    Placement,
-    Similarity,
-    at,
-    spots,
-)
+from mobius_flow.core.keys.placement import Link, Measure, Placement, Similarity, at, spots
 from mobius_flow.core.keys.planes import DrawingPlane, Turn
 from mobius_flow.core.keys.recording import Kind
 from recorded_motions import around, assert_proved, at_rest, followed, iterate

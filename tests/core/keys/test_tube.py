@@ -221,7 +221,7 @@ def test_between_two_sizes_a_rope_is_proved_in_one():
     assert [key.radius for key in keys.keys] == pytest.approx([0.0998, 0.0499])
 
 
-def test_points_that_are_no_corners_are_left_out_but_not_a_whole_arc_of_them() -> None:
+def test_points_that_are_no_corners_are_left_out_but_not_a_whole_arc_of_them():
     """On a circle so fine that each point is on an edge, up to 32-bit rounding, the arc is still there."""
     n = 20_000
     angles = 2.0 * np.pi * np.arange(n) / n

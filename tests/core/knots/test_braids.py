@@ -15,7 +15,7 @@ TORUS = [(2, 3), (2, 7), (3, 4), (3, 5), (5, 3), (4, 5), (5, 2), (7, 2), (1, 1),
 
 
 @pytest.mark.parametrize(("p", "q"), TORUS)
-def test_torus_knots(p: int, q: int) -> None:
+def test_torus_knots(p, q):
     found = knot_invariants(torus_knot(p, q).vertices)
     genus = (p - 1) * (q - 1) // 2
     assert (found.genus, found.tau, found.fibered) == (genus, genus, True)
@@ -25,7 +25,7 @@ def test_torus_knots(p: int, q: int) -> None:
 
 
 @pytest.mark.parametrize(("p", "q"), [(2, 2), (2, 6), (3, 3), (4, 6), (6, -4)])
-def test_torus_links(p: int, q: int) -> None:
+def test_torus_links(p, q):
     parts = math.gcd(p, q)
     link = torus_knot(p, q)
     assert len(link.mesh.component_sizes) == parts
@@ -45,14 +45,14 @@ RADII = [
 
 
 @pytest.mark.parametrize(("major", "minor"), RADII)
-def test_impossible_radii(major: float, minor: float | None) -> None:
+def test_impossible_radii(major, minor):
     with pytest.raises(CurveError, match="0 < minor < major"):
         torus_knot(2, 3, major=major, minor=minor)
 
 
 @given(word=st.lists(st.integers(-4, 4).filter(bool), max_size=12), strands=st.integers(5, 6))
 @settings(max_examples=12, deadline=None)
-def test_components_and_linking_numbers_are_those_of_the_word(word: list[int], strands: int) -> None:
+def test_components_and_linking_numbers_are_those_of_the_word(word, strands):
     curve = braid_closure(word, strands=strands)
     at = list(range(strands))  # by the place where they begin, which strands are at each place after the word
     for letter in word:
@@ -85,6 +85,6 @@ def test_components_and_linking_numbers_are_those_of_the_word(word: list[int], s
         ([1] * 20_001, None, "20001 letters"),
     ],
 )
-def test_words_that_are_none(word: list[int], strands: int | None, reason: str) -> None:
+def test_words_that_are_none(word, strands, reason):
     with pytest.raises(MobiusFlowError, match=reason):
         braid_closure(word, strands=strands)

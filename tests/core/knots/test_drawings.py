@@ -31,7 +31,7 @@ def circle(x: float, y: float = 0.0, radius: float = 1.0, points: int = 40) -> n
     return np.column_stack([x + radius * np.cos(t), y + radius * np.sin(t)])
 
 
-def test_a_drawn_trefoil_is_a_trefoil_and_changed_crossings_unknot_or_mirror_it() -> None:
+def test_a_drawn_trefoil_is_a_trefoil_and_changed_crossings_unknot_or_mirror_it():
     drawing = Drawing.of(flat(torus_knot(2, 3, 60)))
     assert len(drawing.crossings) == 3
     found, mirrored = (knot_invariants(drawing.lifted(changed).vertices) for changed in ([], [1, 2, 3]))
@@ -41,7 +41,7 @@ def test_a_drawn_trefoil_is_a_trefoil_and_changed_crossings_unknot_or_mirror_it(
         assert knot_invariants(drawing.lifted([number]).vertices) == UNKNOT
 
 
-def test_components_side_by_side_and_within_each_other_are_drawn() -> None:
+def test_components_side_by_side_and_within_each_other_are_drawn():
     drawing = Drawing.of(Curve.from_components([circle(0), circle(1.1), circle(4), circle(4, 0.1, 0.5)]))
     lifted = drawing.lifted()
     assert len(drawing.crossings) == 2
@@ -60,7 +60,7 @@ for seed in range(32):
 
 
 @pytest.mark.parametrize("drawing", SCRIBBLES[:16])
-def test_scribbles_have_the_drawn_crossings_and_no_others(drawing: Drawing) -> None:
+def test_scribbles_have_the_drawn_crossings_and_no_others(drawing):
     order = np.argsort(drawing.passes.ravel())
     over = np.stack([drawing.first_over, ~drawing.first_over], axis=1).ravel()[order]
     assert (over[1:] != over[:-1]).all()
@@ -94,7 +94,7 @@ TRIPLE = [(np.cos(a), np.sin(a)) for a in np.radians([0, 180, 210, 30, 60, 240])
     ],
     ids=["circles", "corner", "along", "triple", "twice round"],
 )
-def test_what_is_unclear_is_refused_with_the_place(curve: Curve, place: tuple[float, float] | None) -> None:
+def test_what_is_unclear_is_refused_with_the_place(curve, place):
     with pytest.raises(CurveError, match=r"near \(\S+, \S+\) strands touch") as caught:
         Drawing.of(curve)
     assert caught.value.place is not None
@@ -113,13 +113,13 @@ def test_what_is_unclear_is_refused_with_the_place(curve: Curve, place: tuple[fl
         (lambda: Drawing.of(flat(torus_knot(2, 3))).lifted([0]), "no crossing 0"),
     ],
 )
-def test_what_is_no_drawing(make, said: str) -> None:
+def test_what_is_no_drawing(make, said):
     with pytest.raises(CurveError, match=said):
         make()
 
 
 @pytest.mark.parametrize("changed", [(), (1,), (1, 3)])
-def test_what_was_lifted_is_seen_as_it_is(changed: tuple[int, ...]) -> None:
+def test_what_was_lifted_is_seen_as_it_is(changed):
     """Lifting it again gives the same heights at the crossings, whichever were changed."""
     drawing = Drawing.of(scribble(3))
     again = Drawing.seen(drawing.lifted(changed))
@@ -129,7 +129,7 @@ def test_what_was_lifted_is_seen_as_it_is(changed: tuple[int, ...]) -> None:
     np.testing.assert_array_equal(again.first_over, over)
 
 
-def test_strands_keep_apart_in_proportion_to_the_room_there() -> None:
+def test_strands_keep_apart_in_proportion_to_the_room_there():
     drawing = Drawing.of(flat(torus_knot(2, 7)))
     apart = np.linalg.norm(drawing.crossings[:, None] - drawing.crossings[None], axis=2)
     assert strand_distance(drawing.lifted()) > 0.4 * apart[apart > 0].min()

@@ -14,7 +14,7 @@ CIRCLE = regular_polygon(100)
 
 
 @pytest.mark.parametrize(("p", "q"), [(2, 3), (2, -3), (2, 1), (2, -1), (3, 2), (3, -4), (2, 5)])
-def test_cables_of_the_circle_are_torus_knots_and_of_a_trefoil_have_its_polynomial(p: int, q: int) -> None:
+def test_cables_of_the_circle_are_torus_knots_and_of_a_trefoil_have_its_polynomial(p, q):
     torus = knot_invariants(torus_knot(p, q).vertices)
     assert knot_invariants(cable(CIRCLE, p, q).vertices) == torus
     if p == 2:
@@ -23,7 +23,7 @@ def test_cables_of_the_circle_are_torus_knots_and_of_a_trefoil_have_its_polynomi
 
 
 @pytest.mark.parametrize(("name", "turns"), crossed(["0_1", "3_1", "4_1", "7_4"], [(2, 0), (2, 4), (3, -3)]))
-def test_links_of_parallel_strands(name: str, turns: tuple[int, int]) -> None:
+def test_links_of_parallel_strands(name, turns):
     p, q = turns
     link = cable(smooth_knot(name), p, q)
     parts = np.gcd(p, q)
@@ -35,19 +35,19 @@ def test_links_of_parallel_strands(name: str, turns: tuple[int, int]) -> None:
 
 @pytest.mark.parametrize("name", ["0_1", *(pytest.param(name, marks=pytest.mark.slow) for name in ("3_1", "m5_2"))])
 @pytest.mark.parametrize(("twists", "clasp"), [(-2, 1), (-1, -1), (0, 1), (0, -1), (1, 1), (3, -1)])
-def test_doubles_have_the_polynomial_of_their_twists(name: str, twists: int, clasp: int) -> None:
+def test_doubles_have_the_polynomial_of_their_twists(name, twists, clasp):
     curve = double(smooth_knot(name), twists, clasp=clasp)
     found, w = knot_invariants(curve.vertices), twists * clasp
     assert found.alexander == ((-w, 2 * w + 1, -w) if w else (1,))
     assert found.genus == (1 if w or name != "0_1" else 0)
 
 
-def test_freedmans_unknot_is_an_unknot() -> None:
+def test_freedmans_unknot_is_an_unknot():
     assert knot_invariants(knot("Freedman unknot", 300).vertices) == UNKNOT
     assert 550 < len(knot("freedman")) < 650
 
 
-def test_longitudes_do_not_link_the_knot_and_the_reach_of_a_circle_is_its_radius() -> None:
+def test_longitudes_do_not_link_the_knot_and_the_reach_of_a_circle_is_its_radius():
     assert SolidTorus.around(CIRCLE).reach == pytest.approx(1.0, rel=1e-3)
     for name in ("3_1", "m3_1", "6_2", "8_19"):
         curve = smooth_knot(name)
@@ -71,7 +71,7 @@ def test_longitudes_do_not_link_the_knot_and_the_reach_of_a_circle_is_its_radius
         (lambda: double(CIRCLE, 1, clasp=0), "clasp 1 or -1"),
     ],
 )
-def test_what_is_refused(make, said: str) -> None:
+def test_what_is_refused(make, said):
     with pytest.raises(CurveError, match=said):
         make()
 
@@ -86,6 +86,6 @@ def test_what_is_refused(make, said: str) -> None:
         ((3, 4, 7), (np.nan, 0.0), "finite"),
     ],
 )
-def test_refused_lissajous_knots(frequencies: tuple[int, int, int], phases: tuple[float, float], said: str) -> None:
+def test_refused_lissajous_knots(frequencies, phases, said):
     with pytest.raises(CurveError, match=said):
         lissajous_knot(frequencies, phases)

@@ -2,24 +2,14 @@
 
 import re
 import sys
-from collections.abc import Iterator
 
 import numpy as np
 import pytest
 from families import family
 from hard_curves import hard_unknot, lattice_closure
 from mobius_flow.core import Curve, Mesh
-from mobius_flow.core.knots import (
-    HARD_UNKNOTS,
-    KNOTS,
-    KnotType,
-    braid_closure,
-    knot,
-    knot_type,
-    scramble,
-    smooth_knot,
-)
-from mobius_flow.core.knots.diagrams import Diagram, simplifying
+from mobius_flow.core.knots import HARD_UNKNOTS, KNOTS, KnotType, braid_closure, knot, knot_type, scramble, smooth_knot
+from mobius_flow.core.knots.diagrams import simplifying
 from mobius_flow.core.knots.diagrams.codes import diagram_from_code
 from mobius_flow.core.knots.knot_type import ALEXANDER, DOUBLED, JONES, Effort, type_of_diagram
 from mobius_flow.core.knots.names import AMPHICHEIRAL
@@ -29,13 +19,13 @@ UNTOLD = {"10_71": ("10_71", "m10_71"), "m10_71": ("10_71", "m10_71")}
 
 
 @pytest.fixture(autouse=True)
-def _without_snappy(monkeypatch: pytest.MonkeyPatch) -> None:
+def _without_snappy(monkeypatch):
     """Its census knows larger knots; see `test_exterior`."""
     monkeypatch.setitem(sys.modules, "snappy", None)
 
 
 @pytest.mark.parametrize("name", family(KNOTS))
-def test_smooth_shapes_of_the_table_and_their_mirror_images(name: str) -> None:
+def test_smooth_shapes_of_the_table_and_their_mirror_images(name):
     curve = smooth_knot(name)
     for mirror, expected in ((1.0, name), (-1.0, name if name in AMPHICHEIRAL else f"m{name}")):
         found = knot_type(curve.with_vertices(curve.vertices * [1.0, 1.0, mirror]))
@@ -68,7 +58,7 @@ CURVES = {
 
 
 @pytest.mark.parametrize("told", CURVES)
-def test_sums_parts_that_come_apart_and_curves_that_are_hard_to_read(told: str) -> None:
+def test_sums_parts_that_come_apart_and_curves_that_are_hard_to_read(told):
     found = knot_type(CURVES[told])
     assert str(found) == told.partition(",")[0]
     assert found.proved
@@ -77,33 +67,33 @@ def test_sums_parts_that_come_apart_and_curves_that_are_hard_to_read(told: str) 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["0_1", "3_1", "m5_1", "7_7", "8_19", "10_132", "L5a1", "mL7a6"])
 @pytest.mark.parametrize("seed", [1, 3])
-def test_scrambled_curves(name: str, seed: int) -> None:
+def test_scrambled_curves(name, seed):
     found = knot_type(scramble(knot(name, 150), seed))
     assert found.names == (name,)
     assert found.proved
 
 
 @pytest.mark.parametrize("name", HARD_UNKNOTS)
-def test_hard_unknots(name: str) -> None:
+def test_hard_unknots(name):
     found = knot_type(knot(name))
     assert str(found) == "unknot"
     assert found.sentence == "unknot (proved by a diagram without crossings)"
 
 
-def test_a_knot_beyond_the_table_is_not_called_by_the_name_of_one_with_its_polynomials() -> None:
+def test_a_knot_beyond_the_table_is_not_called_by_the_name_of_one_with_its_polynomials():
     """11n_37 has the Jones and Alexander polynomials of 10_155; those of their doubles are different."""
     found = type_of_diagram(diagram_from_code("DT[kakCKeAhbjidfg.11100011100]"))
     assert found.names == ()
     assert DOUBLED in found.evidence
 
 
-def test_that_a_part_has_no_crossings_is_no_evidence_for_others() -> None:
+def test_that_a_part_has_no_crossings_is_no_evidence_for_others():
     found = type_of_diagram(diagram_from_code("Gauss: O1+U2+O3+U1+O2+U3+ / []"))
     assert found.names == ("0_1 ⊔ 3_1",)
     assert found.evidence == (JONES, ALEXANDER)
 
 
-def test_types_beyond_the_table_are_not_told() -> None:
+def test_types_beyond_the_table_are_not_told():
     for name, polynomial in (("T(3,7)", "[1, -1, 0, 1,"), ("T(2,13)", "[1, -1, 1, -1,")):
         found = knot_type(knot(name))
         assert found.names == ()
@@ -122,7 +112,7 @@ def test_types_beyond_the_table_are_not_told() -> None:
         (1000, 3, (7, 14), "none: only closed curves have a knot type, and some parts of this one are open"),
     ],
 )
-def test_why_a_curve_has_no_type(step: int, dimension: int, ends: tuple[int, ...], told: str) -> None:
+def test_why_a_curve_has_no_type(step, dimension, ends, told):
     angle = np.linspace(0.0, 2.0 * np.pi, Effort().vertices + 1)
     circle = np.column_stack([np.cos(angle), np.sin(angle), np.sin(2 * angle)])[::step, :dimension]
     sizes = np.diff([0, *ends[:-1], len(circle)]).tolist()
@@ -132,10 +122,10 @@ def test_why_a_curve_has_no_type(step: int, dimension: int, ends: tuple[int, ...
     assert found.sentence == told
 
 
-def test_tangles_are_given_up_after_a_bounded_amount_of_work(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_tangles_are_given_up_after_a_bounded_amount_of_work(monkeypatch):
     visited = 0
 
-    def counting(view: Diagram) -> Iterator[Diagram]:
+    def counting(view):
         nonlocal visited
         for diagram in simplifying(view):
             visited += diagram.crossings
@@ -151,7 +141,7 @@ def test_tangles_are_given_up_after_a_bounded_amount_of_work(monkeypatch: pytest
     assert str(knot_type(scramble(knot("4_1"), 1, moves=300), Effort(work=visited // 50))) == "4_1"
 
 
-def test_invariants() -> None:
+def test_invariants():
     found = knot_type(knot("4_1"))
     assert found.alexander == (-1, 3, -1)
     assert found.determinant == 5

@@ -1,21 +1,12 @@
 """The grammar of knot names."""
 
 import sys
-from collections.abc import Callable
 
 import numpy as np
 import pytest
 from knot_type import knot_invariants
-from mobius_flow.core import Curve
 from mobius_flow.core.base.errors import CurveError, MobiusFlowError
-from mobius_flow.core.knots import (
-    UnknownKnotError,
-    braid_word,
-    knot,
-    knot_type,
-    lissajous_knot,
-    smooth_knot,
-)
+from mobius_flow.core.knots import UnknownKnotError, braid_word, knot, knot_type, lissajous_knot, smooth_knot
 from mobius_flow.core.knots.braids import braid_diagram
 from mobius_flow.core.knots.diagrams import diagram_of, jones
 from spherogram import Link
@@ -34,7 +25,7 @@ SAME = {
 
 
 @pytest.mark.parametrize(("name", "other"), [(name, other) for name, others in SAME.items() for other in others])
-def test_other_spellings(name: str, other: str) -> None:
+def test_other_spellings(name, other):
     assert np.array_equal(knot(name, 90).vertices, knot(other, 90).vertices)
 
 
@@ -42,7 +33,7 @@ def test_other_spellings(name: str, other: str) -> None:
     ("name", "genus", "tau"),
     [("T(2,5)", 2, 2), ("T(-2,5)", 2, -2), ("T(5,-3)", 4, -4), ("mT(3,4)", 3, -3), ("T(2,3)#5_1", 3, 3)],
 )
-def test_handedness(name: str, genus: int, tau: int) -> None:
+def test_handedness(name, genus, tau):
     found = knot_invariants(knot(name).vertices)
     assert (found.genus, found.tau) == (genus, tau)
 
@@ -75,7 +66,7 @@ def test_handedness(name: str, genus: int, tau: int) -> None:
         ("x" * 5000, "known are"),
     ],
 )
-def test_unknown_names_list_close_and_known_ones(name: str, hint: str) -> None:
+def test_unknown_names_list_close_and_known_ones(name, hint):
     with pytest.raises(UnknownKnotError) as caught:
         knot(name)
     assert hint in str(caught.value)
@@ -84,7 +75,7 @@ def test_unknown_names_list_close_and_known_ones(name: str, hint: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["K11n34", "11n_34", "k11n34", "12a_0003", "L8n1", "L10a100"])
-def test_names_of_larger_tables_are_spherograms(name: str) -> None:
+def test_names_of_larger_tables_are_spherograms(name):
     theirs = Link({"11n_34": "K11n34", "k11n34": "K11n34", "12a_0003": "K12a3"}.get(name, name))
     assert jones(braid_diagram(braid_word(name))) == jones(diagram_of(theirs.PD_code()))
 
@@ -111,12 +102,12 @@ NOT_MADE = {
 
 
 @pytest.mark.parametrize("name", NOT_MADE, ids=lambda name: name[:20])
-def test_what_is_not_made(name: str) -> None:
+def test_what_is_not_made(name):
     with pytest.raises(MobiusFlowError, match=NOT_MADE[name]):
         knot(name)
 
 
-def test_larger_tables_are_an_extra(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_larger_tables_are_an_extra(monkeypatch):
     monkeypatch.setitem(sys.modules, "spherogram", None)
     with pytest.raises(MobiusFlowError, match=r'K11n34 is in larger .* pip install spherogram \(the extra "knots"\)'):
         knot("11n_34")
@@ -139,7 +130,7 @@ PLATS |= {
 
 
 @pytest.mark.parametrize("name", PLATS)
-def test_rational_knots_and_others_are_plats(name: str) -> None:
+def test_rational_knots_and_others_are_plats(name):
     word, names = PLATS[name]
     found = knot_type(knot(f"plat({','.join(map(str, word))})"))
     assert found.proved
@@ -157,7 +148,7 @@ MAKERS = {
 
 
 @pytest.mark.parametrize("make", MAKERS.values(), ids=MAKERS)
-def test_vertices_are_as_many_as_asked_for_and_counted_in_whole_numbers(make: Callable[[object], Curve]) -> None:
+def test_vertices_are_as_many_as_asked_for_and_counted_in_whole_numbers(make):
     for vertices in (300.5, 300.0, "300"):
         with pytest.raises(MobiusFlowError, match=f"^vertices is {vertices!r}; give a whole number"):
             make(vertices)
@@ -170,7 +161,7 @@ def test_vertices_are_as_many_as_asked_for_and_counted_in_whole_numbers(make: Ca
 
 @pytest.mark.parametrize("make", [knot, smooth_knot])
 @pytest.mark.parametrize("name", ["3_1", "6_2", "10_124"])
-def test_coarse_polygons_are_the_right_knot_or_refused(make: Callable[..., Curve], name: str) -> None:
+def test_coarse_polygons_are_the_right_knot_or_refused(make, name):
     expected, accepted = knot_invariants(make(name).vertices), 0
     for vertices in range(4, 60, 5):
         try:

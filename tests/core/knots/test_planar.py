@@ -24,7 +24,7 @@ CODES = {
 
 
 @pytest.mark.parametrize("name", CODES)
-def test_small_codes_and_codes_read_off_other_polygons(name: str) -> None:
+def test_small_codes_and_codes_read_off_other_polygons(name):
     assert knot_invariants(diagram_knot(CODES[name]).vertices) == knot_invariants(knot(name).vertices)
 
 
@@ -34,7 +34,7 @@ LONG = ("ochiai-4", "haken", "ochiai-2", "ochiai-3")
 @pytest.mark.parametrize(
     "name", [pytest.param(each, marks=pytest.mark.slow if each in LONG else ()) for each in HARD_UNKNOTS]
 )
-def test_hard_unknots(name: str) -> None:
+def test_hard_unknots(name):
     curve = knot(name)
     code = HARD_UNKNOTS[name]
     assert len(curve) < 8 * len(code)
@@ -52,12 +52,12 @@ def test_hard_unknots(name: str) -> None:
         ([(1, 4, 2, 5), (3, 6, 4, 1), (2, 5, 6, 3)], "cannot be drawn in the plane"),
     ],
 )
-def test_bad_codes_are_one_sentence(code: list[tuple[int, int, int, int]], said: str) -> None:
+def test_bad_codes_are_one_sentence(code, said):
     with pytest.raises(CurveError, match=said):
         diagram_knot(code)
 
 
-def test_links_codes_that_fall_apart_and_nugatory_crossings() -> None:
+def test_links_codes_that_fall_apart_and_nugatory_crossings():
     link = diagram_knot([(6, 1, 7, 2), (8, 3, 5, 4), (2, 5, 3, 6), (4, 7, 1, 8)])
     assert len(link.components) == 2
     assert abs(quick_invariants(link).linking[0]) == 2

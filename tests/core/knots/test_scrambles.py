@@ -19,7 +19,7 @@ POINTS = st.lists(st.integers(-6, 6), min_size=3, max_size=3).map(lambda p: np.a
 
 @pytest.mark.parametrize("name", ["0_1", "3_1", "m3_1", "4_1", "6_2", "hopf", "whitehead", "borromean"])
 @pytest.mark.parametrize("seed", [1, 3])
-def test_the_type_is_kept(name: str, seed: int) -> None:
+def test_the_type_is_kept(name, seed):
     curve = knot(name)
     messy = scramble(curve, seed, moves=3 * len(curve))
     assert messy.mesh == curve.mesh
@@ -30,9 +30,7 @@ def test_the_type_is_kept(name: str, seed: int) -> None:
 
 @given(triangle=st.tuples(POINTS, POINTS, POINTS), p=POINTS, q=POINTS)
 @settings(max_examples=100, deadline=None)
-def test_triangle_distance_is_never_too_large(
-    triangle: tuple[np.ndarray, np.ndarray, np.ndarray], p: np.ndarray, q: np.ndarray
-) -> None:
+def test_triangle_distance_is_never_too_large(triangle, p, q):
     corners = np.stack(triangle)
     found = float(triangle_distances(corners, p[None], q[None])[0])
     weights = np.array([(i, j, 12 - i - j) for i in range(13) for j in range(13 - i)]) / 12
@@ -48,9 +46,9 @@ def test_triangle_distance_is_never_too_large(
     ("option", "value"),
     [("moves", -1), ("reach", 0.0), ("reach", np.inf), ("gap", 0.0), ("gap", 1e-9), ("gap", np.nan)],
 )
-def test_what_is_refused(option: str, value: float) -> None:
+def test_what_is_refused(option, value):
     with pytest.raises(CurveError, match=f"{option} is|and {option}"):
-        scramble(knot("3_1"), 1, **{option: value})  # type: ignore[arg-type]
+        scramble(knot("3_1"), 1, **{option: value})
     with pytest.raises(CurveError, match="dimension 2"):
         scramble(Curve([[0, 0], [1, 0], [0, 1]]), 1)
 

@@ -18,13 +18,13 @@ from mobius_flow.core.knots.shapes import FILE, QUANTUM, least_energies, shapes
 from mobius_flow.lab.smooth.rest import energy_of
 
 
-def test_every_name_of_the_table_has_a_shape() -> None:
+def test_every_name_of_the_table_has_a_shape():
     assert list(shapes()) == list(KNOTS)
     assert FILE.stat().st_size < 80_000
 
 
 @pytest.mark.parametrize("name", family(KNOTS))
-def test_shapes_are_flat_fill_their_room_and_have_little_more_than_the_least_energy(name: str) -> None:
+def test_shapes_are_flat_fill_their_room_and_have_little_more_than_the_least_energy(name):
     least, _ = least_energies()[name]
     assert least * (1.0 - 1e-6) < energy_of(shapes()[name]) < 1.03 * least
     curve = smooth_knot(name)
@@ -38,7 +38,7 @@ def test_shapes_are_flat_fill_their_room_and_have_little_more_than_the_least_ene
     assert strand_distance(curve, apart=8) > 0.028
 
 
-def test_other_spellings_mirror_images_and_names_without_a_shape() -> None:
+def test_other_spellings_mirror_images_and_names_without_a_shape():
     assert np.array_equal(smooth_knot("Trefoil Knot").vertices, smooth_knot("3_1").vertices)
     assert np.array_equal(smooth_knot("m m trefoil").vertices, smooth_knot("3_1").vertices)
     assert np.array_equal(smooth_knot("m3_1").vertices, smooth_knot("3_1").vertices * [1, 1, -1])
@@ -50,7 +50,7 @@ def test_other_spellings_mirror_images_and_names_without_a_shape() -> None:
             smooth_knot(name)
 
 
-def test_a_motion_through_itself_is_not_isotopic() -> None:
+def test_a_motion_through_itself_is_not_isotopic():
     curve, mirrored = smooth_knot("3_1"), smooth_knot("m3_1")
     assert is_isotopic(curve, equal_steps(curve), curve, equal_steps(curve))
     assert not is_isotopic(curve, equal_steps(curve), mirrored, equal_steps(mirrored))
@@ -82,7 +82,7 @@ _SPEC.loader.exec_module(tool)
 
 @pytest.mark.kernels
 @pytest.mark.parametrize("name", family(["3_1", "4_1"], every=2))
-def test_shapes_are_made_anew_as_they_are_stored(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_shapes_are_made_anew_as_they_are_stored(name, tmp_path, monkeypatch):
     """To a few quanta, as linear algebra may round otherwise than where they were made; links turn over freely."""
     monkeypatch.setattr(tool, "KEPT", tmp_path)
     made, stored = tool.shape(name).coefficients, shapes()[name].coefficients

@@ -23,8 +23,8 @@ LINKS = [name for name in KNOTS if name[0] == "L"]
 KNOTTED = {"L7a2", "L7a3", "L7n1", "L7n2"}  # links with a trefoil among their components
 
 
-def test_the_table_has_all_prime_knots_to_ten_crossings() -> None:
-    counts: dict[int, int] = defaultdict(int)
+def test_the_table_has_all_prime_knots_to_ten_crossings():
+    counts = defaultdict(int)
     for name in KNOTS:
         if name[0] != "L":
             counts[int(name.split("_")[0])] += 1
@@ -34,7 +34,7 @@ def test_the_table_has_all_prime_knots_to_ten_crossings() -> None:
 
 
 @pytest.mark.parametrize("name", family(KNOWN))
-def test_knot_type_of_the_polygon(name: str) -> None:
+def test_knot_type_of_the_polygon(name):
     for curve in (knot(name), smooth_knot(name)):
         found = knot_invariants(curve.vertices)
         assert (found.genus, found.fibered, found.tau, found.alexander) == KNOWN[name][:4]
@@ -42,8 +42,8 @@ def test_knot_type_of_the_polygon(name: str) -> None:
 
 
 @pytest.mark.slow
-def test_polynomials_of_words_and_polygons_tell_all_but_four_pairs_apart() -> None:
-    groups: dict[tuple[object, ...], set[str]] = defaultdict(set)
+def test_polynomials_of_words_and_polygons_tell_all_but_four_pairs_apart():
+    groups = defaultdict(set)
     for name in KNOWN:
         known, word = KNOWN[name], KNOTS[name]
         assert burau_alexander(word, max(map(abs, word), default=0) + 1) == known.alexander
@@ -53,7 +53,7 @@ def test_polynomials_of_words_and_polygons_tell_all_but_four_pairs_apart() -> No
 
 
 @pytest.mark.parametrize("name", LINKS)
-def test_links(name: str) -> None:
+def test_links(name):
     ours, theirs = braid_diagram(KNOTS[name]), diagram_of(Link(name).PD_code())
     for link in (knot(name), smooth_knot(name)):
         assert tuple(pairwise_linking(link.components).values()) == ours.linking_numbers
@@ -64,8 +64,8 @@ def test_links(name: str) -> None:
     assert len(ours.passes) == len(theirs.passes)
 
 
-def test_rolfsens_names_count_crossings_and_components() -> None:
-    counts: dict[str, int] = defaultdict(int)
+def test_rolfsens_names_count_crossings_and_components():
+    counts = defaultdict(int)
     for rolfsen, name in ROLFSEN.items():
         crossings, components = rolfsen.split("_")[0].split("^")
         assert name[1] == crossings

@@ -89,7 +89,7 @@ def doubtful_pairs(start: Array, end: Array, heads: IntArray, clearance: float =
     return np.concatenate([np.empty((4, 0)), *leg_filter.doubtful_pairs(start, end, heads, clearance)], axis=1)
 
 
-def test_clearance() -> None:
+def test_clearance():
     square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
     link = np.concatenate([square, square + np.array([0.3, 0.2, 1e-6])])
     heads = Mesh((4, 4)).heads
@@ -102,7 +102,7 @@ def test_clearance() -> None:
         assert any(len(batch) == 3 for batch in batches) == (clearance == 1e-6)
 
 
-def test_an_end_on_an_edge_is_doubtful_whichever_way_is_rounded() -> None:
+def test_an_end_on_an_edge_is_doubtful_whichever_way_is_rounded():
     """Heights above the edge are 0, but for rounding; as many are positive as negative."""
     rng = np.random.default_rng(61)
     for part in rng.integers(1, 16, size=100):
@@ -112,20 +112,20 @@ def test_an_end_on_an_edge_is_doubtful_whichever_way_is_rounded() -> None:
         assert [0, 1, 2, 3] in np.sort(pairs, axis=0).T.tolist()
 
 
-def test_a_step_of_a_knot_needs_no_exact_decision() -> None:
+def test_a_step_of_a_knot_needs_no_exact_decision():
     rng, knot = np.random.default_rng(5), torus_trefoil(300)
     end = knot.vertices + 0.01 * rng.normal(size=knot.vertices.shape)
     assert doubtful_pairs(knot.vertices, end, knot.mesh.heads).size == 0
 
 
-def test_all_pairs_are_looked_at() -> None:
+def test_all_pairs_are_looked_at():
     points = np.zeros((30, 3))
     pairs = doubtful_pairs(points, points, Mesh((30,)).heads)
     assert pairs.shape == (4, 30 * 27 // 2)
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_overlapping_boxes_are_found_exactly_once(seed: int) -> None:
+def test_overlapping_boxes_are_found_exactly_once(seed):
     rng = np.random.default_rng(seed)
     low, others = (rng.integers(0, 9, size=(n, 3)).astype(float) for n in (30, 50))
     first, second = (low, low + rng.integers(0, 3, size=low.shape)), (others, others + rng.integers(0, 3, size=(50, 3)))
@@ -138,7 +138,7 @@ def test_overlapping_boxes_are_found_exactly_once(seed: int) -> None:
 
 
 @pytest.mark.parametrize("n", [3, 16, 40])
-def test_filters_lose_no_edge_that_meets_a_triangle(n: int) -> None:
+def test_filters_lose_no_edge_that_meets_a_triangle(n):
     """All edges against all triangles, exactly, with motions that graze and slide."""
     rng, curve = np.random.default_rng(n), regular_polygon(n)
     start, end = (curve.vertices + rng.integers(-2, 3, size=(n, 3)) for _ in range(2))

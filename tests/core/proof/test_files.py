@@ -64,7 +64,7 @@ def verdict(
         (npy((1, 4, 3), SQUARE), npy((1,), struct.pack("<d", 4.0)), "whole numbers"),
     ],
 )
-def test_arrays(tmp_path: Path, stage: bytes, sizes: bytes, reason: str) -> None:
+def test_arrays(tmp_path, stage, sizes, reason):
     assert verdict(tmp_path, npy((1, 4, 3), SQUARE)).accepted
     assert reason in verdict(tmp_path, stage, sizes).reason
 
@@ -84,22 +84,22 @@ HEADERS = {
 
 
 @pytest.mark.parametrize("header", HEADERS.values(), ids=HEADERS)
-def test_headers_that_numpy_does_not_write(tmp_path: Path, header: str) -> None:
+def test_headers_that_numpy_does_not_write(tmp_path, header):
     assert "stage_000 has a header that cannot be read" in verdict(tmp_path, headed(header, SQUARE)).reason
 
 
 @pytest.mark.parametrize("descr", ["=f8", "f8", "|f8", "<d", ">f8", "<f4", "float64"])
-def test_types_other_than_the_one_of_the_format(tmp_path: Path, descr: str) -> None:
+def test_types_other_than_the_one_of_the_format(tmp_path, descr):
     assert "it must be (k, n, m) of float64" in verdict(tmp_path, npy((1, 4, 3), SQUARE, descr)).reason
 
 
 @pytest.mark.parametrize("shape", [(3, 0), (10**12, 0), (-1, -3), (0, 0)])
-def test_pins_in_no_space(tmp_path: Path, shape: tuple[int, ...]) -> None:
+def test_pins_in_no_space(tmp_path, shape):
     pins = npy(shape, SQUARE[: 24 * (shape[0] < 0)])
     assert "pins has " in verdict(tmp_path, npy((1, 4, 3), SQUARE), pins=pins).reason
 
 
-def test_what_is_no_file_of_arrays(tmp_path: Path) -> None:
+def test_what_is_no_file_of_arrays(tmp_path):
     (tmp_path / "text.npz").write_text(json.dumps({"stage_000": []}))
     for path in (tmp_path, tmp_path / "none", tmp_path / "text.npz", "a\0b", ""):
         assert "cannot be read" in verify(path).reason
@@ -108,7 +108,7 @@ def test_what_is_no_file_of_arrays(tmp_path: Path) -> None:
     assert "numbered" in verify(archive(tmp_path / "empty.npz", {})).reason
 
 
-def test_fortran_order_is_the_same_trajectory(tmp_path: Path) -> None:
+def test_fortran_order_is_the_same_trajectory(tmp_path):
     """As numpy.savez writes a transposed array; small whole numbers in it are read, too."""
     frames = np.stack([regular_polygon(8).vertices * k for k in (1.0, 1.1, 1.3)])
     obstacle = {"obstacle_000_vertices": 9.0 + np.eye(3), "obstacle_000_faces": np.array([[0, 1, 2], [2, 1, 0]])}
@@ -129,7 +129,7 @@ def test_fortran_order_is_the_same_trajectory(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("fortran", [False, True])
 @pytest.mark.parametrize("claimed", [10**9, 2**62])
-def test_claims_and_bombs_take_no_memory(tmp_path: Path, fortran: bool, claimed: int) -> None:
+def test_claims_and_bombs_take_no_memory(tmp_path, fortran, claimed):
     """Claims of many frames or vertices, with 16 MB of zeros that compress to nothing."""
     zeros, vertices = bytes(1 << 24), struct.pack("<q", claimed)
     for shape, sizes in (((claimed, 4, 3), SIZES), ((1, claimed, 3), npy((1,), vertices, "<i8"))):
@@ -144,13 +144,13 @@ def test_claims_and_bombs_take_no_memory(tmp_path: Path, fortran: bool, claimed:
 
 
 @pytest.mark.parametrize("scale", [1e300, 1.5e308, 1e-300])
-def test_numbers_near_the_end_of_the_range(tmp_path: Path, scale: float) -> None:
+def test_numbers_near_the_end_of_the_range(tmp_path, scale):
     square = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
     fine = np.stack([square, 0.5 * (square + np.roll(square, -1, axis=0))], axis=1).reshape(-1, 3)
     assert checked(tmp_path, trajectory([scale * square], [scale * fine, 0.5 * scale * fine])).accepted
 
 
-def test_damaged_files_never_crash_it(tmp_path: Path) -> None:
+def test_damaged_files_never_crash_it(tmp_path):
     frames = [regular_polygon(8).vertices * k for k in (1.0, 1.1, 1.3)]
     checked(tmp_path, trajectory(frames), np.savez_compressed)
     path, rng = tmp_path / "T.npz", np.random.default_rng(9)
@@ -163,13 +163,13 @@ def test_damaged_files_never_crash_it(tmp_path: Path) -> None:
         assert isinstance(verify(path), Verdict)
 
 
-def test_edges_too_short_to_place_vertices_on(tmp_path: Path) -> None:
+def test_edges_too_short_to_place_vertices_on(tmp_path):
     square = np.array([[0.0, 0, 0], [1e-320, 0, 0], [1, 1, 0], [0, 1, 0]])
     finer = np.insert(square, 1, [[0.5, 0.5, 0]], axis=0)
     assert not checked(tmp_path, trajectory([square], [finer])).accepted
 
 
-def test_what_a_few_bytes_may_unpack_to(tmp_path: Path) -> None:
+def test_what_a_few_bytes_may_unpack_to(tmp_path):
     """Motions that stand still, of which a file of 80 kB has enough for an hour."""
     for count, said in ((10, ""), (1 << 18, "unpacks to more than 20 times its size; write it with numpy.savez")):
         found = verdict(tmp_path, npy((count, 4, 3), SQUARE * count), packed=zipfile.ZIP_DEFLATED)
@@ -179,5 +179,5 @@ def test_what_a_few_bytes_may_unpack_to(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("path", sorted(FORGED.glob("z*.npz")), ids=lambda path: path.stem)
-def test_forgeries_of_an_audit(path: Path) -> None:
+def test_forgeries_of_an_audit(path):
     assert not verify(path).accepted

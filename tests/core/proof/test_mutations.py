@@ -89,7 +89,7 @@ def mutated(stages: Stages, rng: np.random.Generator) -> tuple[Stages, int, int]
 
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("name", RUNS)
-def test_a_strand_moved_through_another_is_refused(tmp_path: Path, name: str, seed: int) -> None:
+def test_a_strand_moved_through_another_is_refused(tmp_path, name, seed):
     stages, stage, frame = mutated(run(name), np.random.default_rng([seed, len(name)]))
     verdict = verdict_on(tmp_path, stages)
     assert (verdict.accepted, verdict.stage, verdict.frame) == (False, stage, frame)

@@ -21,7 +21,7 @@ def bar(x: float, height: float, tilt: float = 0.0) -> Array:
     return np.array([[x, -1.0, height - tilt], [x, 1.0, height + tilt]])
 
 
-def test_a_bar_falls_through_another() -> None:
+def test_a_bar_falls_through_another():
     (found,) = of_two([*LYING, *bar(0.25, 1.0)], [*LYING, *bar(0.25, -3.0)])
     assert found["time"] == 0.25
     assert found["place"].tolist() == [0.25, 0.0, 0.0]
@@ -29,7 +29,7 @@ def test_a_bar_falls_through_another() -> None:
     assert found["sign"] == -back["sign"] != 0
 
 
-def test_edges_that_pass_several_times_are_told_each_time() -> None:
+def test_edges_that_pass_several_times_are_told_each_time():
     # the bar turns over while the lying edge shifts: the volume is a cubic with three roots in between
     rng = np.random.default_rng(2)
     most = 0
@@ -58,14 +58,14 @@ def test_edges_that_pass_several_times_are_told_each_time() -> None:
         pytest.param([[0.0, 0, -0.25], [0, 1, 0.25]], [[0, -1, 0.25], [0, 0, -0.25]], 0.5, id="and turns back"),
     ],
 )
-def test_what_only_touches_is_told_once_and_so(start: Array, end: Array, time: float) -> None:
+def test_what_only_touches_is_told_once_and_so(start, end, time):
     (found,) = of_two([*LYING, *start], [*LYING, *end])
     assert (found["sign"], found["time"]) == (0, pytest.approx(time, abs=1e-15))
     before = of_two([*LYING, *start], [*LYING, *end], from_start=False)
     assert len(before) == (time > 0)
 
 
-def test_neighbours_do_not_count_and_all_others_do() -> None:
+def test_neighbours_do_not_count_and_all_others_do():
     # a closed quadrilateral that turns inside out, whose opposite edges pass through each other
     beads = np.array([0, 1, 2, 3, 0])
     start = np.array([[0.0, 0, 0], [1, 0, 0.5], [1, 1, 0], [0, 1, 0.5]])
@@ -77,7 +77,7 @@ def test_neighbours_do_not_count_and_all_others_do() -> None:
 
 
 @pytest.mark.parametrize("cell", [np.diag([4.0, 5.0, 6.0]), np.array([[4.0, 0, 0], [1.5, 5, 0], [-1, 2, 6]])])
-def test_images_meet_wherever_the_file_has_them(cell: Array) -> None:
+def test_images_meet_wherever_the_file_has_them(cell):
     """The same motion, with each end of each edge moved by whole boxes in the file, also between the frames."""
     rng = np.random.default_rng(7)
     start = np.array([*LYING, *bar(0.25, 1.0, 0.1)])
@@ -96,7 +96,7 @@ def test_images_meet_wherever_the_file_has_them(cell: Array) -> None:
         assert np.allclose(found["place"], known["place"] - lattice[0, 0] @ cell)
 
 
-def test_a_growing_box_carries_images_along() -> None:
+def test_a_growing_box_carries_images_along():
     """An image recedes with the box: what would meet in the first one's does not."""
     frames = [np.array([*LYING, *bar(0.0, height)]) for height in (5.0, 4.0)]
     places = [Placed(each, np.zeros((4, 3), dtype=int), np.diag([9.0, 9.0, 4.5])) for each in frames]
@@ -106,6 +106,6 @@ def test_a_growing_box_carries_images_along() -> None:
     assert len(passings(*places, np.arange(4), np.array([0, 2]))) == 0
 
 
-def test_a_box_that_is_too_small_is_refused() -> None:
+def test_a_box_that_is_too_small_is_refused():
     with pytest.raises(CurveError, match="further than through a whole one"):
         of_two([*LYING, *bar(0.0, 1.0)], [*LYING, *bar(0.0, -9.0)], np.diag([9.0, 9.0, 2.0]))

@@ -1,7 +1,6 @@
 """Trajectories that claim what is not true, each forged in its own way: all are refused, with the reason."""
 
 import zipfile
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -51,7 +50,7 @@ LEGS = {
 
 
 @pytest.mark.parametrize("name", LEGS)
-def test_legs(tmp_path: Path, name: str) -> None:
+def test_legs(tmp_path, name):
     forge, reason, frame = LEGS[name]
     arrays = small()
     exec(forge, {"frames": arrays["stage_000"], "np": np})
@@ -63,7 +62,7 @@ def test_legs(tmp_path: Path, name: str) -> None:
         assert str(verdict) == f"rejected: stage 0, frame {frame}: {edges} (counted from 1) meet"
 
 
-def test_a_multiple_root(tmp_path: Path) -> None:
+def test_a_multiple_root(tmp_path):
     assert "meet" in checked(tmp_path, beside_a_multiple_root()).reason
 
 
@@ -82,7 +81,7 @@ STAGES = {
 
 
 @pytest.mark.parametrize("name", STAGES)
-def test_changes_of_stage(tmp_path: Path, name: str) -> None:
+def test_changes_of_stage(tmp_path, name):
     vertices, sizes, reason = STAGES[name]
     verdict = checked(tmp_path, trajectory(([4, 4, 3], [FRAME]), (sizes, [vertices])))
     assert (verdict.accepted, verdict.stage, verdict.frame) == (False, 1, None)
@@ -106,7 +105,7 @@ def with_middle(points: np.ndarray, edge: int, shift: float = 0.0) -> np.ndarray
         (ARC[[0, 2, 3]], "vertex 1 of the component is not on the edge between its neighbours"),
     ],
 )
-def test_changes_of_open_components(tmp_path: Path, other: np.ndarray, reason: str) -> None:
+def test_changes_of_open_components(tmp_path, other, reason):
     finer = with_middle(with_middle(ARC, 2), 0)
     coarser = np.delete(with_middle(finer, 1), 1, axis=0)
     assert checked(tmp_path, trajectory([ARC], [finer], [coarser], opened=True)).accepted
@@ -162,7 +161,7 @@ ARRAYS = {
 
 
 @pytest.mark.parametrize("name", ARRAYS)
-def test_arrays(tmp_path: Path, name: str) -> None:
+def test_arrays(tmp_path, name):
     change, reason = ARRAYS[name]
     arrays = small() | OBSTACLE
     assert checked(tmp_path, arrays).accepted
@@ -174,13 +173,13 @@ def test_arrays(tmp_path: Path, name: str) -> None:
 
 
 @pytest.mark.parametrize(("size", "places"), [(5_000, 3), (9_000, 1)])
-def test_many_vertices_in_few_places_are_refused_at_once(tmp_path: Path, size: int, places: int) -> None:
+def test_many_vertices_in_few_places_are_refused_at_once(tmp_path, size, places):
     assert "meet" in checked(tmp_path, trajectory([np.eye(3)[np.arange(size) % places]])).reason
 
 
 @pytest.mark.filterwarnings("ignore:Duplicate name")
 @pytest.mark.parametrize("name", ["component_sizes_000.npy", "stage_000.npy"])
-def test_two_arrays_of_one_name(tmp_path: Path, name: str) -> None:
+def test_two_arrays_of_one_name(tmp_path, name):
     checked(tmp_path, small())
     with zipfile.ZipFile(tmp_path / "T.npz", "a") as file:
         file.writestr(name, file.read(name))
@@ -188,7 +187,7 @@ def test_two_arrays_of_one_name(tmp_path: Path, name: str) -> None:
 
 
 @pytest.mark.parametrize("method", [zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
-def test_methods_of_packing_that_numpy_does_not_use(tmp_path: Path, method: int) -> None:
+def test_methods_of_packing_that_numpy_does_not_use(tmp_path, method):
     checked(tmp_path, small())
     with zipfile.ZipFile(tmp_path / "T.npz") as file:
         members = {name: file.read(name) for name in file.namelist()}

@@ -18,7 +18,7 @@ COUNT = int(os.environ.get("MOBIUS_FLOW_MOTIONS", "30"))
 
 
 @pytest.fixture(scope="module")
-def run() -> Arrays:
+def run():
     """A short relaxation of a figure-eight knot with few vertices."""
     trajectory = Trajectory()
     options = RelaxOptions(radius="keep", max_iterations=6, vertices=40, mesh="fixed")
@@ -31,21 +31,21 @@ def verdicts(path: Path, arrays: Arrays) -> tuple[checker.Verdict, checker.Verdi
     return verify(path / "rope.npz"), checker.check(path / "rope.npz")
 
 
-def test_a_run_is_accepted(tmp_path: Path, run: Arrays) -> None:
+def test_a_run_is_accepted(tmp_path, run):
     for verdict in verdicts(tmp_path, run):
         assert verdict.accepted
         assert verdict.radius == tuple(run["radius"])
         assert "a rope of radius" in str(verdict)
 
 
-def test_files_without_a_radius_say_nothing_of_ropes(tmp_path: Path, run: Arrays) -> None:
+def test_files_without_a_radius_say_nothing_of_ropes(tmp_path, run):
     for verdict in verdicts(tmp_path, {name: array for name, array in run.items() if name != "radius"}):
         assert verdict.accepted
         assert "rope" not in str(verdict)
 
 
 @pytest.mark.parametrize("factor", [1.4, 2.0, 50.0, 1e6])
-def test_no_rope_is_thicker_than_it_is(tmp_path: Path, run: Arrays, factor: float) -> None:
+def test_no_rope_is_thicker_than_it_is(tmp_path, run, factor):
     one, other = verdicts(tmp_path, run | {"radius": factor * run["radius"]})
     assert not one.accepted
     assert not other.accepted
@@ -64,7 +64,7 @@ def test_no_rope_is_thicker_than_it_is(tmp_path: Path, run: Arrays, factor: floa
         ([1], "it must be a list of float64"),
     ],
 )
-def test_radii_that_are_none(tmp_path: Path, run: Arrays, radius: list[object], reason: str) -> None:
+def test_radii_that_are_none(tmp_path, run, radius, reason):
     for verdict in verdicts(tmp_path, run | {"radius": np.array(radius)}):
         assert not verdict.accepted
         assert reason in verdict.reason
@@ -92,7 +92,7 @@ def crowded(start: np.ndarray, end: np.ndarray, radius: float) -> bool:
     return False
 
 
-def test_forged_vertices(tmp_path: Path, run: Arrays) -> None:
+def test_forged_vertices(tmp_path, run):
     """Of some forgeries none on whose way strands are too near is accepted, and all that the program proves are."""
     mesh, radius, refused = Mesh(tuple(run["component_sizes_000"].tolist())), run["radius"], 0
     for seed in range(COUNT):
@@ -108,7 +108,7 @@ def test_forged_vertices(tmp_path: Path, run: Arrays) -> None:
     assert refused > COUNT / 10
 
 
-def test_the_plain_checker_agrees_about_forgeries(tmp_path: Path, run: Arrays) -> None:
+def test_the_plain_checker_agrees_about_forgeries(tmp_path, run):
     answers = [[verdict.accepted for verdict in verdicts(tmp_path, moved(run, seed))] for seed in range(12)]
     assert all(one == other for one, other in answers)
     assert {one for one, _ in answers} == {True, False} or not any(one for one, _ in answers)
@@ -121,9 +121,7 @@ def test_the_plain_checker_agrees_about_forgeries(tmp_path: Path, run: Arrays) -
         ([[5, 0.05], [0, 0.1], [0, -0.1], [5, -0.05]], False, 0.05),  # half of what is between the ends
     ],
 )
-def test_strands_next_to_a_corner_are_those_of_the_rope_that_fits(
-    tmp_path: Path, shape: list[list[float]], closed: bool, limit: float
-) -> None:
+def test_strands_next_to_a_corner_are_those_of_the_rope_that_fits(tmp_path, shape, closed, limit):
     """However sharp it is; those after the next are looked at."""
     arrays = {"stage_000": np.array([shape], dtype=float), "component_sizes_000": np.array([len(shape)])}
     arrays["component_closed_000"] = np.array([closed])
@@ -132,7 +130,7 @@ def test_strands_next_to_a_corner_are_those_of_the_rope_that_fits(
         assert [verdict.accepted for verdict in found] == [fits, fits]
 
 
-def test_obstacles_are_as_far_as_the_radius(tmp_path: Path) -> None:
+def test_obstacles_are_as_far_as_the_radius(tmp_path):
     wall = Obstacle([[-5.0, -5, 0], [5, -5, 0], [0, 9, 0]], [[0, 1, 2]])
     strand = np.array([[0.0, 0, 1], [1, 0, 1]])
     arrays = {
@@ -148,7 +146,7 @@ def test_obstacles_are_as_far_as_the_radius(tmp_path: Path) -> None:
             assert accepted or verdict.obstacle == 0
 
 
-def test_a_corner_gets_too_sharp(tmp_path: Path) -> None:
+def test_a_corner_gets_too_sharp(tmp_path):
     arrays = {
         "stage_000": np.array([[[1.0, 0, 0], [0, 0, 0], [0, 1.0, 0]], [[1.0, 0, 0], [0, 0, 0], [0.4, 0.9, 0]]]),
         "component_sizes_000": np.array([3]),
@@ -160,7 +158,7 @@ def test_a_corner_gets_too_sharp(tmp_path: Path) -> None:
             assert accepted or "bends too sharply" in verdict.reason
 
 
-def test_edges_that_count_in_part(tmp_path: Path) -> None:
+def test_edges_that_count_in_part(tmp_path):
     """A hairpin whose legs close in on each other: near the bend they do not count, at their ends they do."""
     hairpin = np.array([[[10.0, 0, 0], [0, 0, 0], [0, 1, 0], [10, 0.5, 0]]])
     arrays = {"stage_000": hairpin, "component_sizes_000": np.array([4]), "component_closed_000": np.array([False])}
@@ -171,7 +169,7 @@ def test_edges_that_count_in_part(tmp_path: Path) -> None:
             assert accepted or verdict.edges == (0, 2)
 
 
-def test_a_file_has_the_least_radius_of_its_run() -> None:
+def test_a_file_has_the_least_radius_of_its_run():
     trajectory, iterates = Trajectory(), list[Iterate]()
     minimize(knot("3_1", 30), RelaxOptions(radius="keep", max_iterations=2), callback=iterates.append)
     for share, iterate in zip((1.0, 0.5, 0.8), iterates, strict=False):
@@ -180,7 +178,7 @@ def test_a_file_has_the_least_radius_of_its_run() -> None:
 
 
 @pytest.mark.parametrize("margin", [1e-3, 1e-4, 3.5e-5])
-def test_the_checker_bounds_corners_as_finely_as_runs_do(margin: float) -> None:
+def test_the_checker_bounds_corners_as_finely_as_runs_do(margin):
     """Of a corner whose edge shrinks while the angle does, bounds over a part of the time are loose."""
     start, end = np.array([[-1.0, 0, 0], [0, 0, 0], [0, 2, 0]]), np.array([[-1.0, 0, 0], [0, 0, 0], [0.01, 1, 0]])
     assert is_rope(Mesh((3,), (False,)), start, end, np.array([1.0 - margin]))
@@ -191,7 +189,7 @@ def test_the_checker_bounds_corners_as_finely_as_runs_do(margin: float) -> None:
 
 
 @pytest.mark.parametrize("first", [7, 19])
-def test_strands_of_closed_components_count(tmp_path: Path, first: int) -> None:
+def test_strands_of_closed_components_count(tmp_path, first):
     """Wherever the numbers of vertices begin: rings that come nearer than two radii, and those that do not."""
     ring = regular_polygon(24).vertices
     rings = [np.roll(ring, first, axis=0), ring[:, [0, 2, 1]] + [1.0, 0.01, 0.02]]

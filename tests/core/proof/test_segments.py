@@ -42,21 +42,21 @@ def moved(points: list[list[float]], first: list[float], second: list[float]) ->
         ([[0, 0], [0, 0], [1, 1], [1, 1]], [[2, 2], [2, 2], [1, 1], [1, 1]], 0.5),  # two points
     ],
 )
-def test_known_contacts(start: list[list[float]], end: list[list[float]], contact: float | None) -> None:
+def test_known_contacts(start, end, contact):
     assert meet(start, end) == (contact is not None)
     if contact is not None:
         assert until(meet, start, end, contact)
         assert contact == 0 or not until(meet, start, end, np.nextafter(contact, 0.0))
 
 
-def test_contact_at_an_irrational_time() -> None:
+def test_contact_at_an_irrational_time():
     """The point (t, 0) meets the edge from (0, −1) to (2, 4t − 1) where 2t² = 1."""
     start, end = [[0, -1], [2, -1], [0, 0], [0, 0]], [[0, -1], [2, 3], [1, 0], [1, 0]]
     before, after = 0.7071067811865475, 0.7071067811865476
     assert [until(meet, start, end, t) for t in (before, after)] == [False, True]
 
 
-def test_edges_that_meet_beside_a_multiple_root() -> None:
+def test_edges_that_meet_beside_a_multiple_root():
     """The polynomials have multiple roots where roots are told apart; MOBIUS_FLOW_SHADOWS=3000 makes more of them."""
     rng = np.random.default_rng(617)
     for _ in range(int(os.environ.get("MOBIUS_FLOW_SHADOWS", "300"))):
@@ -81,7 +81,7 @@ def interval(time: Time) -> tuple[Fraction, Fraction]:
     return Fraction(i, m), Fraction(j, m)
 
 
-def test_random_products() -> None:
+def test_random_products():
     rng = np.random.default_rng(13)
     for _ in range(200):
         chosen = [Fraction(int(a), int(b)) for a, b in rng.integers([-3, 1], [9, 8], size=(rng.integers(1, 5), 2))]
@@ -101,7 +101,7 @@ def test_random_products() -> None:
                     assert low < x < high or low == x == high
 
 
-def test_irrational_roots() -> None:
+def test_irrational_roots():
     square = [-1, -2, 1]  # 2 t² − 1
     (root,) = roots(square)
     assert sign(square, root) == 0
@@ -110,7 +110,7 @@ def test_irrational_roots() -> None:
 
 
 @pytest.mark.parametrize("gap", [0, 2**-90])
-def test_double_root_and_close_roots(gap: float) -> None:
+def test_double_root_and_close_roots(gap):
     half, near = Fraction(1, 2), Fraction(1, 2) + Fraction(gap)
     found = sorted(roots(product(linear(half), linear(half), linear(near))), key=interval)
     assert len(found) == 1 + bool(gap)
@@ -118,16 +118,16 @@ def test_double_root_and_close_roots(gap: float) -> None:
 
 
 @pytest.mark.parametrize("p", [[1], [1, 2, 2], [2, 1], [5, 7, 3], [0, 1], [1, 0]])
-def test_no_roots_inside(p: Polynomial) -> None:
+def test_no_roots_inside(p):
     assert list(roots(p)) == []
 
 
-def test_signs_at_the_ends_and_of_nothing() -> None:
+def test_signs_at_the_ends_and_of_nothing():
     assert (sign([0, 1], START), sign([3, -4], START), sign([1, 0], END), sign([3, -4], END)) == (0, 3, 0, -4)
     assert sign([0, 0], START) == 0
 
 
-def test_greatest_common_divisor() -> None:
+def test_greatest_common_divisor():
     p, q, r = [-1, 3], [2, 0, 1], [-5, 7]
     assert common_divisor(product(p, q), product(p, r)) in (p, [1, -3])
     assert len(common_divisor(q, r)) == 1

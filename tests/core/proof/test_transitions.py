@@ -25,7 +25,7 @@ def changed(folder: Path, bent: FloatArray, strand: FloatArray) -> Verdict:
 
 
 @pytest.mark.parametrize(("y", "u"), [(0.0, DENORMAL), (1.0, 2.0**-52)])
-def test_a_change_too_small_for_doubles_is_checked(tmp_path: Path, y: float, u: float) -> None:
+def test_a_change_too_small_for_doubles_is_checked(tmp_path, y, u):
     """Half of a last place is the way from the bent edge to the straight one, and a strand is in between."""
     bent = np.array([[-1, y, 0], [0, y, 0], [1, y + u, 0], [1, 5, 0], [-1, 5, 0]], dtype=float)
     strand = np.array([[0, y, -1], [0, y + u, 3], [0, -5, 3], [0, -5, -1]], dtype=float)
@@ -34,7 +34,7 @@ def test_a_change_too_small_for_doubles_is_checked(tmp_path: Path, y: float, u: 
     assert "meet" in verdict.reason
 
 
-def test_the_smallest_doubles_have_last_places_that_are_as_large(tmp_path: Path) -> None:
+def test_the_smallest_doubles_have_last_places_that_are_as_large(tmp_path):
     bent = DENORMAL * np.array([[-1000.0, 0, 0], [0, 3, 0], [1000, 0, 0], [0, 1000, 0]])
     strand = DENORMAL * np.array([[5000.0, 0, 0], [6000, 0, 0], [5000, 1000, 0]])
     assert changed(tmp_path, bent, strand).accepted
@@ -57,7 +57,7 @@ def crosses(bent: FloatArray, strand: FloatArray) -> bool:
 
 
 @pytest.mark.parametrize("unit", UNITS)
-def test_random_transitions(tmp_path: Path, unit: float) -> None:
+def test_random_transitions(tmp_path, unit):
     rng, seen = np.random.default_rng(41), {True: 0, False: 0}
     for _ in range(24):
         bent = np.array([[-4, 0, 0], [0, 0, 0], [4, 0, 0], [4, 40, 0], [-4, 40, 0]], dtype=float)
@@ -80,13 +80,13 @@ EDGE = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
 
 
 @pytest.mark.parametrize("places", [[0.0], [1.0], [0.5, 0.5], [0.5, 0.25], [-0.25], [1.25]])
-def test_vertices_on_an_edge_follow_each_other_between_its_ends(places: list[float]) -> None:
+def test_vertices_on_an_edge_follow_each_other_between_its_ends(places):
     polygon = np.array([EDGE[0], *([x, 0.0, 0.0] for x in places), *EDGE[1:]])
     with pytest.raises(RefusedError, match="is not on the edge between its neighbours"):
         straightened(polygon.tolist(), [0, len(places) + 1, len(places) + 2])
 
 
-def test_rounding_is_sixteen_units_of_the_last_place_of_the_largest_coordinate() -> None:
+def test_rounding_is_sixteen_units_of_the_last_place_of_the_largest_coordinate():
     kept, height = [0, 2, 3], 2.0**-48
     near, far = (np.array([EDGE[0], [0.5, y, 0.0], *EDGE[1:]]) for y in (height, np.nextafter(height, 1.0)))
     assert straightened(near.tolist(), kept) == {1: (0.5, 0.0, 0.0)}

@@ -1,7 +1,5 @@
 """Legs, stages, obstacles and pins of trajectories: what is true is accepted, what is not is refused with the place."""
 
-from pathlib import Path
-
 import numpy as np
 import numpy.typing as npt
 import pytest
@@ -11,7 +9,7 @@ from mobius_flow.core.proof import Verdict, verify
 from shapes import hopf_link, regular_polygon, torus_trefoil
 from solids import box, plate, rod, sphere
 from tasks import wanted
-from trajectory_files import Arrays, Stage, checked, trajectory
+from trajectory_files import Arrays, checked, trajectory
 
 Array = npt.NDArray[np.float64]
 PINNED = torus_trefoil(40)
@@ -42,23 +40,23 @@ def rising(steps: int, top: float) -> list[Array]:
 
 @pytest.mark.parametrize("offset", [0.0, 1e5])
 @pytest.mark.parametrize("save", [np.savez, np.savez_compressed])
-def test_free_motions(tmp_path: Path, save, offset: float) -> None:
+def test_free_motions(tmp_path, save, offset):
     verdict = checked(tmp_path, trajectory([frame + offset for frame in walk(torus_trefoil(60), 12)]), save)
     assert verdict == Verdict(True, 1, 12)
     assert str(verdict) == "accepted: no contact on 12 legs in 1 stage"
 
 
-def test_links_and_plane_curves(tmp_path: Path) -> None:
+def test_links_and_plane_curves(tmp_path):
     assert checked(tmp_path, trajectory(([30, 30], walk(hopf_link(30), 6)))).accepted
     assert checked(tmp_path, trajectory(walk(regular_polygon(30, dimension=2), 6))).accepted
 
 
-def test_a_single_frame_that_touches_itself(tmp_path: Path) -> None:
+def test_a_single_frame_that_touches_itself(tmp_path):
     verdict = checked(tmp_path, trajectory([np.array([[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]])]))
     assert (verdict.accepted, verdict.edges, verdict.frame) == (False, (0, 2), 0)
 
 
-def test_a_triangle_may_turn_over_in_space(tmp_path: Path) -> None:
+def test_a_triangle_may_turn_over_in_space(tmp_path):
     triangle = np.array([[0.0, 0.0], [1.0, 0.0], [0.3, 1.0]])
     flat, turned = (np.column_stack([triangle * [1, sign], np.zeros(3)]) for sign in (1, -1))
     assert checked(tmp_path, trajectory([flat, flat[:, [0, 2, 1]], turned])).accepted
@@ -67,7 +65,7 @@ def test_a_triangle_may_turn_over_in_space(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("offset", [0.0, 1e4])
-def test_refinement_and_coarsening(tmp_path: Path, offset: float) -> None:
+def test_refinement_and_coarsening(tmp_path, offset):
     first = walk(torus_trefoil(40), 3)
     fine = refined(first[-1] + offset, 0.3, 0.7000001)
     second = [fine, *(frame + offset for frame in walk(Curve(fine - offset), 2)[1:])]
@@ -78,15 +76,15 @@ def test_refinement_and_coarsening(tmp_path: Path, offset: float) -> None:
     assert (verdict.stages, verdict.legs) == (5, 5)
 
 
-def test_refinement_of_one_component(tmp_path: Path) -> None:
+def test_refinement_of_one_component(tmp_path):
     one, other = hopf_link(20).vertices.reshape(2, 20, 3)
     finer = np.concatenate([one, refined(other, 0.1, 0.4, 0.9)])
     assert checked(tmp_path, trajectory(([20, 20], [hopf_link(20).vertices]), ([20, 80], [finer]))).accepted
 
 
-def test_stages_may_end_anywhere(tmp_path: Path) -> None:
+def test_stages_may_end_anywhere(tmp_path):
     frames = walk(torus_trefoil(30), 4)
-    told: list[tuple[int, int]] = []
+    told = []
     verdict = checked(tmp_path, trajectory(frames[:3], frames[2:]))
     assert (verdict.accepted, verdict.legs) == (True, 4)
     assert verify(tmp_path / "T.npz", lambda done, legs: told.append((done, legs))) == verdict
@@ -97,14 +95,14 @@ def test_stages_may_end_anywhere(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("between", [True, False])
 @pytest.mark.parametrize("still", [True, False])
-def test_rounding_of_inserted_vertices_is_checked(tmp_path: Path, between: bool, still: bool) -> None:
+def test_rounding_of_inserted_vertices_is_checked(tmp_path, between, still):
     """A strand, or an obstacle, is so near that the rounding of an inserted vertex moves the edge through it."""
     unit = np.array([0.0, 2.0**-50, 0.0])
     edge = np.array([[0.0, 0.0, 1.0], [1.0, 0.25, 1.0], [1.0, 0.25, 2.0], [0.0, 0.0, 2.0]])
     middle = 0.5 * (edge[0] + edge[1])
     bent = np.insert(edge, 1, middle + 2 * unit, axis=0)
     strand = middle + (1 if between else 3) * unit + np.array([[0.0, 0.0, -0.25], [0.0, 0.0, 0.25], [0.0, 0.5, 0.0]])
-    parts: list[Stage] = [[edge], [bent]]
+    parts = [[edge], [bent]]
     if not still:
         parts = [([len(part), 3], [np.concatenate([part, strand])]) for part in (edge, bent)]
     obstacles = [Obstacle(strand[:2], [[0, 1]])] if still else []
@@ -123,19 +121,19 @@ def bundle(strands: int, height: float = 0.0) -> Arrays:
     return trajectory(([2] * strands, [frame]), opened=True)
 
 
-def test_more_exact_decisions_than_there_is_time_for_are_refused(tmp_path: Path) -> None:
+def test_more_exact_decisions_than_there_is_time_for_are_refused(tmp_path):
     assert checked(tmp_path, bundle(12)).accepted
     verdict = checked(tmp_path, bundle(80))
     assert (verdict.accepted, verdict.stage, verdict.frame, verdict.edges) == (False, 0, 0, None)
     assert "too many edges are so near to each other" in verdict.reason
 
 
-def test_decisions_about_numbers_of_very_different_size_count_for_more(tmp_path: Path) -> None:
+def test_decisions_about_numbers_of_very_different_size_count_for_more(tmp_path):
     assert "too many edges are so near to each other" in checked(tmp_path, bundle(12, height=2.0**-1000)).reason
 
 
 @pytest.mark.parametrize("offset", [0.0, 1e4])
-def test_what_stays_clear_of_obstacles(tmp_path: Path, offset: float) -> None:
+def test_what_stays_clear_of_obstacles(tmp_path, offset):
     solids = (plate(2.0), sphere(5.0), rod(0, 0), box(4, 5))
     obstacles = [Obstacle(each.vertices + offset, each.faces) for each in solids]
     verdict = checked(tmp_path, trajectory([frame + offset for frame in rising(5, 0.5)], obstacles=obstacles))
@@ -144,7 +142,7 @@ def test_what_stays_clear_of_obstacles(tmp_path: Path, offset: float) -> None:
 
 
 @pytest.mark.parametrize("obstacle", [plate(2.0), Obstacle([[-9, 1.0, 2.0], [9, 1.0, 2.0]], [[0, 1]])])
-def test_a_leg_through_an_obstacle(tmp_path: Path, obstacle: Obstacle) -> None:
+def test_a_leg_through_an_obstacle(tmp_path, obstacle):
     first, last = rising(1, 4.0)
     assert all(checked(tmp_path, trajectory([frame], obstacles=[obstacle])).accepted for frame in (first, last))
     verdict = checked(tmp_path, trajectory([first, first, last], obstacles=[box(7, 8), obstacle]))
@@ -153,7 +151,7 @@ def test_a_leg_through_an_obstacle(tmp_path: Path, obstacle: Obstacle) -> None:
     assert str(verdict).endswith(f"edge {edge + 1} meets obstacle 2 (counted from 1)")
 
 
-def test_a_start_that_pierces_or_touches(tmp_path: Path) -> None:
+def test_a_start_that_pierces_or_touches(tmp_path):
     for obstacle in (plate(0.0), rod(1.0, 0.0), box(-0.5, 2.0)):
         verdict = checked(tmp_path, trajectory([regular_polygon(20).vertices], obstacles=[obstacle]))
         assert (verdict.accepted, verdict.frame, verdict.obstacle) == (False, 0, 0)
@@ -167,7 +165,7 @@ def moved(*vertices: int) -> list[Array]:
 
 
 @pytest.mark.parametrize("mesh", ["fixed", "adaptive"])
-def test_a_run_writes_its_pins_and_they_hold_on_every_mesh(tmp_path: Path, mesh: str) -> None:
+def test_a_run_writes_its_pins_and_they_hold_on_every_mesh(tmp_path, mesh):
     record = Trajectory()
     for iterate in relax(*wanted(PINNED, pins=(3, 17), pin_tangents=True, mesh=mesh, max_iterations=12)):
         record.add(iterate)
@@ -177,14 +175,14 @@ def test_a_run_writes_its_pins_and_they_hold_on_every_mesh(tmp_path: Path, mesh:
     assert str(verdict).endswith("; 6 pins in place")
 
 
-def test_a_run_without_pins_says_nothing_of_them(tmp_path: Path) -> None:
+def test_a_run_without_pins_says_nothing_of_them(tmp_path):
     record = Trajectory()
     for iterate in relax(PINNED, RelaxOptions(max_iterations=2)):
         record.add(iterate)
     assert "pins" not in record.arrays()
 
 
-def test_a_pinned_vertex_that_moves_is_named(tmp_path: Path) -> None:
+def test_a_pinned_vertex_that_moves_is_named(tmp_path):
     pins = PINNED.vertices[[3, 17]]
     assert checked(tmp_path, trajectory(moved(4, 16), pins=pins)).accepted
     verdict = checked(tmp_path, trajectory(moved(4, 17), pins=pins))
@@ -192,7 +190,7 @@ def test_a_pinned_vertex_that_moves_is_named(tmp_path: Path) -> None:
     assert verdict.reason == "vertex 18 leaves pin 2 (counted from 1)"
 
 
-def test_each_stage_has_a_vertex_at_each_pin(tmp_path: Path) -> None:
+def test_each_stage_has_a_vertex_at_each_pin(tmp_path):
     """Vertex 17 is left out where it lies on an edge: the same curve, but nothing holds it any more."""
     finer = np.insert(PINNED.vertices, 17, PINNED.vertices[[16, 17]].mean(axis=0), axis=0)
     stages = [finer], [PINNED.vertices]

@@ -49,7 +49,7 @@ def derivative(name: str) -> np.ndarray:
 
 
 @CURVE
-def test_gradient(name: str) -> None:
+def test_gradient(name):
     space, dense = spaces(name)
     covector = derivative(name)
     (u, multipliers), (expected, forces) = space.gradient(covector), dense.gradient(covector)
@@ -60,13 +60,13 @@ def test_gradient(name: str) -> None:
     # multipliers by what they do, the displacement that corresponds to their pull; no tolerance is theirs, and those of
     # the gradient leave them less exact where edges are of very different lengths
     pull = space.constraints.apply_transpose(multipliers - forces)
-    displacement = spaces(name)[1]._solve(pull)  # type: ignore[attr-defined]
+    displacement = spaces(name)[1]._solve(pull)
     assert np.sqrt(np.sum(pull * displacement)) < (6e-2 if name == "graded" else 1.5e-2) * size
 
 
 @CURVE
 @pytest.mark.parametrize("accuracy", [1e-3, 1e-6, 1e-8])
-def test_norm_is_as_accurate_as_asked_for(name: str, accuracy: float) -> None:
+def test_norm_is_as_accurate_as_asked_for(name, accuracy):
     curve = centred(CURVES[name])
     inner = moebius_inner_product(curve, Tolerances.of_norms(accuracy))
     u, _ = inner.tangent_space(Constraints.of(curve).derivative(curve)).gradient(derivative(name))
@@ -76,7 +76,7 @@ def test_norm_is_as_accurate_as_asked_for(name: str, accuracy: float) -> None:
 
 
 @CURVE
-def test_pseudo_inverse(name: str) -> None:
+def test_pseudo_inverse(name):
     space, dense = spaces(name)
     xi = space.constraints.apply(0.05 * np.sin(3 * CURVES[name].vertices))
     u = space.pseudo_inverse(xi)
@@ -85,7 +85,7 @@ def test_pseudo_inverse(name: str) -> None:
 
 
 @CURVE
-def test_projection(name: str) -> None:
+def test_projection(name):
     """What is nearly tangent is projected nearly exactly."""
     space, dense = spaces(name)
     v = dense.project(np.sin(CURVES[name].vertices)) + 1e-3 * np.cos(CURVES[name].vertices)
@@ -121,7 +121,7 @@ def space_at(curve: Curve) -> TangentSpace:
 
 
 @pytest.mark.parametrize("kind", ["torus", "tangle"])
-def test_iterations_do_not_grow_with_the_mesh(monkeypatch, kind: str) -> None:
+def test_iterations_do_not_grow_with_the_mesh(monkeypatch, kind):
     coarse = torus_knot(2, 3, 500) if kind == "torus" else refine(knot("culprit"), 500)
     curves = (coarse, refine(coarse, 2000), refine(coarse, 8000))
     counts = [outer_iterations(monkeypatch, space_at(curve), smooth_load(curve)) for curve in curves]
@@ -139,7 +139,7 @@ def with_compressed_metric(curve: Curve) -> Point:
 
 
 @pytest.mark.parametrize("name", ["knot", "tangle", "chain"])
-def test_the_way_back_takes_few_solves_in_the_metric(monkeypatch, name: str) -> None:
+def test_the_way_back_takes_few_solves_in_the_metric(monkeypatch, name):
     point = with_compressed_metric(CURVES[name])
     step = 0.02 / np.abs(point.tangent_space.constraints.apply(np.sin(point.vertices))).max()
     calls = []
@@ -150,23 +150,23 @@ def test_the_way_back_takes_few_solves_in_the_metric(monkeypatch, name: str) -> 
     assert 1 <= len(calls) <= 2
 
 
-def test_too_few_iterations_are_an_error() -> None:
+def test_too_few_iterations_are_an_error():
     curve = CURVES["tangle"]
     inner = moebius_inner_product(curve, Tolerances(max_iterations=3))
     with pytest.raises(np.linalg.LinAlgError, match="more than 3 iterations"):
         inner.tangent_space(Constraints.of(curve).derivative(curve)).gradient(smooth_load(curve))
 
 
-def test_no_gradient_where_the_derivative_is_normal() -> None:
+def test_no_gradient_where_the_derivative_is_normal():
     space, _ = spaces("knot")
     normal = space.constraints.apply_transpose(np.cos(np.arange(space.constraints.count)))
     u, _ = space.gradient(normal)
-    assert space.norm(u) < 1e-8 * np.sqrt(np.sum(normal * spaces("knot")[1]._solve(normal)))  # type: ignore[attr-defined]
+    assert space.norm(u) < 1e-8 * np.sqrt(np.sum(normal * spaces("knot")[1]._solve(normal)))
     assert not np.any(space.gradient(np.zeros_like(u))[0])
 
 
 @pytest.mark.parametrize("method", ["lbfgs", "cg", "trust-region", "penalty-lbfgs"])
-def test_methods_descend_as_with_the_exact_metric(method: str) -> None:
+def test_methods_descend_as_with_the_exact_metric(method):
     ends = []
     for start in (point_on(CURVES["knot"]), with_compressed_metric(CURVES["knot"])):
         rule = METHODS[method]
@@ -197,16 +197,16 @@ def diagonal(r: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-10])
-def test_solves(tolerance: float) -> None:
+def test_solves(tolerance):
     x = conjugate_gradients(product, relative(diagonal, tolerance), RIGHT, 500)
     error = x - np.linalg.solve(MATRIX, RIGHT)
     assert np.sqrt(np.sum(error * product(error)) / np.sum(RIGHT * x)) < 100 * tolerance
 
 
-def test_square_is_the_norm_of_the_solution() -> None:
-    squares: list[float] = []
+def test_square_is_the_norm_of_the_solution():
+    squares = []
 
-    def enough(rho: float, square: float) -> bool:
+    def enough(rho, square):
         squares.append(square)
         return rho < 1e-24
 
@@ -215,10 +215,10 @@ def test_square_is_the_norm_of_the_solution() -> None:
     assert squares[-1] == pytest.approx(np.sum(x * product(x)))
 
 
-def test_a_preconditioner_may_vary() -> None:
+def test_a_preconditioner_may_vary():
     rng, seen = np.random.default_rng(59), list[float]()
 
-    def precondition(r: np.ndarray, decreases: list[float]) -> tuple[np.ndarray, np.ndarray] | None:
+    def precondition(r, decreases):
         seen[:] = decreases
         if len(decreases) > 2 and sum(decreases[-2:]) < 1e-20:
             return None
@@ -230,7 +230,7 @@ def test_a_preconditioner_may_vary() -> None:
     assert sum(seen) == pytest.approx(np.sum(RIGHT * expected))
 
 
-def test_nothing_to_solve() -> None:
+def test_nothing_to_solve():
     assert not np.any(conjugate_gradients(product, relative(diagonal, 1e-3), np.zeros((30, 3)), 10))
     assert not np.any(conjugate_gradients(product, lambda r, _: (r, r), np.zeros((30, 3)), 10))
 
@@ -239,14 +239,14 @@ def solve(matrix: np.ndarray, iterations: int, *, indefinite: bool = False) -> n
     return conjugate_gradients(lambda x: matrix @ x, lambda r, _: (r, r), RIGHT, iterations, indefinite=indefinite)
 
 
-def test_refusals() -> None:
+def test_refusals():
     with pytest.raises(np.linalg.LinAlgError, match="not positive definite"):
         solve(-MATRIX, 10)
     with pytest.raises(np.linalg.LinAlgError, match="more than 4 iterations"):
         solve(MATRIX, 4)
 
 
-def test_an_indefinite_operator_is_left_with_a_direction_of_descent() -> None:
+def test_an_indefinite_operator_is_left_with_a_direction_of_descent():
     """The steepest one at first, and what was found so far later, or after the last iteration."""
     np.testing.assert_array_equal(solve(-MATRIX, 10, indefinite=True), RIGHT)
     part = solve(MATRIX, 4, indefinite=True)

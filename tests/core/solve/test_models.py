@@ -33,7 +33,7 @@ def spread(curve: Curve, model: str) -> float:
 
 @MODEL
 @pytest.mark.parametrize("n", [3, 5, 50, 51, 400])
-def test_equivalent_on_circles(model: str, n: int) -> None:
+def test_equivalent_on_circles(model, n):
     if n == 3:
         with pytest.raises(np.linalg.LinAlgError, match="not positive definite"):
             spread(regular_polygon(n), model)
@@ -43,17 +43,17 @@ def test_equivalent_on_circles(model: str, n: int) -> None:
 
 @MODEL
 @pytest.mark.parametrize("n", [100, 200, 400])
-def test_equivalent_on_a_knot(model: str, n: int) -> None:
+def test_equivalent_on_a_knot(model, n):
     assert spread(torus_trefoil(n), model) < 12
 
 
 @pytest.mark.parametrize("ratio", [1.0, 10.0, 100.0, 1000.0])
-def test_resolvents_do_not_mind_the_mesh(ratio: float) -> None:
+def test_resolvents_do_not_mind_the_mesh(ratio):
     assert spread(graded_trefoil(400, ratio), "resolvents") < 40
 
 
 @MODEL
-def test_components_of_all_sizes(model: str) -> None:
+def test_components_of_all_sizes(model):
     assert spread(chain_of_rings(12, (5, 40, 11, 4)), model) < 30
 
 
@@ -72,7 +72,7 @@ def tension_spread(curve: Curve, model: str) -> float:
 
 @MODEL
 @pytest.mark.parametrize("curve", [regular_polygon(60), chain_of_rings(4, (20,))], ids=["circle", "chain"])
-def test_tension_on_circles(model: str, curve: Curve) -> None:
+def test_tension_on_circles(model, curve):
     """Exact with circulants and equal edges."""
     assert tension_spread(curve, model) < (1.0 + 1e-8 if model == "circulants" else 4.0)
 
@@ -83,7 +83,7 @@ def test_tension_on_circles(model: str, curve: Curve) -> None:
     [(refine(hard_unknot(20, seed=20), 600), 9), (refine(lattice_closure(unknot_word(20, seed=20))), 120)],
     ids=["braid", "lattice"],
 )
-def test_tension_where_curves_turn_fast(model: str, curve: Curve, bound: float) -> None:
+def test_tension_where_curves_turn_fast(model, curve, bound):
     """Between strands that press, long waves cost much; a curve that turns leaves none of them in its lengths.
 
     A near inverse for directions that hardly change from edge to edge has condition numbers of 34 and 292.
@@ -91,7 +91,7 @@ def test_tension_where_curves_turn_fast(model: str, curve: Curve, bound: float) 
     assert tension_spread(curve, model) < bound
 
 
-def test_transforms_are_circulant_matrices() -> None:
+def test_transforms_are_circulant_matrices():
     mesh = Mesh((5, 8, 5, 3))
     transform, u = ComponentTransform(mesh), np.random.default_rng(43).normal(size=(21, 2))
     result = transform.filtered(u, transform.sampled(lambda theta: 2.0 + np.cos(theta)))
@@ -104,7 +104,7 @@ def test_transforms_are_circulant_matrices() -> None:
         np.testing.assert_allclose(result[part], circulant(column) @ u[part], atol=1e-14)
 
 
-def test_many_components_move_as_they_should() -> None:
+def test_many_components_move_as_they_should():
     """Translations of the rings of a chain: on these the model is all but exact."""
     curve = chain_of_rings(40, (9, 14))
     inner = moebius_inner_product(curve)
@@ -124,12 +124,12 @@ def test_many_components_move_as_they_should() -> None:
 @pytest.mark.parametrize(
     ("curve", "transforms"), [(refine(knot("ochiai-3"), 1000), True), (graded_trefoil(1000, 20.0), False)]
 )
-def test_transforms_are_taken_up_to_the_ratio_where_they_take_longer(curve: Curve, transforms: bool) -> None:
+def test_transforms_are_taken_up_to_the_ratio_where_they_take_longer(curve, transforms):
     """On a tangle whose edges differ by 12:1 either model takes a hundred iterations, resolvents three times longer."""
     inner, expected = moebius_inner_product(curve), Circulants if transforms else Resolvents
     products = 0
 
-    def apply(u: np.ndarray) -> np.ndarray:
+    def apply(u):
         nonlocal products
         products += 1
         return inner.apply(u)

@@ -83,7 +83,7 @@ def columns(derivative: ConstraintDerivative) -> FloatArray:
 
 
 @pytest.mark.parametrize(("name", "product"), crossed(CASES, INNER_PRODUCTS))
-def test_constrained(name: str, product: str) -> None:
+def test_constrained(name, product):
     """The whole matrix of (41), [J Cᵀ Eᵀ; C 0 0; E 0 0], E the rows P_v = P⁰_v."""
     curve, constraints = case(name)
     derivative, pins = constraints.derivative(curve), constraints.pins.vertices
@@ -114,7 +114,7 @@ def test_constrained(name: str, product: str) -> None:
 @pytest.mark.parametrize("product", ["l2", "dense l2", "compressed moebius"])
 @pytest.mark.parametrize("weight", [0.0, 1e-200, 1.0, 1e3])
 @pytest.mark.parametrize("name", ["link", "arcs", "some", "in a row", "all", "one part"])
-def test_penalised(name: str, weight: float, product: str) -> None:
+def test_penalised(name, weight, product):
     """(J + DΦᵀ w DΦ) u = η away from pins, also where a weight is nothing or next to nothing."""
     curve, constraints = case(name)
     (n, m), pins = curve.vertices.shape, constraints.pins.vertices
@@ -138,7 +138,7 @@ def test_penalised(name: str, weight: float, product: str) -> None:
 
 
 @NAMES
-def test_the_derivative_has_slope_two_an_adjoint_and_full_rank(name: str) -> None:
+def test_the_derivative_has_slope_two_an_adjoint_and_full_rank(name):
     """Where vertices are free: lengths between pins are no rows, nor are barycenters of parts that are pinned."""
     curve, constraints = case(name)
     derivative, m, pins = constraints.derivative(curve), curve.dimension, constraints.pins.vertices
@@ -158,7 +158,7 @@ def test_the_derivative_has_slope_two_an_adjoint_and_full_rank(name: str) -> Non
 
 
 @NAMES
-def test_small_corrections_leave_pins_alone(name: str) -> None:
+def test_small_corrections_leave_pins_alone(name):
     """u = −Lᵀ (L Lᵀ)⁻¹ Φ, L the rows of the lengths without the columns of pins, and translations of free parts."""
     curve, constraints = case(name)
     derivative, (n, m) = constraints.derivative(curve), curve.vertices.shape
@@ -173,7 +173,7 @@ def test_small_corrections_leave_pins_alone(name: str) -> None:
         np.testing.assert_allclose(still, 0.0, atol=1e-9 * (np.abs(u).max() + 1e-300))
 
 
-def test_models_with_pins_are_symmetric_and_positive_definite_on_what_is_free() -> None:
+def test_models_with_pins_are_symmetric_and_positive_definite_on_what_is_free():
     curve, constraints = case("in a row")
     inner, pins = moebius_inner_product(curve), constraints.pins.vertices
     inverse = PinnedModel(inner.model, curve.mesh, pins).solve(np.eye(len(curve)))
@@ -186,7 +186,7 @@ def test_models_with_pins_are_symmetric_and_positive_definite_on_what_is_free() 
     assert 0.9 * whole.min() < ratios.min() < ratios.max() < 1.1 * whole.max()
 
 
-def test_a_dense_inner_product_keeps_its_inverse_for_the_same_pins() -> None:
+def test_a_dense_inner_product_keeps_its_inverse_for_the_same_pins():
     curve, constraints = case("some")
     inner, derivative = METRICS["moebius"].at(curve), constraints.derivative(curve)
     before, again = inner.tangent_space(derivative), inner.tangent_space(derivative)
@@ -195,7 +195,7 @@ def test_a_dense_inner_product_keeps_its_inverse_for_the_same_pins() -> None:
     assert not other.gradient(np.ones(curve.vertices.shape))[0][7].any()
 
 
-def test_an_indefinite_matrix_is_refused() -> None:
+def test_an_indefinite_matrix_is_refused():
     curve, constraints = case("trefoil")
     with pytest.raises(np.linalg.LinAlgError, match="not positive definite"):
         DenseInnerProduct(-np.eye(len(curve))).tangent_space(constraints.derivative(curve))

@@ -53,7 +53,7 @@ def drawing(rope: ElasticRope) -> PlaneDrawing:
     return PlaneDrawing.of(rope.mesh, rope.seen, rope.held)
 
 
-def test_where_a_curve_is_held_strands_end() -> None:
+def test_where_a_curve_is_held_strands_end():
     pinned = messy("5_2", held=(3, 30)).diagram
     assert pinned.sequence.count(PIN) == 2
     arc = messy("5_2", is_open=True).diagram
@@ -69,7 +69,7 @@ def test_where_a_curve_is_held_strands_end() -> None:
 
 
 @pytest.mark.parametrize(("name", "is_open"), [("5_2", False), ("5_2", True), ("L6a4", False)])
-def test_ways_lead_to_diagrams_of_the_same_knot(name: str, is_open: bool) -> None:
+def test_ways_lead_to_diagrams_of_the_same_knot(name, is_open):
     seen = messy(name, is_open=is_open)
     plane, known = Plane(seen, 0.05 * float(np.ptp(seen.points, axis=0).max())), None
     triangle_sides = set(zip(plane.leave.tolist(), plane.enter.tolist(), strict=True))
@@ -86,7 +86,7 @@ def test_ways_lead_to_diagrams_of_the_same_knot(name: str, is_open: bool) -> Non
             assert jones(simplified(after)) == known
 
 
-def test_a_rope_at_rest_keeps_its_length_its_type_and_what_is_held() -> None:
+def test_a_rope_at_rest_keeps_its_length_its_type_and_what_is_held():
     rope = laid("5_2")
     assert rope.curve.length == pytest.approx(knot("5_2", 120).length)
     assert jones(simplified(drawing(rope).diagram)) == jones(simplified(drawing(laid("5_2", 120)).diagram))
@@ -95,7 +95,7 @@ def test_a_rope_at_rest_keeps_its_length_its_type_and_what_is_held() -> None:
     np.testing.assert_array_equal(rope.vertices[[3, 40]], knot("5_2", 120).vertices[[3, 40]])
 
 
-def test_forces_of_barrier_tension_and_weight_are_derivatives() -> None:
+def test_forces_of_barrier_tension_and_weight_are_derivatives():
     """Of energies whose weights are those of the rope as it is."""
     rope = laid("5_2")
     here, r, n = Curve(rope.seen, rope.mesh), rope.thick, rope.mesh.size
@@ -107,12 +107,12 @@ def test_forces_of_barrier_tension_and_weight_are_derivatives() -> None:
     rope._add_tension(tension, here, 5, np.ones(n, dtype=bool), None)
     goal = (1.0 - rope._pull) * mean
 
-    def apart(t: float) -> float:
+    def apart(t):
         chord, _, _ = closest(EdgePairs.of(rope.mesh, here.vertices + t * v, e, f))
         value, _, _ = phi(0.5 * np.linalg.norm(chord, axis=1) / r - 1.0)
         return float(np.sum(0.2 * ell[e] * ell[f] / r * value))
 
-    def tense(t: float) -> float:
+    def tense(t):
         moved = Curve(here.vertices + t * v, rope.mesh)
         weight = 0.75 * mean / rope.face**2 * np.sum(moved.vertices[:, 2] ** 2)
         return float(np.sum((moved.edge_lengths - goal) ** 2) / (0.12 * mean) + weight)
@@ -122,7 +122,7 @@ def test_forces_of_barrier_tension_and_weight_are_derivatives() -> None:
         assert taylor_slope(energy, [energy(0.0), np.sum(model.force * v)]) > 1.9
 
 
-def test_the_repulsion_in_the_plane_is_that_of_all_pairs_which_are_not_near_one_crossing() -> None:
+def test_the_repulsion_in_the_plane_is_that_of_all_pairs_which_are_not_near_one_crossing():
     """Its force is the derivative of what is added up pair by pair."""
     rope = laid("5_2")
     here, face, n = Curve(rope.seen, rope.mesh), rope.face, rope.mesh.size
@@ -138,7 +138,7 @@ def test_the_repulsion_in_the_plane_is_that_of_all_pairs_which_are_not_near_one_
     model, v = ElasticModel(n), np.random.default_rng(5).normal(size=(n, 3)) * 0.05 * face
     rope._add_repulsion(model, here, crossings, np.ones(n, dtype=bool))
 
-    def energy(t: float) -> float:
+    def energy(t):
         moved = x + t * v
         value, _, _ = phi(np.linalg.norm((moved[i] - moved[j])[:, :2], axis=1) / face)
         return float(1.5 * (mean / face) ** 2 * face * value.sum())
@@ -147,7 +147,7 @@ def test_the_repulsion_in_the_plane_is_that_of_all_pairs_which_are_not_near_one_
     assert taylor_slope(energy, [energy(0.0), np.sum(model.force * v)]) > 1.9
 
 
-def test_the_minimum_of_forces_is_that_of_the_dense_form() -> None:
+def test_the_minimum_of_forces_is_that_of_the_dense_form():
     rng, n = np.random.default_rng(6), 12
     model, dense = ElasticModel(n), np.eye(3 * n)
     model.form += np.eye(3)
@@ -161,7 +161,7 @@ def test_the_minimum_of_forces_is_that_of_the_dense_form() -> None:
     np.testing.assert_allclose(model.minimum().ravel(), -np.linalg.solve(dense, model.force.ravel()), rtol=1e-9)
 
 
-def test_springs_lead_vertices_and_no_further_than_the_rest_allows() -> None:
+def test_springs_lead_vertices_and_no_further_than_the_rest_allows():
     rope = laid("3_1")
     k = np.arange(20, 40)
     places = rope.seen[k] + [0.0, 0.0, 0.5 * rope.face]
@@ -174,7 +174,7 @@ def test_springs_lead_vertices_and_no_further_than_the_rest_allows() -> None:
     assert jones(simplified(drawing(rope).diagram)) == jones(simplified(drawing(laid("3_1")).diagram))
 
 
-def test_a_rope_stays_one_of_its_radius() -> None:
+def test_a_rope_stays_one_of_its_radius():
     radius = 0.5 * thickness(knot("3_1", 120))
     rope = laid("3_1", radius=radius)
     rope.thick, k = 0.1 * radius, np.arange(20, 40)  # only the proof keeps it so thick
@@ -184,7 +184,7 @@ def test_a_rope_stays_one_of_its_radius() -> None:
 
 
 @pytest.mark.parametrize("name", ["goeritz", "culprit"])
-def test_a_move_in_space_leads_to_the_diagram_that_was_planned(name: str) -> None:
+def test_a_move_in_space_leads_to_the_diagram_that_was_planned(name):
     rope = laid(name, 160)
     seen = drawing(rope)
     plane = Plane(seen, rope.face)
@@ -197,7 +197,7 @@ def test_a_move_in_space_leads_to_the_diagram_that_was_planned(name: str) -> Non
     assert simplified(after).crossings == simplified(move.after).crossings
 
 
-def test_short_steps_are_one_leg_and_what_is_taken_back_leaves_no_trace() -> None:
+def test_short_steps_are_one_leg_and_what_is_taken_back_leaves_no_trace():
     rope = laid("3_1", 60)
     before, mark = rope.take(3, 0), rope.mark()
     legs = [before.start.vertices, *before.path]
@@ -213,7 +213,7 @@ def test_short_steps_are_one_leg_and_what_is_taken_back_leaves_no_trace() -> Non
 
 
 @pytest.mark.parametrize(("crossings", "long"), [(3, True), (20, False)])
-def test_faces_are_no_wider_than_the_rope_is_long_for(crossings: int, long: bool) -> None:
+def test_faces_are_no_wider_than_the_rope_is_long_for(crossings, long):
     """For as many crossings as could be where it lies; else it would shrink, further and further."""
     rope = laid("3_1", 60)
     area = np.sqrt(np.linalg.det(np.cov(rope.seen[:, :2].T)))
@@ -223,7 +223,7 @@ def test_faces_are_no_wider_than_the_rope_is_long_for(crossings: int, long: bool
     assert rope.face * 1.8 * crossings < 1.001 * length
 
 
-def test_a_rope_rises_until_its_corners_are_right() -> None:
+def test_a_rope_rises_until_its_corners_are_right():
     rope = laid("3_1", 60)
     low = np.ptp(rope.seen[:, 2])
     rope.rise(1e3)

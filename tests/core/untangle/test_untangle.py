@@ -44,14 +44,14 @@ def ended(work: Generator[Legs, None, Untangled], stages: list[Legs]) -> Untangl
 
 
 @pytest.mark.parametrize("name", family(["culprit", "goeritz", "thistlethwaite", "ochiai-1", "d28"], 3))
-def test_famous_unknots_lose_all_crossings(name: str) -> None:
+def test_famous_unknots_lose_all_crossings(name):
     end, found = run(knot(name))
     assert (found.crossings, found.least) == (0, True)
     assert end.length == pytest.approx(knot(name).length)
 
 
 @pytest.mark.parametrize("case", family([("5_2", 5), ("m7_4", 7), ("L6a4", 6), ("3_1#m4_1", 7), ("3_1#3_1", 6)], 2))
-def test_scrambled_knots_and_links_come_to_their_crossings(case: tuple[str, int]) -> None:
+def test_scrambled_knots_and_links_come_to_their_crossings(case):
     name, crossings = case
     curve = scramble(knot(name, 60), 1, moves=400)
     end, found = run(curve)
@@ -60,13 +60,13 @@ def test_scrambled_knots_and_links_come_to_their_crossings(case: tuple[str, int]
     assert len(end.mesh.component_sizes) == len(curve.mesh.component_sizes)
 
 
-def test_a_knot_of_which_no_least_diagram_is_known_says_so() -> None:
+def test_a_knot_of_which_no_least_diagram_is_known_says_so():
     _, found = run(scramble(knot("8_19", 60), 1, moves=300))
     assert (found.crossings, found.least) == (8, False)
     assert "no free way of a strand is known" in found.reason
 
 
-def test_pins_stay_and_strands_end_at_them() -> None:
+def test_pins_stay_and_strands_end_at_them():
     curve, pins = scramble(knot("5_2", 60), 1, moves=400), [0, 20, 40]
     end, found = run(curve, pins)
     assert found.crossings == 5
@@ -74,7 +74,7 @@ def test_pins_stay_and_strands_end_at_them() -> None:
     assert all(tuple(point) in places for point in curve.vertices[pins].tolist())
 
 
-def test_arcs_come_apart_and_keep_their_ends() -> None:
+def test_arcs_come_apart_and_keep_their_ends():
     closed = scramble(knot("3_1", 60), 1, moves=400).vertices
     curve = Curve(closed[:-1], Mesh((59,), (False,)))
     end, found = run(curve)
@@ -83,7 +83,7 @@ def test_arcs_come_apart_and_keep_their_ends() -> None:
 
 
 @pytest.mark.parametrize(("part", "free"), [(0.5, True), (0.01, False)])
-def test_plates_leave_room_or_none(part: float, free: bool) -> None:
+def test_plates_leave_room_or_none(part, free):
     curve = knot("ochiai-1")
     low, high = curve.vertices[:, 2].min(), curve.vertices[:, 2].max()
     gap = part * np.ptp(curve.vertices, axis=0).max()
@@ -92,7 +92,7 @@ def test_plates_leave_room_or_none(part: float, free: bool) -> None:
     assert free or "crossings are left, as no" in found.reason  # free way, or no view shows what is in front
 
 
-def test_wherever_it_is_left_the_curve_is_embedded_and_of_its_type() -> None:
+def test_wherever_it_is_left_the_curve_is_embedded_and_of_its_type():
     curve = knot("ochiai-1")
     stages = list(islice(untangled(curve), 12))
     check_stages(curve, stages)
@@ -100,12 +100,12 @@ def test_wherever_it_is_left_the_curve_is_embedded_and_of_its_type() -> None:
     assert str(knot_type(stages[-1].end)) == "unknot"
 
 
-def test_the_same_seed_gives_the_same_motions() -> None:
+def test_the_same_seed_gives_the_same_motions():
     once, again = ([stage.end.vertices for stage in islice(untangled(knot("goeritz"), seed=3), 9)] for _ in range(2))
     assert all(map(np.array_equal, once, again))
 
 
-def test_what_cannot_be_untangled_is_left_alone() -> None:
+def test_what_cannot_be_untangled_is_left_alone():
     assert list(untangled(Curve(np.random.default_rng(1).normal(size=(9, 4))))) == []
     gone, left = worth(knot("5_2", 100))
     assert gone < left == 5
@@ -125,12 +125,9 @@ WAVES = sum(rng.normal(size=(3, 1)) * np.cos(k * turn + rng.uniform(0.0, 6.0, si
 
 @pytest.mark.parametrize(
     ("vertices", "said"),
-    [
-        *((TREFOIL + gap * ASIDE, "strands touch, or near") for gap in (1e-9, 1e-13, 1e-15)),
-        (WAVES.T, "5,000 cross"),
-    ],
+    [*((TREFOIL + gap * ASIDE, "strands touch, or near") for gap in (1e-9, 1e-13, 1e-15)), (WAVES.T, "5,000 cross")],
 )
-def test_strands_too_near_to_tell_and_too_many_crossings_are_left_alone(vertices: np.ndarray, said: str) -> None:
+def test_strands_too_near_to_tell_and_too_many_crossings_are_left_alone(vertices, said):
     curve, stages = Curve(vertices), []
     assert said in ended(untangled(curve), stages).reason
     assert not stages

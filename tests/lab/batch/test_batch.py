@@ -121,7 +121,7 @@ def test_starts_of_knots_of_the_table_are_of_several_kinds(batch, tmp_path):
 
 
 def test_what_is_finished_is_not_repeated(batch, ring, tmp_path, monkeypatch):
-    done: list[tuple[str, int]] = []
+    done = []
     run = campaign.outcomes
 
     def spied(submit, jobs):

@@ -50,7 +50,7 @@ def test_symmetric_torus_knots_are_saddles(p, q, index):
 def test_steps_are_newtons_in_soft_directions_beside_stiff_ones(monkeypatch, least):
     values = np.array([7e7, 1e-3, least])
     monkeypatch.setattr(rest, "_derivatives", lambda *_: (1.0, np.ones(3), np.diag(values)))
-    np.testing.assert_allclose(rest.QuadraticModel.of(None, None).step[0], -1.0 / np.abs(values), rtol=0.02)  # type: ignore[arg-type]
+    np.testing.assert_allclose(rest.QuadraticModel.of(None, None).step[0], -1.0 / np.abs(values), rtol=0.02)
 
 
 def test_what_is_not_resolved_is_not_gone_on_from(monkeypatch):
@@ -58,7 +58,7 @@ def test_what_is_not_resolved_is_not_gone_on_from(monkeypatch):
 
     def unresolved_at_first(start, *how):
         starts.append(start)
-        end, trail = stationary(start, *how)  # type: ignore[arg-type]
+        end, trail = stationary(start, *how)
         return (end and replace(end, error=end.energy) if len(starts) == 1 else end), trail
 
     monkeypatch.setattr(rest, "_stationary", unresolved_at_first)
@@ -77,7 +77,7 @@ def test_concave_directions_in_which_the_energy_does_not_fall_do_not_count(monke
     smooth, derivatives = found(relaxed("3_1", 90)), rest._derivatives
 
     def concave(*where):
-        energy, slope, hessian = derivatives(*where)  # type: ignore[arg-type]
+        energy, slope, hessian = derivatives(*where)
         return energy, slope, hessian - 2.0 * np.diag(np.arange(len(hessian)) == 30) * hessian[30, 30]
 
     monkeypatch.setattr(rest, "_derivatives", concave)
@@ -102,7 +102,7 @@ def test_a_long_way_is_proved_in_pieces_or_not_taken(monkeypatch):
 
     def not_at_once(*ends):
         asked.append(ends)
-        return len(asked) > 1 and straight(*ends)  # type: ignore[arg-type]
+        return len(asked) > 1 and straight(*ends)
 
     monkeypatch.setattr(rest, "is_isotopic", not_at_once)
     assert at_rest(curve) is not None

@@ -6,16 +6,7 @@ import bpy
 import numpy as np
 from case import Steps, picture, until
 from hands import core, entry, here, move, open_sidebar, region, window
-from scene import (
-    add,
-    clear,
-    in_world,
-    is_,
-    keys,
-    latest,
-    obj,
-    undone,
-)
+from scene import add, clear, in_world, is_, keys, latest, obj, undone
 
 CIRCLE = np.stack([np.cos(t := 2 * np.pi * np.arange(24) / 24), np.sin(t), 0 * t], axis=1)
 FILE = os.path.join(os.environ["ROOM"], "morphed.blend")

@@ -7,22 +7,7 @@ import bpy
 import numpy as np
 from case import Steps, picture, until
 from hands import button, click, entry, found, key, window
-from scene import (
-    endless,
-    in_world,
-    is_,
-    iterate,
-    keys,
-    look,
-    obj,
-    points,
-    reaches,
-    ready,
-    run,
-    state,
-    steps,
-    undone,
-)
+from scene import endless, in_world, is_, iterate, keys, look, obj, points, reaches, ready, run, state, steps, undone
 
 
 def buttons() -> Steps:

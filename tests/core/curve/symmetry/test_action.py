@@ -31,7 +31,7 @@ CURVES = {"D4": lambda: torus_knot(3, 4, 72), "S4": lambda: smooth_knot("4_1"), 
 
 
 @pytest.mark.parametrize("name", CURVES)
-def test_means_are_orthogonal_projections_onto_what_is_symmetric(name: str) -> None:
+def test_means_are_orthogonal_projections_onto_what_is_symmetric(name):
     curve, symmetry = symmetric(CURVES[name]())
     assert symmetry.name == name
     u, v = RNG.normal(size=(2, len(curve), 3))
@@ -44,7 +44,7 @@ def test_means_are_orthogonal_projections_onto_what_is_symmetric(name: str) -> N
 
 
 @pytest.mark.parametrize("name", CURVES)
-def test_finer_meshes_keep_orbits_together(name: str) -> None:
+def test_finer_meshes_keep_orbits_together(name):
     curve, symmetry = symmetric(CURVES[name]())
     pieces = symmetry.most(np.where(np.arange(curve.mesh.edges) == 5, 3, 1), curve.mesh)
     assert 1 < np.count_nonzero(pieces == 3) <= len(symmetry)
@@ -55,7 +55,7 @@ def test_finer_meshes_keep_orbits_together(name: str) -> None:
     np.testing.assert_array_equal(symmetry.on(curve).images, symmetry.images)
 
 
-def test_where_an_edge_is_split_all_of_its_orbit_are() -> None:
+def test_where_an_edge_is_split_all_of_its_orbit_are():
     point = symmetric_point(torus_knot(3, 4, 72))
     curve = Curve(point.placed, point.problem.mesh)
     finer = split_edges(point.problem, curve, np.where(np.arange(72) == 5, 2, 1))
@@ -67,7 +67,7 @@ def test_where_an_edge_is_split_all_of_its_orbit_are() -> None:
 
 @pytest.mark.parametrize("solver", ["dense", "hierarchical"])
 @pytest.mark.parametrize("method", ["lbfgs", "penalty-lbfgs"])
-def test_gradients_and_projections_are_symmetric(method: str, solver: str) -> None:
+def test_gradients_and_projections_are_symmetric(method, solver):
     point = symmetric_point(torus_knot(3, 4, 96), method=method, solver=solver)
     symmetry, shape = point.problem.constraints.symmetry, point.vertices.shape
     level = RNG.normal(size=point.residual.shape)
@@ -80,7 +80,7 @@ def test_gradients_and_projections_are_symmetric(method: str, solver: str) -> No
         np.testing.assert_allclose(space.project(u), u, atol=1e-4 if solver == "hierarchical" else 1e-10)
 
 
-def test_points_are_put_on_their_orbits() -> None:
+def test_points_are_put_on_their_orbits():
     trefoil = torus_knot(2, 3, 60)
     point = symmetric_point(trefoil.with_vertices(trefoil.vertices + np.array([100.0, 20.0, -7.0])))
     moved = point.problem.at(point.vertices + 0.01 * RNG.normal(size=point.vertices.shape))
@@ -90,7 +90,7 @@ def test_points_are_put_on_their_orbits() -> None:
 
 
 @pytest.mark.parametrize("name", ["D4", "S4"])
-def test_second_derivatives_are_those_of_symmetric_displacements(name: str) -> None:
+def test_second_derivatives_are_those_of_symmetric_displacements(name):
     """On an explicit basis of what is tangent and symmetric: solutions, and numbers of eigenvalues below a shift."""
     point = symmetric_point(CURVES[name]())
     symmetry, shape = point.problem.constraints.symmetry, point.vertices.shape

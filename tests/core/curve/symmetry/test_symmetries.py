@@ -59,7 +59,7 @@ def generated(matrices: list[np.ndarray]) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", GENERATORS)
-def test_every_kind_of_group_has_its_name(name: str) -> None:
+def test_every_kind_of_group_has_its_name(name):
     noise = 1.0 + 0.01 * np.random.default_rng(1).normal(size=(3, 3))
     assert schoenflies(noise * (TURN @ generated(GENERATORS[name]) @ TURN.T)) == name
 
@@ -92,7 +92,7 @@ CURVES = {
 
 
 @pytest.mark.parametrize("name", CURVES)
-def test_curves_have_their_groups_wherever_they_lie(name: str) -> None:
+def test_curves_have_their_groups_wherever_they_lie(name):
     curve = CURVES[name]()
     group, other = symmetries(curve), symmetries(hidden(curve))
     assert group.name == other.name == symmetries(curve.with_vertices(-curve.vertices)).name == name
@@ -101,7 +101,7 @@ def test_curves_have_their_groups_wherever_they_lie(name: str) -> None:
 
 
 @pytest.mark.parametrize("begin", [0.0, 0.2, 0.5, 0.8])
-def test_groups_are_found_wherever_samples_lie(begin: float) -> None:
+def test_groups_are_found_wherever_samples_lie(begin):
     """On long curves samples are far apart, and where a direction is turned none lies on the image of another."""
     curve = torus_knot(3, 7, 210)
     tail, head = curve.vertices[:2]
@@ -111,7 +111,7 @@ def test_groups_are_found_wherever_samples_lie(begin: float) -> None:
 
 
 @pytest.mark.parametrize("name", CURVES)
-def test_the_mean_is_exactly_symmetric(name: str) -> None:
+def test_the_mean_is_exactly_symmetric(name):
     curve = hidden(CURVES[name]())
     group = symmetries(curve)
     sizes = [part + 1 for part in curve.mesh.component_sizes]
@@ -132,7 +132,7 @@ def test_the_mean_is_exactly_symmetric(name: str) -> None:
     assert not any(begins)
 
 
-def test_subgroups_are_found_by_name() -> None:
+def test_subgroups_are_found_by_name():
     group = symmetries(ellipses(48))
     for name, order in {"C1": 1, "Ci": 2, "C3": 3, "S6": 6, "D2": 4, "D2h": 8, "C2v": 4, "T": 12, "Th": 24}.items():
         part = group.subgroup(name)
@@ -149,13 +149,13 @@ UP = np.array([0.0, 0.0, 1.0])
     ("rings", "name"),
     [([RING], "D∞h"), ([COARSE], "D∞h"), ([RING, RING + UP], "D∞h"), ([RING, 0.5 * RING + UP], "C∞v")],
 )
-def test_what_is_round_has_a_name_but_no_elements(rings: list[np.ndarray], name: str) -> None:
+def test_what_is_round_has_a_name_but_no_elements(rings, name):
     group = symmetries(Curve.from_components(rings))
     assert group.name == name
     assert len(group.elements) == 1
 
 
-def test_tolerances_are_what_they_say() -> None:
+def test_tolerances_are_what_they_say():
     curve = torus_knot(3, 4, 96)
     rough = curve.with_vertices(curve.vertices + 0.02 * np.random.default_rng(1).normal(size=(96, 3)))
     assert symmetries(rough, 1e-3).name == "C1"
@@ -174,7 +174,7 @@ def test_tolerances_are_what_they_say() -> None:
         (chain_of_rings(11, (20,)), "the curve has 11 components; symmetries are found with up to 10"),
     ],
 )
-def test_curves_without_groups_are_refused(curve: Curve, said: str) -> None:
+def test_curves_without_groups_are_refused(curve, said):
     with pytest.raises(CurveError) as caught:
         symmetries(curve)
     assert str(caught.value) == said
@@ -184,7 +184,7 @@ UPRIGHT_ELEMENTS = {"D3": 6, "S4": 4, "Th": 6, "D4h": 16}  # that keep the third
 
 
 @pytest.mark.parametrize("name", [*UPRIGHT_ELEMENTS, "D2", "D2h", "C1"])
-def test_curves_stand_on_their_axis_of_highest_order(name: str) -> None:
+def test_curves_stand_on_their_axis_of_highest_order(name):
     curve = hidden(CURVES[name]())
     group = symmetries(curve)
     turn = standing(curve, group)

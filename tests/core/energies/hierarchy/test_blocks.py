@@ -49,7 +49,7 @@ def multiplicity(blocks: BlockList) -> np.ndarray:
 
 @CURVE
 @LIST
-def test_every_pair_of_edges_exactly_once_and_far_ones_alone_in_blocks(curve: Curve, theta: float, leaf: int) -> None:
+def test_every_pair_of_edges_exactly_once_and_far_ones_alone_in_blocks(curve, theta, leaf):
     blocks, edge = BlockList.of(curve, theta, leaf), np.arange(curve.mesh.edges)
     np.testing.assert_array_equal(multiplicity(blocks), curve.mesh.disjoint(edge[:, None], edge[None, :]))
     assert np.all(blocks.near[0] < blocks.near[1])
@@ -61,7 +61,7 @@ def test_every_pair_of_edges_exactly_once_and_far_ones_alone_in_blocks(curve: Cu
 
 
 @CURVE
-def test_only_near_pairs_can_be_left_out(curve: Curve) -> None:
+def test_only_near_pairs_can_be_left_out(curve):
     """Wherever among the pairs those would be that are not: the last two edges are neighbours, or of two components."""
     blocks, n = BlockList.of(curve, 0.25, 4), curve.mesh.edges
     listed = set(zip(blocks.near[0].tolist(), blocks.near[1].tolist(), strict=True))
@@ -71,14 +71,14 @@ def test_only_near_pairs_can_be_left_out(curve: Curve) -> None:
                 blocks.near_pairs((np.array([i]), np.array([j])))
 
 
-def test_a_list_is_of_one_mesh_only() -> None:
+def test_a_list_is_of_one_mesh_only():
     curve = torus_trefoil(400)
     assert BlockList.of(curve, 0.25, 4).is_separated(curve, 0.25)
     assert not BlockList.of(curve, 0.25, 4).is_separated(opened(curve, 0), 0.25)
 
 
 @CURVE
-def test_clusters_halve_their_parents_and_are_parts_of_a_component_or_whole_ones(curve: Curve) -> None:
+def test_clusters_halve_their_parents_and_are_parts_of_a_component_or_whole_ones(curve):
     tree = edge_clusters(curve, 4)
     assert sorted(tree.order) == list(range(curve.mesh.edges))
     component = curve.mesh.edge_component[tree.order]
@@ -94,7 +94,7 @@ def test_clusters_halve_their_parents_and_are_parts_of_a_component_or_whole_ones
     np.testing.assert_array_equal(np.append(tree.start[leaves], curve.mesh.edges), np.append(0, tree.stop[leaves]))
 
 
-def test_size_of_the_list_is_linear() -> None:
+def test_size_of_the_list_is_linear():
     one, twice = (BlockList.of(torus_trefoil(n), 0.25, 4) for n in (5_000, 10_000))
     assert len(twice.first) < 2.3 * len(one.first)
     assert len(twice.near[0]) < 2.3 * len(one.near[0])
@@ -135,7 +135,7 @@ def true_errors(name: str) -> tuple[float, float]:
 
 
 @NAME
-def test_rows_add_up(name: str) -> None:
+def test_rows_add_up(name):
     curve = point(name).curve
     pairs = energy(name).exact.value(curve) - 4.0 * len(curve.mesh.component_sizes)
     rows = energy(name).exact.row_energies(curve, np.arange(len(curve)))
@@ -147,7 +147,7 @@ def test_rows_add_up(name: str) -> None:
 
 @NAME
 @pytest.mark.parametrize("count", [100, 512, 10_000])
-def test_errors_are_within_three_standard_errors_of_what_a_sample_tells(name: str, count: int) -> None:
+def test_errors_are_within_three_standard_errors_of_what_a_sample_tells(name, count):
     """A sample of all edges tells the errors themselves."""
     curve, (of_energy, of_slope) = point(name).curve, true_errors(name)
     for estimate, true in (
@@ -161,7 +161,7 @@ def test_errors_are_within_three_standard_errors_of_what_a_sample_tells(name: st
 
 
 @NAME
-def test_by_default_a_sample_tells_the_errors_that_are_wanted_by_default(name: str) -> None:
+def test_by_default_a_sample_tells_the_errors_that_are_wanted_by_default(name):
     """Its standard errors are a third of them at most, so that they are what decides."""
     at = point(name)
     errors = SampledErrors.at(energy(name), at.curve, at.energy, at.gradient, at.gradient_norm)
@@ -172,7 +172,7 @@ def test_by_default_a_sample_tells_the_errors_that_are_wanted_by_default(name: s
 
 
 @pytest.mark.parametrize("count", [2, 4, 6])
-def test_standard_errors_are_those_of_samples_without_replacement(count: int) -> None:
+def test_standard_errors_are_those_of_samples_without_replacement(count):
     """Squared and averaged over all samples of six numbers they are the variance of the sum that is told."""
     numbers = np.array([1.0, -2.0, 4.0, 0.5, 3.0, 9.0])
     told = [Estimate.of_sum(numbers[list(chosen)], 6, rest=5.0) for chosen in combinations(range(6), count)]
@@ -181,7 +181,7 @@ def test_standard_errors_are_those_of_samples_without_replacement(count: int) ->
     assert np.mean([each.standard_error**2 for each in told]) == pytest.approx(variance, abs=1e-12)
 
 
-def test_the_reported_energy_says_its_error_where_it_is_not_exact(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_reported_energy_says_its_error_where_it_is_not_exact(monkeypatch):
     curve = bent_trefoil(2000)
     exact, error = moebius_energy(curve)
     assert error == 0.0

@@ -5,7 +5,6 @@ import pytest
 from families import crossed
 from mobius_flow.core import Curve, MoebiusEnergy, Objective
 from mobius_flow.core.curve.refine import refine, subdivide
-from mobius_flow.core.energies import Energy
 from mobius_flow.core.energies.barrier import replaced_pairs
 from mobius_flow.core.energies.hierarchy import BlockList, HierarchicalMoebiusEnergy
 from mobius_flow.core.knots import knot
@@ -38,7 +37,7 @@ CURVES = {
 
 
 @pytest.fixture(autouse=True)
-def lists(monkeypatch: pytest.MonkeyPatch) -> None:
+def lists(monkeypatch):
     """Near pairs are listed even where, as on curves as small as these, they are most of all."""
     monkeypatch.setattr("mobius_flow.core.energies.hierarchy.blocks.MOSTLY_NEAR", 1.0)
 
@@ -58,7 +57,7 @@ def direction_for(curve: Curve) -> np.ndarray:
 
 
 @CURVE
-def test_energy_to_six_digits_and_derivative_to_four(curve: Curve) -> None:
+def test_energy_to_six_digits_and_derivative_to_four(curve):
     fast = with_small_leaves(curve)
     energy, derivative = fast.value_and_derivative(curve)
     exact, exact_derivative = MoebiusEnergy().value_and_derivative(curve)
@@ -66,7 +65,7 @@ def test_energy_to_six_digits_and_derivative_to_four(curve: Curve) -> None:
     assert fast.value(curve) == pytest.approx(energy, rel=1e-14)
     inner = MoebiusMetric().at(curve)
 
-    def dual_norm(covector: np.ndarray) -> float:
+    def dual_norm(covector):
         return float(np.sqrt(np.sum(covector * inner.solve(covector))))
 
     assert dual_norm(derivative - exact_derivative) < 1e-4 * dual_norm(exact_derivative)
@@ -74,7 +73,7 @@ def test_energy_to_six_digits_and_derivative_to_four(curve: Curve) -> None:
 
 
 @pytest.mark.parametrize(("name", "smooth"), crossed(CURVES, [True, False]))
-def test_products_with_the_second_derivative_to_four_digits(name: str, smooth: bool) -> None:
+def test_products_with_the_second_derivative_to_four_digits(name, smooth):
     curve = CURVES[name]
     inner, noise = FractionalMetric().at(curve).plus(L2Metric().at(curve)), direction_for(curve)
     v = inner.solve(noise) if smooth else noise
@@ -84,7 +83,7 @@ def test_products_with_the_second_derivative_to_four_digits(name: str, smooth: b
     np.testing.assert_array_equal(with_small_leaves(curve).hessian_product(curve, 0.0 * v), 0.0 * v)
 
 
-def test_error_falls_with_the_fifth_power_of_separation() -> None:
+def test_error_falls_with_the_fifth_power_of_separation():
     curve = CURVES["tangle"]
     exact = MoebiusEnergy().value_and_derivative(curve)[1]
     errors = [
@@ -93,7 +92,7 @@ def test_error_falls_with_the_fifth_power_of_separation() -> None:
     assert errors[0] > 2**5 * errors[1]
 
 
-def test_places_and_units() -> None:
+def test_places_and_units():
     """Coordinates of 10⁶ are rounded by some 10⁻⁹ of an edge, and the derivative sees angles between edges."""
     energy, curve = HierarchicalMoebiusEnergy(), torus_trefoil(500)
     value, derivative = energy.value_and_derivative(curve)
@@ -106,8 +105,8 @@ def test_places_and_units() -> None:
         np.testing.assert_array_equal(factor * scaled, derivative)
 
 
-def test_many_vertices_lose_no_digits() -> None:
-    def energy_and_slope(n: int, energy: Energy) -> tuple[float, float]:
+def test_many_vertices_lose_no_digits():
+    def energy_and_slope(n, energy):
         """The energy and its derivative along one smooth field."""
         curve = Curve(torus_trefoil(n).vertices * [1.0, 1.3, 0.8])
         value, derivative = energy.value_and_derivative(curve)
@@ -126,7 +125,7 @@ def flat_trefoil() -> Curve:
     return curve.with_vertices(curve.vertices * [1.0, 1.0, 0.01])
 
 
-def test_leaving_out_is_exact_and_the_objective_that_of_the_default_energy() -> None:
+def test_leaving_out_is_exact_and_the_objective_that_of_the_default_energy():
     """As exact as the expansions: 10⁻⁶ of the energy, 10⁻⁵ of the derivative."""
     curve = flat_trefoil()
     pairs = replaced_pairs(curve)
@@ -139,7 +138,7 @@ def test_leaving_out_is_exact_and_the_objective_that_of_the_default_energy() -> 
     np.testing.assert_allclose(derivative, exact_derivative, atol=1e-5 * np.abs(exact_derivative).max())
 
 
-def test_a_frozen_list_stays_until_strands_come_near() -> None:
+def test_a_frozen_list_stays_until_strands_come_near():
     curve = torus_trefoil(2000)
     frozen, fresh = HierarchicalMoebiusEnergy().frozen_at(curve), HierarchicalMoebiusEnergy()
     nearby, flat = (curve.with_vertices(curve.vertices * [1.0, 1.0, z]) for z in (0.95, 0.005))
@@ -155,7 +154,7 @@ def test_a_frozen_list_stays_until_strands_come_near() -> None:
         assert ring.value(other) == HierarchicalMoebiusEnergy().value(other)
 
 
-def test_densely_packed_strands_are_summed_pair_by_pair(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_densely_packed_strands_are_summed_pair_by_pair(monkeypatch):
     packed, loose = CURVES["tangle"], torus_trefoil(2000)
     pairs = packed.mesh.tails[:2], packed.mesh.tails[2:4]
     listed = HierarchicalMoebiusEnergy().value(loose)

@@ -1,6 +1,6 @@
 """Compressed inner products, the sums over pairs that they are made of, and the polynomials of their kernels."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 import pytest
@@ -47,7 +47,7 @@ def assert_equivalent(name: str, curve: Curve) -> None:
 
 @METRIC
 @CURVE
-def test_a_compressed_product_is_near_the_exact_one_symmetric_and_solved_with(name: str, curve: Curve) -> None:
+def test_a_compressed_product_is_near_the_exact_one_symmetric_and_solved_with(name, curve):
     """It is exact where all pairs are near."""
     expected = METRICS[name].at(curve).dense()
     found = CompressedMetric(METRICS[name], leaf=len(curve)).at(curve).dense()
@@ -61,13 +61,13 @@ def test_a_compressed_product_is_near_the_exact_one_symmetric_and_solved_with(na
 
 
 @pytest.mark.parametrize("unknot", HARD_UNKNOTS)
-def test_near_the_exact_one_on_tangles(unknot: str) -> None:
+def test_near_the_exact_one_on_tangles(unknot):
     assert_equivalent("moebius", refine(knot(unknot)))
 
 
 @METRIC
 @pytest.mark.parametrize("sum_with", ["compressed", "sparse", "dense"])
-def test_sums(name: str, sum_with: str) -> None:
+def test_sums(name, sum_with):
     curve = CURVES["chain"]
     inner, n = COMPRESSED[name](curve), len(curve)
     other = {
@@ -82,7 +82,7 @@ def test_sums(name: str, sum_with: str) -> None:
     np.testing.assert_allclose(total.solve(total.apply(u)), u, atol=1e-7)
 
 
-def test_what_is_solved_with_first_knows_how_much_of_each_term_there_is() -> None:
+def test_what_is_solved_with_first_knows_how_much_of_each_term_there_is():
     """A field constant on each ring is solved for at once, however much of a second metric there is."""
     curve = CURVES["chain"]
     inner, other = moebius_inner_product(curve), METRICS["l2"].at(curve)
@@ -92,7 +92,7 @@ def test_what_is_solved_with_first_knows_how_much_of_each_term_there_is() -> Non
         np.testing.assert_allclose(added, weight * rings.T @ other.dense() @ rings, rtol=1e-9, atol=1e-9 * weight)
 
 
-def test_indefinite_products_are_refused() -> None:
+def test_indefinite_products_are_refused():
     curve = CURVES["knot"]
     indefinite = moebius_inner_product(curve).plus(SparseInnerProduct(-1e6 * sp.eye_array(len(curve))))
     with pytest.raises(np.linalg.LinAlgError, match=r"not positive definite"):
@@ -100,7 +100,7 @@ def test_indefinite_products_are_refused() -> None:
 
 
 @METRIC
-def test_iterations_do_not_grow_with_the_mesh(monkeypatch, name: str) -> None:
+def test_iterations_do_not_grow_with_the_mesh(monkeypatch, name):
     counts = []
     for n in (500, 2000, 8000):
         curve = torus_knot(2, 3, n)
@@ -152,7 +152,7 @@ def by_pairs(curve: Curve, pairs: Iterator[tuple[int, int, float]], x: np.ndarra
 
 
 @EACH
-def test_slopes_and_values(curve: Curve) -> None:
+def test_slopes_and_values(curve):
     blocks, near, far = forms_with_weights(curve)
     u, forms = np.random.default_rng(23).normal(size=len(curve)), PairForms(curve, blocks)
     expected = by_pairs(curve, weighted_pairs(blocks, near, far), (curve.mesh.difference @ u) / curve.edge_lengths)
@@ -166,7 +166,7 @@ def test_slopes_and_values(curve: Curve) -> None:
 
 
 @EACH
-def test_components(curve: Curve) -> None:
+def test_components(curve):
     """Only clusters of several components are left out, which some curves do not have."""
     blocks, near, far = forms_with_weights(curve)
     component = curve.mesh.edge_component
@@ -179,7 +179,7 @@ def test_components(curve: Curve) -> None:
 
 
 @EACH
-def test_running_sum(curve: Curve) -> None:
+def test_running_sum(curve):
     order = BlockList.of(curve, 0.5, 4).tree.order
     running, n = RunningSum.of_values(curve, order), len(curve)
     u = np.random.default_rng(29).normal(size=(n, 2))
@@ -198,8 +198,8 @@ DEGREE = 5
 
 @DIMENSION
 @pytest.mark.parametrize("k", [0, 1])
-def test_kernel_derivatives_are_the_taylor_coefficients(m: int, k: int) -> None:
-    kernel: Callable[[np.ndarray], float] = [lambda x: 1 / (x @ x), lambda x: 0.5 * np.log(x @ x)][k]
+def test_kernel_derivatives_are_the_taylor_coefficients(m, k):
+    kernel = [lambda x: 1 / (x @ x), lambda x: 0.5 * np.log(x @ x)][k]
     table = polynomials(m, DEGREE)
     d, w = np.random.default_rng(23).normal(size=(2, m))
     d *= 2.0 / np.linalg.norm(d)

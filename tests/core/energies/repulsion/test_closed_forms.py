@@ -45,7 +45,7 @@ def potential(corners: np.ndarray, x: np.ndarray) -> tuple[float, np.ndarray]:
 
 @CORNERS
 @POINT
-def test_value_and_derivatives(corners: np.ndarray, x: np.ndarray) -> None:
+def test_value_and_derivatives(corners, x):
     v = np.random.default_rng(5).normal(size=3)
     value, gradient = potential(corners, x)
     assert value == pytest.approx(potential_by_quadrature(corners, x), rel=1e-9)
@@ -56,7 +56,7 @@ def test_value_and_derivatives(corners: np.ndarray, x: np.ndarray) -> None:
         assert slope == pytest.approx(2, abs=0.05)
 
 
-def test_analytic_discs_end_at_singularities() -> None:
+def test_analytic_discs_end_at_singularities():
     """On the circle around x of the radius that is told, Φ has a singularity where it can be computed."""
     triangle, tau = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0.0]]), np.array([0.6, 0.0, 0.8])
     reach = simplex(triangle).reach
@@ -99,7 +99,7 @@ def integrated(obstacle: Obstacle, curve: Curve) -> tuple[float, Schedule]:
 
 
 @pytest.mark.parametrize(("shape", "gap"), crossed(SHAPES, [1e-1, 1e-3, 1e-6]))
-def test_triangles(shape: str, gap: float) -> None:
+def test_triangles(shape, gap):
     start, end, breaks = SHAPES[shape](gap)
     found, _ = integrated(Obstacle(FLAT, [[0, 1, 2]]), curve_of(start, end))
     reference = edge_integral(FLAT, np.array(start), np.array(end), [*breaks, 0.0, 1.0])
@@ -107,7 +107,7 @@ def test_triangles(shape: str, gap: float) -> None:
 
 
 @pytest.mark.parametrize(("shape", "gap"), crossed(SHAPES, [1e-1, 1e-3, 1e-6]))
-def test_segments(shape: str, gap: float) -> None:
+def test_segments(shape, gap):
     start, end, _ = SHAPES[shape](gap)
     segment = np.array([[0.0, 0, 0], [1.0, 0, 0]])
     found, _ = integrated(Obstacle(segment, [[0, 1]]), curve_of(start, end))
@@ -116,7 +116,7 @@ def test_segments(shape: str, gap: float) -> None:
     assert found == pytest.approx(float(reference * length), rel=1e-8)
 
 
-def test_an_edge_may_be_in_the_middle_of_an_obstacle() -> None:
+def test_an_edge_may_be_in_the_middle_of_an_obstacle():
     box = np.array([[2.0, 2, 2], [2, -2, -2], [-2, 2, -2], [-2, -2, 2]])
     obstacle = Obstacle(box, [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]])
     curve = Curve([[-0.1, 0, 0], [0.1, 0, 0], [0, 0.3, 0.1]])

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve
 from mobius_flow.core.curve.obstacle import Obstacle
 from mobius_flow.core.energies.edge_pairs import change, stepped
 from mobius_flow.core.energies.repulsion.repulsion import THETA, Schedule
@@ -25,7 +24,7 @@ OBSTACLE = pytest.mark.parametrize("obstacle", OBSTACLES.values(), ids=OBSTACLES
 
 
 @OBSTACLE
-def test_clusters_are_ranges_within_balls_with_moments(obstacle: Obstacle) -> None:
+def test_clusters_are_ranges_within_balls_with_moments(obstacle):
     """Moments of degree two are exact by the midpoints of sides (Simpson's rule for segments)."""
     clusters = repulsion(obstacle).clusters
     corners, sizes, tree = clusters.simplices.corners, clusters.simplices.sizes, clusters.tree
@@ -52,7 +51,7 @@ def test_clusters_are_ranges_within_balls_with_moments(obstacle: Obstacle) -> No
 
 @OBSTACLE
 @pytest.mark.parametrize("curve", [wavy(50), wavy(50, 0.98), wavy(7, 1.3)], ids=["inside", "near", "long edges"])
-def test_every_simplex_is_seen_once(obstacle: Obstacle, curve: Curve) -> None:
+def test_every_simplex_is_seen_once(obstacle, curve):
     clusters = repulsion(obstacle).clusters
     schedule = Schedule.of(curve, clusters, THETA)
     total = np.zeros(len(curve))
@@ -64,7 +63,7 @@ def test_every_simplex_is_seen_once(obstacle: Obstacle, curve: Curve) -> None:
 
 @OBSTACLE
 @pytest.mark.parametrize("radius", [0.3, 0.7, 0.95])
-def test_error_of_clusters(obstacle: Obstacle, radius: float) -> None:
+def test_error_of_clusters(obstacle, radius):
     curve = wavy(60, radius)
     exact, derivative = repulsion(obstacle).value_and_derivative(curve)
     value, found = repulsion(obstacle, THETA).value_and_derivative(curve)
@@ -73,7 +72,7 @@ def test_error_of_clusters(obstacle: Obstacle, radius: float) -> None:
 
 
 @pytest.mark.parametrize("corners", [3, 2], ids=["triangles", "segments"])
-def test_far_clusters(corners: int) -> None:
+def test_far_clusters(corners):
     """Of a symmetric cluster moments of the fourth order are the first to be missed, and those of the gradient too."""
     half = 0.3 * np.random.default_rng(4).normal(size=(20, 3, 3))
     simplices = np.concatenate([half, -half])[:, :corners]

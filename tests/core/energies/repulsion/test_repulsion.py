@@ -57,7 +57,7 @@ CASES = {
 CASE = pytest.mark.parametrize(("obstacle", "curve"), CASES.values(), ids=CASES)
 
 
-def test_a_sum_over_edges_and_simplices() -> None:
+def test_a_sum_over_edges_and_simplices():
     curve = Curve([[0.0, 0, 0], [0.5, 0.1, 0], [0.3, 0.6, 0.2]])
     triangles = Obstacle([[1, 0, 1], [2, 0, 1], [1, 1, 1.5], [-1, 0, 1]], [[0, 1, 2], [0, 2, 3]])
     points, weights = np.polynomial.legendre.leggauss(6)
@@ -72,7 +72,7 @@ def test_a_sum_over_edges_and_simplices() -> None:
 
 @CASE
 @pytest.mark.parametrize("theta", [0.0, THETA])
-def test_derivatives(obstacle: Obstacle, curve: Curve, theta: float) -> None:
+def test_derivatives(obstacle, curve, theta):
     assert_slopes(repulsion(obstacle, theta).frozen_at(curve), curve)
 
 
@@ -80,14 +80,14 @@ def test_derivatives(obstacle: Obstacle, curve: Curve, theta: float) -> None:
 @pytest.mark.parametrize(
     ("obstacle", "shape"), [(TRIANGLE, "face"), (TRIANGLE, "vertex"), (TRIANGLE, "side"), (SEGMENT, "side")]
 )
-def test_derivatives_near_contact(obstacle: Obstacle, shape: str, gap: float) -> None:
+def test_derivatives_near_contact(obstacle, shape, gap):
     curve = over_triangle(gap, shape)
     assert_slopes(repulsion(obstacle).frozen_at(curve), curve, 0.02 * gap)
 
 
 @CASE
 @pytest.mark.parametrize("scale", [1e-30, 1e-3, 1e30])
-def test_similarities_and_midpoints_of_edges(obstacle: Obstacle, curve: Curve, scale: float) -> None:
+def test_similarities_and_midpoints_of_edges(obstacle, curve, scale):
     rotation = np.linalg.qr(np.random.default_rng(4).normal(size=(3, 3)))[0]
     offset = scale * np.array([1.0, -2.0, 3.0])
     value, derivative = repulsion(obstacle, THETA).value_and_derivative(curve)
@@ -106,7 +106,7 @@ def test_similarities_and_midpoints_of_edges(obstacle: Obstacle, curve: Curve, s
 
 
 @pytest.mark.parametrize(("obstacle", "rate"), [(TRIANGLE, 2 * np.pi), (SEGMENT, 4 * np.pi)])
-def test_contact_takes_infinitely_much(obstacle: Obstacle, rate: float) -> None:
+def test_contact_takes_infinitely_much(obstacle, rate):
     """Past the side of a triangle 2π/sin θ · log(1/gap), past a segment twice that, as past a strand of the curve.
 
     Along a face it takes 2π/gap on each unit of length.
@@ -120,7 +120,7 @@ def test_contact_takes_infinitely_much(obstacle: Obstacle, rate: float) -> None:
 
 
 @pytest.mark.parametrize("obstacle", [BALL, FRAME], ids=["ball", "frame"])
-def test_a_search_sees_one_smooth_function_while_its_schedule_suits(obstacle: Obstacle) -> None:
+def test_a_search_sees_one_smooth_function_while_its_schedule_suits(obstacle):
     curve, term = wavy(40, 0.8), repulsion(obstacle, THETA)
     frozen = term.frozen_at(curve)
     assert frozen.value(curve) == term.value(curve)
@@ -137,7 +137,7 @@ def test_a_search_sees_one_smooth_function_while_its_schedule_suits(obstacle: Ob
     assert frozen.value(near) == repulsion(TRIANGLE).value(near)
 
 
-def test_an_objective_is_the_weighted_sum_of_its_terms() -> None:
+def test_an_objective_is_the_weighted_sum_of_its_terms():
     curve = wavy(20)
     obstacles = [BALL, FRAME, sphere(1, radius=2.0)]
     plain, whole = Objective.of(MoebiusEnergy()), Objective.of(MoebiusEnergy(), obstacles)
@@ -158,7 +158,7 @@ def test_an_objective_is_the_weighted_sum_of_its_terms() -> None:
 
 
 @pytest.mark.parametrize("obstacle", [PLANE, LINE], ids=["plane", "line"])
-def test_stiffness_and_clearance_of_a_plane_or_a_line(obstacle: Obstacle) -> None:
+def test_stiffness_and_clearance_of_a_plane_or_a_line(obstacle):
     """Φ'' = 4π/h³ of both, integrated along an edge at the distance h.  Of several obstacles the nearest counts."""
     term, up = repulsion(obstacle), np.array([[0.0, 0, 1], [0.0, 0, 1], [0.0, 0, 0]])
     stiffness = term.stiffness(STRIP).diagonal()
@@ -172,7 +172,7 @@ def test_stiffness_and_clearance_of_a_plane_or_a_line(obstacle: Obstacle) -> Non
     assert np.array_equal(Objective.of(MoebiusEnergy()).clearance(STRIP), np.full(3, np.inf))
 
 
-def test_a_run_has_stiffness_in_its_metric_and_clearance_in_the_units_of_the_user() -> None:
+def test_a_run_has_stiffness_in_its_metric_and_clearance_in_the_units_of_the_user():
     curve = wavy(24)
     point = start_problem(*wanted(curve, vertices=24, avoid=[BALL])).at_curve(curve)
     ((term, _),) = point.problem.objective.further
@@ -184,7 +184,7 @@ def test_a_run_has_stiffness_in_its_metric_and_clearance_in_the_units_of_the_use
 
 
 @pytest.mark.parametrize("named", [[0, 1, 1], [0, 0, 1], [1, 0, 1]])
-def test_segments_among_triangles_repel_as_segments(named: list[int]) -> None:
+def test_segments_among_triangles_repel_as_segments(named):
     """They are triangles that name a vertex twice."""
     mixed = Obstacle(
         np.concatenate([BALL.vertices, FRAME.vertices]), [*BALL.faces, *(FRAME.faces[:, named] + len(BALL.vertices))]
@@ -195,7 +195,7 @@ def test_segments_among_triangles_repel_as_segments(named: list[int]) -> None:
     assert objective.value(wavy(24)) == pytest.approx(expected, rel=1e-12)
 
 
-def test_thin_triangles_give_numbers_and_what_has_no_area_repels_nothing() -> None:
+def test_thin_triangles_give_numbers_and_what_has_no_area_repels_nothing():
     """Clusters of what has no area alone have no centroid; meshes have some."""
     rng = np.random.default_rng(6)
     corners = rng.normal(size=(50, 3, 3))

@@ -57,13 +57,13 @@ SPELLINGS = {
 
 
 @pytest.mark.parametrize("code", SPELLINGS)
-def test_spellings_of_the_trefoil_the_hopf_link_and_unknots(code: str) -> None:
+def test_spellings_of_the_trefoil_the_hopf_link_and_unknots(code):
     assert is_code(code)
     diagram = diagram_from_code(code)
     assert (len(diagram.passes), jones(diagram)) == SPELLINGS[code]
 
 
-def test_gauss_codes_come_back_with_their_circles_and_find_them_without_signs() -> None:
+def test_gauss_codes_come_back_with_their_circles_and_find_them_without_signs():
     for parts, signs in (((),), ()), (((), ()), ()), ((*HOPF, ()), (1, 1)), (((), *HOPF), (1, 1)), (HOPF, (-1, -1)):
         diagram = Diagram(parts, signs)
         assert diagram_from_code(gauss_text(diagram)) == diagram
@@ -75,7 +75,7 @@ def test_gauss_codes_come_back_with_their_circles_and_find_them_without_signs() 
 
 
 @pytest.mark.parametrize("name", ["K3a1", "K11n34", "K12n242", "L8n1", "L10a100"])
-def test_codes_that_spherogram_and_snappy_write(name: str) -> None:
+def test_codes_that_spherogram_and_snappy_write(name):
     link = Link(name)
     theirs = jones(diagram_of(link.PD_code()))
     parts, flips = link.DT_code(flips=True)
@@ -87,18 +87,18 @@ def test_codes_that_spherogram_and_snappy_write(name: str) -> None:
 
 
 @pytest.mark.parametrize("code", ["[(4,6,8,2)]", "[(4,8,10,2,6)]", "[(6,8),(2,4)]", "[(4,8,-12,2,-14,-16,-6,-10)]"])
-def test_dt_codes_are_read_as_spherogram_does(code: str) -> None:
+def test_dt_codes_are_read_as_spherogram_does(code):
     theirs = diagram_of(Link(f"DT: {code}").PD_code())
     assert jones(diagram_from_code(f"DT: {code}")) == jones(theirs)
 
 
 @pytest.mark.parametrize("name", [name for name in KNOTS if name != "0_1"][::7])
-def test_codes_of_braids_come_back(name: str) -> None:
+def test_codes_of_braids_come_back(name):
     diagram = braid_diagram(KNOTS[name])
     assert jones(diagram_of(diagram.planar_code)) == jones(diagram)
 
 
-def test_codes_without_signs_are_realized_where_any_signs_are_planar() -> None:
+def test_codes_without_signs_are_realized_where_any_signs_are_planar():
     random.seed(3)
     found = 0
     for _ in range(400):
@@ -160,7 +160,7 @@ def test_codes_without_signs_are_realized_where_any_signs_are_planar() -> None:
         ("4 6 2", "begin it with PD:, DT: or Gauss:"),
     ],
 )
-def test_bad_codes_are_one_sentence(code: str, said: str) -> None:
+def test_bad_codes_are_one_sentence(code, said):
     with pytest.raises(CurveError) as caught:
         diagram_from_code(code)
     assert said in str(caught.value)
@@ -168,7 +168,7 @@ def test_bad_codes_are_one_sentence(code: str, said: str) -> None:
     assert "\n" not in str(caught.value)
 
 
-def test_mangled_codes_are_diagrams_or_one_sentence() -> None:
+def test_mangled_codes_are_diagrams_or_one_sentence():
     random.seed(5)
     codes = TREFOILS + HOPFS
     for _ in range(1500):

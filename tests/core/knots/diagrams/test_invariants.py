@@ -30,7 +30,7 @@ SIGNATURES = {"9_42": 2, "10_132": 0, "10_136": 2, "10_139": -6, "10_145": 2, "1
 
 
 @pytest.mark.parametrize("name", family(KNOWN))
-def test_invariants_of_the_table(name: str) -> None:
+def test_invariants_of_the_table(name):
     diagram = braid_diagram(KNOTS[name])
     assert alexander(diagram) == KNOWN[name].alexander
     assert jones(diagram) == KNOWN[name].jones
@@ -38,7 +38,7 @@ def test_invariants_of_the_table(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["L2a1", "L5a1", "L6a4", "L7n2", "3_1#m4_1", "T(3,4)", "braid(1,1,3,3)", "braid(1,3)"])
-def test_links_have_the_jones_polynomial_of_slow_sums(name: str) -> None:
+def test_links_have_the_jones_polynomial_of_slow_sums(name):
     diagram = braid_diagram(braid_word(name))
     link = Link(diagram.planar_code)
     link.unlinked_unknot_components += sum(not part for part in diagram.passes)
@@ -50,7 +50,7 @@ LONG = [(1, -2) * 25, (1, -2, 3) * 19, (1,) * 59]  # with coefficients above hal
 
 
 @pytest.mark.parametrize("word", [*WORDS, *LONG])
-def test_alexander_polynomials_of_any_word(word: tuple[int, ...]) -> None:
+def test_alexander_polynomials_of_any_word(word):
     """Against another matrix; |Δ(−1)| also by elimination modulo a prime."""
     diagram, expected = braid_diagram(word), burau_alexander(word, max(map(abs, word)) + 1)
     assert len(diagram.passes) == 1
@@ -61,7 +61,7 @@ def test_alexander_polynomials_of_any_word(word: tuple[int, ...]) -> None:
 
 
 @pytest.mark.parametrize("name", ["3_1", "m3_1", "4_1", "6_2", "9_42"])
-def test_invariants_are_those_of_every_diagram(name: str) -> None:
+def test_invariants_are_those_of_every_diagram(name):
     for diagram in views(knot(name, 60), 4, seed=3):
         simple = simplified(diagram)
         assert alexander(diagram) == alexander(simple)
@@ -70,14 +70,14 @@ def test_invariants_are_those_of_every_diagram(name: str) -> None:
         assert doubled_bracket(diagram) == doubled_bracket(simple)
 
 
-def test_mirror_images_have_mirrored_polynomials() -> None:
+def test_mirror_images_have_mirrored_polynomials():
     left, right = (braid_diagram(braid_word(name)) for name in ("m6_2", "6_2"))
     for polynomial in (jones, doubled_bracket):
         assert polynomial(left) == {-power: c for power, c in polynomial(right).items()}
     assert signature(left) == -signature(right)
 
 
-def test_what_is_too_large_is_not_computed() -> None:
+def test_what_is_too_large_is_not_computed():
     assert alexander(braid_diagram((1,) * (MAX_CROSSINGS + 1))) is None
     assert jones(braid_diagram(tuple(range(1, 14)) * 14)) is None
 

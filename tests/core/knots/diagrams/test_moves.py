@@ -22,7 +22,7 @@ def messy(name: str, seed: int) -> Diagram:
 
 
 @pytest.mark.parametrize(("name", "seed"), crossed(NAMES, [1, 3]))
-def test_every_move_keeps_type_linking_numbers_and_planarity(name: str, seed: int) -> None:
+def test_every_move_keeps_type_linking_numbers_and_planarity(name, seed):
     diagram, wanted = messy(name, seed), jones(braid_diagram(braid_word(name)))
     rng = np.random.default_rng(seed)
     linking = diagram.linking_numbers
@@ -39,7 +39,7 @@ def test_every_move_keeps_type_linking_numbers_and_planarity(name: str, seed: in
     assert jones(simplified(diagram)) == wanted
 
 
-def test_reidemeisters_moves_undo_loops_and_bigons_but_no_clasps() -> None:
+def test_reidemeisters_moves_undo_loops_and_bigons_but_no_clasps():
     assert reduced(Diagram((((0, True), (0, False), (1, False), (1, True)),), (1, -1))) == Diagram(((),), ())
     bigon = Diagram((((0, True), (1, True)), ((0, False), (1, False))), (1, -1))
     assert reduced(bigon) == Diagram(((), ()), ())
@@ -50,7 +50,7 @@ def test_reidemeisters_moves_undo_loops_and_bigons_but_no_clasps() -> None:
     assert jones(reduced(nugatory)) == jones(nugatory) == jones(braid_diagram((-1, -1, -1)))
 
 
-def test_bigons_are_undone_whichever_way_their_strands_run() -> None:
+def test_bigons_are_undone_whichever_way_their_strands_run():
     parallel = diagram_from_code("Gauss: O1+O2- / U1+U2-")
     assert reduced(parallel) == Diagram(((), ()), ())
     opposite = diagram_from_code("Gauss: O1+O2-U5-O4-U3-O5-U2-U1+U4-O3-")  # a trefoil, a strand of it under another
@@ -58,7 +58,7 @@ def test_bigons_are_undone_whichever_way_their_strands_run() -> None:
     assert jones(reduced(opposite)) == jones(braid_diagram((-1, -1, -1)))
 
 
-def test_alternating_diagrams_have_the_least_number_of_crossings() -> None:
+def test_alternating_diagrams_have_the_least_number_of_crossings():
     assert is_least(braid_diagram((1, -2, 1, -2)))
     assert is_least(Diagram(((),), ()))
     assert not is_least(braid_diagram((1, 2, 1, 2, 1, 2, 1, 2)))
@@ -68,7 +68,7 @@ def test_alternating_diagrams_have_the_least_number_of_crossings() -> None:
     assert not is_least(cut)
 
 
-def test_faces_tell_what_is_planar_and_pieces_what_no_crossing_joins() -> None:
+def test_faces_tell_what_is_planar_and_pieces_what_no_crossing_joins():
     trefoil = braid_diagram((1, 1, 1))
     assert len(trefoil.faces) == 5
     assert trefoil.is_planar
@@ -79,7 +79,7 @@ def test_faces_tell_what_is_planar_and_pieces_what_no_crossing_joins() -> None:
 
 
 @pytest.mark.parametrize("name", FACTORS)
-def test_factors_are_found_and_hard_unknots_lose_all_crossings(name: str) -> None:
+def test_factors_are_found_and_hard_unknots_lose_all_crossings(name):
     (piece,) = simplified(messy(name, 3)).pieces()
     assert sorted(factor.crossings for factor in factors(piece)) == FACTORS[name]
     diagram = next(views(hard_unknot(80, len(name)), 1))
