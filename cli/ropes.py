@@ -4,7 +4,7 @@ import argparse
 from dataclasses import asdict
 
 from ..core.base import OptionError, write_file
-from ..core.keys.contact_map import contact_map
+from ..core.keys.figure import contact_map
 from ..core.keys.paper import PAPERS
 from ..core.ropes import AXES, Separated, SeparateOptions, Tightened, TightenOptions, separating, tightening
 from . import curves

@@ -18,7 +18,7 @@ from ...core.base import CurveError, FloatArray, Message, MobiusFlowError, Optio
 from ...core.collision import is_rope
 from ...core.driver.prepare import rope_radius
 from ...core.driver.words import in_blenders_words
-from ...core.keys.contact_map import contact_forces
+from ...core.keys.figure import contact_forces
 from ...core.keys.key_options import Course, KeyOptions
 from ...core.keys.motion import Recording
 from ...core.keys.placement import Measure

@@ -9,6 +9,7 @@ from .distances import (
     arc_distances,
     arc_positions,
     near_by_octave,
+    nearest_on_edges,
     nearest_strands,
     periods,
     points_at,

@@ -45,6 +45,13 @@ def points_along(curve: Curve, component: IntArray, position: FloatArray) -> Flo
     return np.asarray(curve.vertices[mesh.tails[edge]] + t[:, None] * curve.edge_vectors[edge])
 
 
+def nearest_on_edges(curve: Curve, edges: IntArray, points: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Where edges, (k,), are nearest to points, (k, m) or (m,), as shares of their lengths, and how far that is."""
+    e, chord = curve.edge_vectors[edges], points - curve.vertices[curve.mesh.tails[edges]]
+    t = (np.einsum("km,km->k", chord, e) / np.maximum(curve.edge_lengths[edges] ** 2, TINY)).clip(0.0, 1.0)
+    return t, np.asarray(np.linalg.norm(chord - t[:, None] * e, axis=1))
+
+
 def arc_distances(curve: Curve, t_i: float, t_j: float, rows: IntArray, columns: slice) -> FloatArray:
     """ϱ between points at t_i and t_j of edges given by tails; inf across components, any number at arcs' ends."""
     mesh, component = curve.mesh, curve.mesh.component
@@ -120,11 +127,8 @@ def strand_gaps(curve: Curve, radius: float) -> FloatArray:
     # arc lengths to the points nearest to vertices i on the edges that meet at vertices j
     found = []
     for edge in (mesh.outgoing[j], mesh.incoming[j]):
-        e, ell = curve.edge_vectors[edge], curve.edge_lengths[edge]
-        base = positions[j] - np.where(mesh.tails[edge] == j, 0.0, ell)
-        chord = curve.vertices[i] - curve.vertices[mesh.tails[edge]]
-        t = (np.einsum("km,km->k", chord, e) / np.maximum(ell**2, TINY)).clip(0.0, 1.0)
-        found.append((np.linalg.norm(chord - t[:, None] * e, axis=1), base + t * ell))
+        ell, (t, away) = curve.edge_lengths[edge], nearest_on_edges(curve, edge, curve.vertices[i])
+        found.append((away, positions[j] - np.where(mesh.tails[edge] == j, 0.0, ell) + t * ell))
     (after, ahead), (before, behind) = found
     start, end = positions[i], np.asarray(np.where(after < before, ahead, behind))
     component = mesh.component[i]

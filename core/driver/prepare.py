@@ -1,30 +1,20 @@
 """From a task and options to the start, and the problem that is solved; what is not the program's own is tried."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from ..base import CurveError, FloatArray, IntArray, Message, OptionError, Place
-from ..collision import is_free, is_rope, minimal_gap, rope_motion, survives_rounding, thickness, written
+from ..collision import is_rope, minimal_gap, rope_motion, thickness, written
 from ..curve import TAUT, Curve, Mesh, Obstacle, arcs, at_edges, bending_radii, check_closed, free_edges, spans
-from ..curve.refine import Resolution, graded_spacing, normalised, refined_alike
-from ..curve.symmetry import TOLERANCE, Symmetry, SymmetryGroup, symmetries
+from ..curve.refine import Resolution, graded_spacing, normalised
 from ..descent import METHODS, Problem, Task
 from ..energies import Term, TwiceDifferentiable, is_moebius_invariant
 from ..energies.rope import Rope
 from ..solve.metrics import Metric
 from .options import RelaxOptions
 from .solver import Solver
-
-BLOCKED = (
-    "the straight way to the nearest curve with symmetry {group} is not free of contact, as where strands meet on an "
-    "axis that no symmetric curve passes through; relax the curve a little before, or ask for another symmetry"
-)
-LACKING = (
-    "the curve has no symmetry {group}: within {tolerance:g} times its size its group is {own}; relax and balance "
-    "it before, or ask for another symmetry"
-)
 
 
 def start_problem(given: Task | Curve, options: RelaxOptions) -> Problem:
@@ -176,44 +166,6 @@ def _check_spans(start: Curve, lengths: FloatArray, pins: IntArray, option: str 
                 f"{option} makes the arc between vertices {i} and {j}, which are pinned, {ratio:.6g} times as long "
                 "as their distance; give it more than that"
             )
-
-
-@dataclass(frozen=True, eq=False)
-class Symmetrised:
-    """A start, refined, and the exactly symmetric curve that is its mean over a group.
-
-    Both ``start`` and ``end`` have the vertices of the refined start and those of ``mean`` on their edges.
-    """
-
-    start: Curve
-    end: Curve
-    mean: Curve
-    symmetry: Symmetry
-    group: SymmetryGroup
-
-    @classmethod
-    def of(cls, curve: Curve, wanted: str) -> "Symmetrised":
-        """The symmetrised curve under the whole group of a curve, "auto", or under the subgroup of a name.
-
-        Raises CurveError if the curve does not have that symmetry, or is not free to move to the symmetric curve.
-        """
-        if wanted == "auto":
-            group = symmetries(curve, TOLERANCE)
-        else:
-            # radii of gyration by which a start may miss a symmetry that is asked for by name
-            whole = symmetries(curve, 0.1)
-            part = whole.subgroup(wanted)
-            if part is None:
-                raise CurveError(Message(LACKING, group=wanted, tolerance=0.1, own=whole.name))
-            group = part
-        if len(group.elements) == 1:
-            return cls(curve, curve, curve, Symmetry(), group)
-        mean, symmetry, begins = group.symmetrised(curve, curve.mesh.component_sizes)
-        start, end = refined_alike(curve, mean, tuple(-begin % 1.0 for begin in begins))
-        free = is_free(start.mesh, start.vertices, end.vertices)
-        if not (free and survives_rounding(start) and survives_rounding(end)):
-            raise CurveError(Message(BLOCKED, group=group.name))
-        return cls(start, end, mean, symmetry, group)
 
 
 def check_foreign(problem: Problem, start: Curve, options: RelaxOptions) -> None:

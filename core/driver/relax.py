@@ -4,6 +4,7 @@ import math
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -15,10 +16,11 @@ from ..descent.task import Task
 from ..io.trajectory import Iterate
 from . import moves
 from .hand import Hand
-from .move import iterates
+from .move import Move, iterates
+from .moves.starts import SymmetricStart, Symmetrised
 from .options import RelaxOptions
 from .outcome import INTERRUPTED, OUT_OF_MEMORY, Outcome, Phase, Result, Status
-from .prepare import Symmetrised, start_problem
+from .prepare import start_problem
 from .run import Relaxation, Run
 from .solver import Solver
 
@@ -75,15 +77,15 @@ def relax(curve: Curve | Task, options: RelaxOptions | None = None, hand: Hand |
     options = RelaxOptions() if options is None else options
     task = Task.of(curve)
     Solver(options).check_size(task.curve)
-    start, symmetrised = task.refined(options.vertices), None
+    start, first = task.refined(options.vertices), list[Callable[[Run], Move]]()
     if options.symmetry is not None:
         if task.pins or task.obstacles:
             raise OptionError("pins and obstacles break symmetry; leave them out, or the option")
         symmetrised = Symmetrised.of(start.curve, options.symmetry)
-        start = replace(start, curve=symmetrised.start)
+        start, first = replace(start, curve=symmetrised.start), [partial(SymmetricStart, symmetrised=symmetrised)]
     run = begin(start, options)
-    run.hand, run.symmetrised = hand, symmetrised
-    work = BLAS.bounding(iterates(run, moves.MOVES))
+    run.hand = hand
+    work = BLAS.bounding(iterates(run, [*first, *moves.MOVES]))
     if options.time_limit is None:
         return work
     return within(TimeLimit(options.time_limit, used=time.perf_counter() - began), work)

@@ -16,7 +16,6 @@ from ..io.trajectory import Iterate, StrandMoves
 from .hand import Hand
 from .options import RelaxOptions
 from .outcome import Outcome, Rises, Status, converged, degenerate, stalled
-from .prepare import Symmetrised
 
 Relaxation = Generator[Iterate, None, Outcome]
 
@@ -27,7 +26,7 @@ class Run:
     ``iterate`` is the point as users see it, ``method`` takes the next step, ``resolution`` bounds edge lengths where
     the mesh may change, ``sampled_errors`` are the hierarchical solver's errors when last checked, and ``rises`` the
     increases of the energy.  The options give the ``limit`` of iterations unless another one is passed.  A ``hand``
-    may drag the curve, and ``symmetrised`` is the symmetric curve that it begins with, if it is to be symmetric.
+    may drag the curve.
     """
 
     # part of the energy that goes in so many iterations as long as the flow makes headway
@@ -38,7 +37,6 @@ class Run:
         self.options = options.resolved
         self.max_iterations = options.max_iterations if limit is None else limit
         self.hand: Hand | None = None
-        self.symmetrised: Symmetrised | None = None
         self.resolution = Resolution(options.vertices, clearance=problem.clearance)
         self.method = METHODS[options.method]
         self.sampled_errors: SampledErrors | None = None

@@ -7,7 +7,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from ..base.types import FloatArray
-from ..curve import Curve, bending, bending_and_derivative, periods, vertex_positions
+from ..curve import Curve, bending, bending_and_derivative, nearest_on_edges, periods, vertex_positions
 
 REACH = 0.5  # r, in the program's units, in which a component is 4 to 8 long
 
@@ -83,12 +83,9 @@ class Pull:
 
 def share_of(curve: Curve, component: int, point: FloatArray) -> float:
     """The share of a component's length at which the component is nearest to a point, shape (m,)."""
-    edges = curve.mesh.edge_slices[component]
-    along, ell = curve.edge_vectors[edges], curve.edge_lengths[edges]
-    way = point - curve.vertices[curve.mesh.tails[edges]]
-    t = np.clip(np.einsum("ij,ij->i", way, along) / ell**2, 0.0, 1.0)
-    nearest = int(np.linalg.norm(way - t[:, None] * along, axis=1).argmin())
-    at = curve.arc_starts[edges][nearest] + t[nearest] * ell[nearest]
+    edges = np.arange(curve.mesh.edges)[curve.mesh.edge_slices[component]]
+    t, away = nearest_on_edges(curve, edges, point)
+    at = (curve.arc_starts[edges] + t * curve.edge_lengths[edges])[away.argmin()]
     return float(at / curve.component_lengths[component])
 
 

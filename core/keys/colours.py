@@ -7,7 +7,7 @@ from scipy.spatial.distance import cdist
 
 from ..base.types import FloatArray
 from ..curve import Curve
-from ..curve.distances import STRAND_RATIO, TINY, arc_distance_of_vertices
+from ..curve.distances import STRAND_RATIO, arc_distance_of_vertices, nearest_on_edges
 from ..energies.moebius import moebius_by_length
 
 # of components; after the last they begin again
@@ -98,9 +98,7 @@ def strand_distances(curve: Curve, pairs: int = 2_000_000) -> FloatArray:
         r[~passing] = np.inf
         nearest, found = r.argmin(axis=1), passing.any(axis=1)
         for edges in (mesh.outgoing[nearest], mesh.incoming[nearest]):  # distances to vertices would show the mesh
-            e, chord = curve.edge_vectors[edges], curve.vertices[rows] - curve.vertices[mesh.tails[edges]]
-            t = (np.einsum("km,km->k", chord, e) / np.maximum(curve.edge_lengths[edges] ** 2, TINY)).clip(0.0, 1.0)
-            to_edge = np.linalg.norm(chord - t[:, None] * e, axis=1)
+            _, to_edge = nearest_on_edges(curve, edges, curve.vertices[rows])
             distances[rows] = np.where(found, np.minimum(distances[rows], to_edge), np.inf)
     passing = distances[np.isfinite(distances)]
     furthest = passing.max() if passing.size else np.linalg.norm(np.ptp(curve.vertices, axis=0))

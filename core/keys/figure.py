@@ -1,4 +1,4 @@
-"""Drawings of links as figures, on sheets of one or several, with captions, arrows and numbers."""
+"""Drawings of links as figures, on sheets with captions, arrows and numbers; and where a rope presses on itself."""
 
 import colorsys
 import math
@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from ..base import CurveError, FloatArray, declared
 from ..base.arguments import documented, option
-from ..curve import arc_lengths
+from ..curve import Curve, arc_lengths
 from ..knots.drawings import Drawing
 from .arcs import Arc, widest
 
@@ -178,3 +178,35 @@ def _numbers(drawing: Drawing, arcs: Sequence[Arc], pen: Pen) -> Iterator[Label]
 
 def _ink(component: int, pen: Pen) -> str:
     return INKS[0 if pen.colours == "black" else component % len(INKS)]
+
+
+def contact_map(curve: Curve, struts: Sequence[tuple[int, int, float]]) -> Figure:
+    """A dot, whose area is the force, for each two edges that press on each other, by their places along the rope.
+
+    Both axes run along all components, with lines where one begins.  Each contact is there twice, by either edge first.
+    """
+    size, margin = 360.0, 12.0  # points
+    ends = np.cumsum(curve.edge_lengths)
+    place = margin + (ends - 0.5 * curve.edge_lengths) * (size / ends[-1])
+    starts = np.append(0.0, np.cumsum(curve.component_lengths)) * (size / ends[-1]) + margin
+    low, high = margin, margin + size
+    figure = Figure((size + 2.0 * margin,) * 2, ())
+    for x in starts:
+        for line in ([[x, low], [x, high]], [[low, x], [high, x]]):
+            figure.strokes.append(Stroke(np.array(line), 0.6, "#8c8c8c"))
+    largest = max((force for *_, force in struts), default=1.0)
+    dot = np.array([[-0.005, 0.0], [0.005, 0.0]])  # with round ends
+    for edge, other, force in struts:
+        for x, y in pairwise((place[edge], place[other], place[edge])):
+            figure.strokes.append(Stroke(dot + np.array([x, y]), 5.0 * (force / largest) ** 0.5, "#1f4e8c"))
+    return figure
+
+
+def contact_forces(curve: Curve, struts: Sequence[tuple[int, int, float]], radius: float) -> FloatArray:
+    """Force per length that presses on the rope at each vertex, relative to its tension over its radius; (n,)."""
+    forces = np.zeros(len(curve.edge_lengths))
+    for *edges, force in struts:
+        forces[edges] += radius * force
+    at_ends = np.stack([curve.mesh.tails, curve.mesh.heads])
+    pressing, lengths = (np.bincount(at_ends.ravel(), np.tile(x, 2), len(curve)) for x in (forces, curve.edge_lengths))
+    return np.asarray(pressing / lengths)

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.sparse.csgraph import connected_components
 
 from ..base import BoolArray, FloatArray, IntArray
-from ..curve import Curve, Obstacle
+from ..curve import Curve, Obstacle, nearest_on_edges
 from .diagrams import linking_numbers, quick_invariants
 from .diagrams.invariants import TRIVIAL
 
@@ -150,8 +150,8 @@ def _is_knotted(curve: Curve, ball: Ball) -> bool:
     if len(cut) != 2 or mesh.component[cut[0]] != mesh.component[cut[1]]:
         return False
     start, edge = curve.vertices[mesh.tails], curve.edge_vectors
-    s = np.clip(np.einsum("ij,ij->i", ball.center - start, edge) / curve.edge_lengths**2, 0.0, 1.0)
-    if (ball.contains(start + s[:, None] * edge) & ~first & ~last).any():
+    _, away = nearest_on_edges(curve, np.arange(mesh.edges), ball.center)
+    if ((away < ball.radius) & ~first & ~last).any():
         return False
     entry, exit_ = cut if last[cut[0]] else cut[::-1]
     chord = []  # where both edges, each with one end inside, meet the sphere

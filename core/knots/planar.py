@@ -118,15 +118,7 @@ def grid_drawing(piece: Diagram) -> list[FloatArray]:
 
     outer = max(range(len(piece.faces)), key=lambda k: len(piece.faces[k]))
     nodes, paths, lines = piece.crossings, [], []
-    # for each edge its bends to the left, or less than 0 to the right, as few as there can be
-    from scipy.optimize import linprog
-
-    edges = len(piece.sequence)
-    face, dart = np.array([(k, dart) for k, darts in enumerate(piece.faces) for dart in darts]).T
-    flow = sp.coo_array((1 - 2 * (dart % 2), (face, dart // 2)), shape=(len(piece.faces), edges))
-    missing = [(-4 if k == outer else 4) - len(darts) for k, darts in enumerate(piece.faces)]
-    found = linprog(np.ones(2 * edges), A_eq=sp.hstack([flow, -flow]).tocsc(), b_eq=missing, method="highs-ds").x
-    for edge, bends in enumerate([round(left - right) for left, right in found.reshape(2, edges).T.tolist()]):
+    for edge, bends in enumerate(fewest_bends(piece, outer)):
         begin, end = (piece.sequence[i][0] for i in (edge, piece.next[edge]))
         count, way = abs(bends), 1 if bends > 0 else -1
         path = [begin, *range(nodes, nodes + count), end]
@@ -189,6 +181,21 @@ def grid_drawing(piece: Diagram) -> list[FloatArray]:
         for axis in (0, 1)
     ]
     return [np.column_stack(places)[path] for path in paths]
+
+
+def fewest_bends(piece: Diagram, outer: int) -> list[int]:
+    """For each edge its bends to the left, or less than 0 to the right, as few as there can be, by linear programming.
+
+    ``outer`` is the number of the face that is outside.
+    """
+    from scipy.optimize import linprog
+
+    edges = len(piece.sequence)
+    face, dart = np.array([(k, dart) for k, darts in enumerate(piece.faces) for dart in darts]).T
+    flow = sp.coo_array((1 - 2 * (dart % 2), (face, dart // 2)), shape=(len(piece.faces), edges))
+    missing = [(-4 if k == outer else 4) - len(darts) for k, darts in enumerate(piece.faces)]
+    found = linprog(np.ones(2 * edges), A_eq=sp.hstack([flow, -flow]).tocsc(), b_eq=missing, method="highs-ds").x
+    return [round(left - right) for left, right in found.reshape(2, edges).T.tolist()]
 
 
 def _spread(lines: list[tuple[int, int, float]], across: list[tuple[int, int]], nodes: int) -> FloatArray:

@@ -12,11 +12,10 @@ from .links import Composite, OpenKnots, SplitLinks
 from .remesh import FinerMesh, Remesh
 from .rest import CheckAccuracy, EscapeSaddle, Fallback, Settle
 from .rope import GiveWay
-from .starts import CoarseStart, SymmetricStart
+from .starts import CoarseStart
 from .untangling import Untangling
 
 MOVES: Sequence[Callable[[Run], Move]] = (
-    SymmetricStart,
     Hold,
     OpenKnots,
     Untangling,
@@ -35,4 +34,4 @@ MOVES: Sequence[Callable[[Run], Move]] = (
     AwaitHand,
     Hops,
 )
-"""In the order in which they are asked."""
+"""In the order in which they are asked; before them `SymmetricStart`, where a symmetry is to be kept."""

@@ -10,7 +10,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
-from ...base import COMPONENT, FloatArray, Message, MobiusFlowError
+from ...base import COMPONENT, Message, MobiusFlowError
 from ...curve import STRAND_RATIO, Curve, Mesh, Obstacle, arc_distance_of_pairs, near_by_octave
 from ...descent import Step
 from ...energies.barrier import near_pairs
@@ -82,7 +82,10 @@ def separate_parts(
         starts = np.searchsorted(own, np.arange(count))
         centers = 0.5 * (np.minimum.reduceat(placed, starts) + np.maximum.reduceat(placed, starts))
         radii = np.maximum.reduceat(np.linalg.norm(placed - centers[own], axis=1), starts)
-        fewer, merged = connected_components(_near(centers, radii, gap), directed=False)
+        i, j, distance = near_by_octave(centers, radii, 2.0 + gap)
+        near = distance < radii[i] + radii[j] + gap * np.maximum(radii[i], radii[j])  # too near to be separate parts
+        graph = sp.coo_array((near[near], (i[near], j[near])), shape=(count, count))
+        fewer, merged = connected_components(graph, directed=False)
         if fewer == count:
             break
         part, count = merged[part], fewer
@@ -96,14 +99,6 @@ def split(curve: Curve, parts: Parts) -> list[Curve]:
     return [
         Curve.from_components([curve.components[c] for c in each], [curve.mesh.closed[c] for c in each]) for each in own
     ]
-
-
-def _near(centers: FloatArray, radii: FloatArray, gap: float) -> sp.coo_array:
-    """Which pairs of balls are too near each other to be separate parts; sparse, shape (p, p)."""
-    i, j, distance = near_by_octave(centers, radii, 2.0 + gap)
-    near = distance < radii[i] + radii[j] + gap * np.maximum(radii[i], radii[j])
-    i, j = i[near], j[near]
-    return sp.coo_array((np.ones(len(i), dtype=bool), (i, j)), shape=(len(radii), len(radii)))
 
 
 @dataclass(eq=False)

@@ -7,25 +7,74 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...base import IntArray
-from ...collision import survives_rounding
+from ...base import CurveError, IntArray, Message
+from ...collision import is_free, survives_rounding
 from ...curve import Curve, arcs
-from ...curve.refine import Resolution, apportion, graded_spacing, smoothed, subdivide, superfluous
+from ...curve.refine import Resolution, apportion, graded_spacing, refined_alike, smoothed, subdivide, superfluous
+from ...curve.symmetry import TOLERANCE, Symmetry, SymmetryGroup, symmetries
 from ...descent import Leg, NoStep, Problem, Step, leg
 from ..move import Change, Move
 from ..outcome import Outcome
 from ..prepare import equal_lengths, target_lengths
 from .remesh import proved_remesh
 
+BLOCKED = (
+    "the straight way to the nearest curve with symmetry {group} is not free of contact, as where strands meet on an "
+    "axis that no symmetric curve passes through; relax the curve a little before, or ask for another symmetry"
+)
+LACKING = (
+    "the curve has no symmetry {group}: within {tolerance:g} times its size its group is {own}; relax and balance "
+    "it before, or ask for another symmetry"
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Symmetrised:
+    """A start, refined, and the exactly symmetric curve that is its mean over a group.
+
+    Both ``start`` and ``end`` have the vertices of the refined start and those of ``mean`` on their edges.
+    """
+
+    start: Curve
+    end: Curve
+    mean: Curve
+    symmetry: Symmetry
+    group: SymmetryGroup
+
+    @classmethod
+    def of(cls, curve: Curve, wanted: str) -> "Symmetrised":
+        """The symmetrised curve under the whole group of a curve, "auto", or under the subgroup of a name.
+
+        Raises CurveError if the curve does not have that symmetry, or is not free to move to the symmetric curve.
+        """
+        if wanted == "auto":
+            group = symmetries(curve, TOLERANCE)
+        else:
+            # radii of gyration by which a start may miss a symmetry that is asked for by name
+            whole = symmetries(curve, 0.1)
+            part = whole.subgroup(wanted)
+            if part is None:
+                raise CurveError(Message(LACKING, group=wanted, tolerance=0.1, own=whole.name))
+            group = part
+        if len(group.elements) == 1:
+            return cls(curve, curve, curve, Symmetry(), group)
+        mean, symmetry, begins = group.symmetrised(curve, curve.mesh.component_sizes)
+        start, end = refined_alike(curve, mean, tuple(-begin % 1.0 for begin in begins))
+        free = is_free(start.mesh, start.vertices, end.vertices)
+        if not (free and survives_rounding(start) and survives_rounding(end)):
+            raise CurveError(Message(BLOCKED, group=group.name))
+        return cls(start, end, mean, symmetry, group)
+
 
 @dataclass(eq=False)
 class SymmetricStart(Move):
     """Go from the start to the nearest symmetric curve, whose symmetry is kept from there on."""
 
+    symmetrised: Symmetrised
+
     def started(self) -> Change | None:
-        run = self.run
-        symmetrised = run.symmetrised
-        if symmetrised is None or not len(symmetrised.symmetry) or run.iterate.index > 0:
+        run, symmetrised = self.run, self.symmetrised
+        if not len(symmetrised.symmetry) or run.iterate.index > 0:
             return None
         way = leg(run.point, run.problem.at_curve(symmetrised.end))
         lengths = target_lengths(symmetrised.mean, run.problem.constraints.pins.vertices, (), run.options)
@@ -34,11 +83,8 @@ class SymmetricStart(Move):
 
     def summarised(self, outcome: Outcome) -> Outcome:
         """The outcome with a clause about the group."""
-        symmetrised = self.run.symmetrised
-        if symmetrised is None:
-            return outcome
-        group = symmetrised.group
-        if not len(symmetrised.symmetry):
+        group = self.symmetrised.group
+        if not len(self.symmetrised.symmetry):
             return outcome.adding("symmetry {group}, so that there was none to keep", group=group.name)
         kept = "symmetry {group} was kept, which the start missed by {distance:.2g} times its size"
         return outcome.adding(kept, group=group.name, distance=group.distance)
