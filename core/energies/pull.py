@@ -106,9 +106,8 @@ class Bending:
 
     def stiffness(self, curve: Curve) -> sp.csr_array:
         """2 L Σ |Δu₊/ℓ₊ − Δu₋/ℓ₋|²/ℓ̄, the second derivative on a nearly straight curve; shape (n, n)."""
-        mesh, ell, edges = curve.mesh, curve.edge_lengths, np.arange(curve.mesh.edges)
-        slope = sp.csr_array((1.0 / ell, (edges, mesh.heads)), shape=(mesh.edges, mesh.size))
-        slope -= sp.csr_array((1.0 / ell, (edges, mesh.tails)), shape=(mesh.edges, mesh.size))
+        mesh, ell = curve.mesh, curve.edge_lengths
+        slope = sp.csr_array(sp.diags_array(1.0 / ell) @ mesh.difference)
         before, after = mesh.incoming[mesh.inner], mesh.outgoing[mesh.inner]
         turn = slope[after] - slope[before]
         return sp.csr_array(turn.T @ sp.diags_array(4.0 * curve.length / (ell[before] + ell[after])) @ turn)

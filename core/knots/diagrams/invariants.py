@@ -2,22 +2,18 @@
 
 The bracket (Kauffman, *Topology* 26, 1987) is contracted crossing by crossing: a state says how the edges that are cut
 are paired so far, of which there are few if neighbouring crossings follow each other, and its value is a polynomial in
-q = A².  Polynomials are packed in integers, their values at a large power of two.
+q = A².  Polynomials are packed in integers, their values at a large power of two, and so are Alexander's.
 
-Alexander polynomials come from values modulo primes at roots of unity.  Equal types have equal invariants.  The
-converse fails for rare pairs, so that quick invariants catch accidents and prove nothing.
+Equal types have equal invariants.  The converse fails for rare pairs, so that quick invariants, values at roots of
+unity modulo a prime, catch accidents and prove nothing.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import accumulate, product
-from math import prod
-from operator import mul
-from typing import NamedTuple
+from itertools import product
 
 import numpy as np
 
-from ...base.types import IntArray
 from ...curve import Curve, check_closed
 from .diagram import Diagram, Pass
 from .projection import views
@@ -26,7 +22,7 @@ Laurent = Mapping[int, int]  # exponent to coefficient, which is not 0
 _State = frozenset[tuple[int, int]]  # both ends of every open arc, each with the other one
 
 _LOOP = {2: -1, -2: -1}  # −A² − A⁻²
-MAX_CROSSINGS = 60  # some hundredths of a second
+MAX_CROSSINGS = 60  # a tenth of a second
 
 
 def jones(diagram: Diagram) -> Laurent | None:
@@ -119,13 +115,8 @@ def _bracket(diagram: Diagram) -> dict[int, int] | None:
                 joined = frozenset(ends.items())
                 after[joined] = after.get(joined, 0) + value
         states = after
-    # the digits, with signs, of the only value left are coefficients
-    (value,) = states.values()
-    found, half, power = dict[int, int](), 1 << (bits - 1), -5 * len(code)
-    while value:
-        if digit := ((value + half) & (2 * half - 1)) - half:
-            found[power] = digit
-        value, power = (value - digit) >> bits, power + 2
+    (value,) = states.values()  # the only one left, whose digits are coefficients
+    found = {2 * k - 5 * len(code): digit for k, digit in enumerate(signed_digits(value, bits)) if digit}
     for _ in range(loops):
         found = times(found, _LOOP)
     return found
@@ -139,80 +130,62 @@ def times(a: Laurent, b: Laurent) -> dict[int, int]:
     return {power: c for power, c in found.items() if c}
 
 
-class Field(NamedTuple):
-    """The integers modulo a prime below 2³¹, so that products fit 64 bits, with a generator of the units."""
-
-    prime: int
-    generator: int
-
-    def root_of_unity(self, order: int) -> int:
-        """A primitive root of unity, of an order that divides the number of units."""
-        return pow(self.generator, (self.prime - 1) // order, self.prime)
-
-
-# primes that are 1 more than a multiple of 2¹⁰·3·5·7, orders of roots; together enough for MAX_CROSSINGS
-FIELDS = Field(2_147_389_441, 11), Field(2_147_281_921, 38), Field(2_146_959_361, 19)
+def signed_digits(value: int, bits: int) -> list[int]:
+    """The digits of a whole number to a base of 2 to the power of ``bits``, from minus half of it on, lowest first."""
+    found, half = list[int](), 1 << (bits - 1)
+    while value:
+        found.append(((value + half) & (2 * half - 1)) - half)
+        value = (value - found[-1]) >> bits
+    return found
 
 
 def alexander(knot: Diagram) -> tuple[int, ...] | None:
     """Coefficients of the Alexander polynomial of a knot, positive at t = 1; None for too many crossings.
 
-    From det(A), A the matrix of the arcs' relations at the crossings without a row and a column (Alexander, *Trans.
-    AMS* 30, 1928): each says (1 − t) a + t b − c = 0 for the upper arc a and the lower ones b, c on its two sides.
-    Where |t| = 1 rows have at most the length √6, so that coefficients are at most √6ⁿ⁻¹ (Hadamard), and as many primes
-    are taken as distinguish these.
+    They are digits of its value at a power of two, in which there is room for them: as rows of the matrix have at most
+    the length √6 where |t| = 1, they are at most √6ⁿ⁻¹ (Hadamard).
     """
     if knot.crossings > MAX_CROSSINGS:
         return None
     if knot.crossings < 3:
         return (1,)
-    moduli = accumulate((field.prime for field in FIELDS), mul)
-    most = 6 ** (knot.crossings - 1)
-    fields = FIELDS[: 1 + next(k for k, modulus in enumerate(moduli) if modulus**2 > 4 * most)]
-    # the integers of least absolute value with these residues (Chinese remainder theorem)
-    residues, order = [], 1 << knot.crossings.bit_length()
-    for field in fields:  # the inverse Fourier transforms of the values
-        powers = np.array([pow(field.root_of_unity(order), k, field.prime) for k in range(order)], dtype=np.int64)
-        exponents = np.outer(np.arange(order), -np.arange(order)) % order
-        transformed = (powers[exponents] * alexander_values(knot, powers, field) % field.prime).sum(axis=1)
-        residues.append((transformed % field.prime * pow(order, -1, field.prime) % field.prime).tolist())
-    modulus = prod(field.prime for field in fields)
-    rests = [modulus // field.prime for field in fields]
-    ones = [rest * pow(rest, -1, field.prime) for rest, field in zip(rests, fields, strict=True)]
-    sums = (sum(x * one for x, one in zip(each, ones, strict=True)) % modulus for each in zip(*residues, strict=True))
-    found = [x - modulus if 2 * x > modulus else x for x in sums]
-    kept = np.trim_zeros(found)
+    bits = (6 ** (knot.crossings - 1)).bit_length() // 2 + 3
+    prime = next((1 << k) - 1 for k in (127, 521, 1279, 2203, 4423, 9689) if k > bits * knot.crossings)  # Mersenne's
+    value = alexander_value(knot, 1 << bits, prime)
+    kept = np.trim_zeros(signed_digits(value - prime if 2 * value > prime else value, bits))
     return tuple(kept if sum(kept) > 0 else (-x for x in kept))
 
 
-def alexander_values(knot: Diagram, t: IntArray, field: Field) -> IntArray:
-    """Values of the Alexander polynomial of a knot, each up to a unit ±tᵏ, modulo a prime; shape (len(t),)."""
-    # the matrices, shape (len(t), n − 1, n − 1)
-    count, arc, arcs, prime = knot.crossings, 0, [], field.prime
+def alexander_value(knot: Diagram, t: int, prime: int) -> int:
+    """The value of the Alexander polynomial of a knot, up to a unit ±tᵏ, modulo a prime.
+
+    It is det(A), A the matrix of the arcs' relations at the crossings without a row and a column (Alexander, *Trans.
+    AMS* 30, 1928): each says (1 − t) a + t b − c = 0 for the upper arc a and the lower ones b, c on its two sides.
+    """
+    count, arc, arcs = knot.crossings, 0, []
     for _, over in knot.sequence:
         arcs.append(arc)  # that on which the pass is, and that comes in below at a lower pass
         arc = (arc + (not over)) % count
-    rows, sign = np.arange(count), np.array(knot.signs, dtype=np.intp)
-    lower, upper = np.array(arcs, dtype=np.intp)[np.array(knot.levels, dtype=np.intp).reshape(count, 2).T]
-    after = (lower + 1) % max(count, 1)
-    matrices = np.zeros((len(t), count, count), dtype=np.int64)
-    matrices[:, rows, upper] += 1 - t[:, None]
-    matrices[:, rows, np.where(sign > 0, lower, after)] += t[:, None]
-    matrices[:, rows, np.where(sign > 0, after, lower)] -= 1
-    matrices = matrices[:, :-1, :-1] % prime
-    # their determinants, all together, in place; only the few rows with an entry to eliminate are touched
-    found, every = np.ones(len(t), dtype=np.int64), np.arange(len(t))
-    for k in range(matrices.shape[1]):
-        row = k + np.argmax(matrices[:, k:, k] != 0, axis=1)
-        pivots = matrices[every, row, k:].copy()
-        matrices[every, row, k:] = matrices[:, k, k:]
-        pivot = pivots[:, 0]
-        found = found * np.where(row > k, -pivot, pivot) % prime
-        inverse = np.array([pow(int(p), -1, prime) if p else 0 for p in pivot], dtype=np.int64)
-        factors = matrices[:, k + 1 :, k] * inverse[:, None] % prime
-        below = np.flatnonzero(factors.any(axis=0))
-        change = factors[:, below, None] * pivots[:, None, :] % prime
-        matrices[:, k + 1 + below, k:] = (matrices[:, k + 1 + below, k:] - change) % prime
+    rows, sign = np.arange(count), np.array(knot.signs)
+    lower, upper = np.array(arcs, dtype=np.intp)[np.array(knot.levels, dtype=np.intp)].T
+    after = (lower + 1) % count
+    matrix = np.zeros((count, count), dtype=np.int64 if prime < 1 << 31 else object)  # in which products fit
+    matrix[rows, upper] += 1 - t
+    matrix[rows, np.where(sign > 0, lower, after)] += t
+    matrix[rows, np.where(sign > 0, after, lower)] -= 1
+    matrix, found = matrix[:-1, :-1] % prime, 1
+    for k in range(count - 1):  # only the few entries that change are touched
+        row = k + int(np.argmax(matrix[k:, k] != 0))
+        pivots = matrix[row].copy()
+        matrix[row] = matrix[k]
+        pivot = int(pivots[k])
+        if not pivot:
+            return 0
+        found = found * (-pivot if row > k else pivot) % prime
+        factors = matrix[:, k] * pow(pivot, -1, prime) % prime
+        below, across = k + 1 + np.flatnonzero(factors[k + 1 :]), k + np.flatnonzero(pivots[k:])
+        block = np.ix_(below, across)
+        matrix[block] = (matrix[block] - np.outer(factors[below], pivots[across])) % prime
     return found
 
 
@@ -251,13 +224,13 @@ def unsigned_linking(link: Diagram) -> tuple[int, ...]:
 
 
 def _values(knot: Diagram) -> tuple[int, ...]:
-    """Values of the Alexander polynomial of one component, one after the other, as matrices may be large."""
-    field, values = FIELDS[0], []
-    for q in (2, 3, 5, 7):  # which divide the number of units of the field
-        root = field.root_of_unity(q)
-        value = 1 if knot.crossings < 3 else int(alexander_values(knot, np.array([root]), field)[0])
-        associates = [value * pow(root, k, field.prime) for k in range(q)]
-        values.append(min(x % field.prime for each in associates for x in (each, -each)))
+    """Values of the Alexander polynomial of one component."""
+    prime, generator, values = 2_147_389_441, 11, []  # of the prime's units, whose number is a multiple of 2·3·5·7
+    for q in (2, 3, 5, 7):
+        root = pow(generator, (prime - 1) // q, prime)
+        value = 1 if knot.crossings < 3 else alexander_value(knot, root, prime)
+        associates = [value * pow(root, k, prime) for k in range(q)]
+        values.append(min(x % prime for each in associates for x in (each, -each)))
     return tuple(values)
 
 
