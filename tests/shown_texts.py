@@ -1,6 +1,7 @@
 """All that the extension shows in words: what its classes declare, and the sentences in its code."""
 
 import ast
+from functools import cache
 from pathlib import Path
 
 import bpy
@@ -69,6 +70,7 @@ def _items(each):
     return [*each.enum_items, *each.enum_items_static_ui] if each.type == "ENUM" else []
 
 
+@cache
 def sentences(*paths):
     """Templates of what is said, which are marked, and labels that buttons are given where they are drawn."""
     paths = paths or [*ADDON.rglob("*.py"), *CORE.rglob("*.py")]

@@ -7,6 +7,7 @@ maximum from each of many rotations.
 """
 
 from dataclasses import dataclass
+from itertools import compress
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -59,6 +60,7 @@ class Alignment:
     backwards: tuple[bool, ...]  # whether that is traversed in its opposite direction
     begins: tuple[float, ...]  # the share of its length, so traversed, at which the curve's first vertex lies
     distance: float  # that remains, root mean square, in radii of gyration
+    angle: float  # of the rotation, in radians
 
     @property
     def as_given(self) -> bool:
@@ -70,10 +72,6 @@ class Alignment:
         """The quantity to minimise: the distance, and a bit for changes of order or direction and for rotations."""
         # in radii of gyration, by which one may lie worse that keeps directions and order, or needs no rotation
         return self.distance + 0.03 * (not self.as_given) + 0.01 * self.angle / np.pi
-
-    @property
-    def angle(self) -> float:
-        return float(Rotation.from_matrix(self.rotation).magnitude())
 
     def moved(self, vertices: FloatArray, share: float) -> FloatArray:
         """Vertices, shape (n, m), after a share of the motion."""
@@ -119,15 +117,19 @@ def alignments(curve: Curve, other: Curve, freedom: Freedom) -> list[Alignment]:
     squares = np.square(x).sum() + np.square(y).sum() - 2.0 * np.einsum("kij,kij->k", rotations, covariances)
     distances = np.sqrt(np.maximum(squares, 0.0) / (len(y) * SAMPLES))
     turned = chosen >= SAMPLES
-    columns = rotations, orders.tolist(), turned.tolist(), chosen % SAMPLES / SAMPLES, distances.tolist()
+    angles = Rotation.from_matrix(rotations).magnitude()
+    columns = orders.tolist(), turned.tolist(), chosen % SAMPLES / SAMPLES, distances.tolist(), angles.tolist()
     found = [
-        Alignment(rotation, scale, source, target, tuple(order), tuple(back), tuple(begin), distance)
-        for rotation, order, back, begin, distance in zip(*columns, strict=True)
+        Alignment(rotation, scale, source, target, tuple(order), tuple(back), tuple(begin), distance, angle)
+        for rotation, order, back, begin, distance, angle in zip(rotations, *columns, strict=True)
     ]
+    found.sort(key=lambda each: each.cost)
+    left = np.array([each.rotation for each in found])
     distinct: list[Alignment] = []
-    for each in sorted(found, key=lambda each: each.cost):
-        if all(np.linalg.norm(each.rotation - one.rotation) > 0.3 for one in distinct):
-            distinct.append(each)
+    while found:
+        distinct.append(found[0])
+        others = np.linalg.norm(left - left[0], axis=(1, 2)) > 0.3
+        found, left = list(compress(found, others)), left[others]
     return distinct
 
 

@@ -35,7 +35,7 @@ def test_a_knot_is_laid_upon_itself(name, backwards):
 
 def test_halfway_sizes_and_angles_have_gone_half_their_way():
     square = np.array([[1.0, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]])
-    grown = Alignment(QUARTER, 4.0, np.zeros(3), np.array([6.0, 0, 0]), (0,), (False,), (0.0,), 0.0)
+    grown = Alignment(QUARTER, 4.0, np.zeros(3), np.array([6.0, 0, 0]), (0,), (False,), (0.0,), 0.0, np.pi / 2)
     for share, size, angle in ((0.0, 1.0, 0.0), (0.5, 2.0, 45.0), (1.0, 4.0, 90.0)):
         there = [6.0 * share, 0, 0] + size * Rotation.from_euler("z", angle, degrees=True).apply(square)
         np.testing.assert_allclose(grown.moved(square, share), there, atol=1e-12)
