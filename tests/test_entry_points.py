@@ -2,7 +2,6 @@
 
 import logging
 import os
-import subprocess
 import sys
 import tomllib
 from importlib.metadata import EntryPoint, entry_points
@@ -13,6 +12,7 @@ from mobius_flow.cli.main import main
 from mobius_flow.cli.parser import joined
 from mobius_flow.core import read_curve, write_curve
 from mobius_flow.core.base.plugins import Table
+from processes import finished
 from shapes import torus_trefoil
 
 MODULE = """
@@ -28,7 +28,7 @@ def add_count(parser):
     \"\"\"
     from mobius_flow.core import read_curve
     parser.add_argument("input")
-    parser.set_defaults(run=lambda options: print(len(read_curve(options.input))))
+    parser.set_defaults(run=lambda options: print(len(read_curve(options.input))) or 0)
 
 mine = {"mine": dataclasses.replace(METHODS["cg"], name="mine")}
 columns = FORMATS[".txt"]
@@ -65,16 +65,7 @@ def planted(tmp_path):
     return plant
 
 
-@pytest.fixture
-def command(tmp_path):
-    """Run the command line in a process that sees what is planted."""
-
-    def run(*words):
-        whole = [sys.executable, "-m", "mobius_flow", *words]
-        environment = {**os.environ, "PYTHONPATH": str(tmp_path)}
-        return subprocess.run(whole, cwd=tmp_path, env=environment, capture_output=True, encoding="utf-8", timeout=100)
-
-    return run
+LINES = "import sys; from mobius_flow.cli.main import main; sys.exit(max(main(line.split()) for line in sys.argv[1:]))"
 
 
 def test_the_projects_own_entry_points_are_there():
@@ -84,20 +75,19 @@ def test_the_projects_own_entry_points_are_there():
         assert {each.name for each in entry_points(group=group)} >= set(entries), "install the project again"
 
 
-def test_a_package_adds_to_every_table(planted, command):
+def test_a_package_adds_to_every_table(planted):
+    """In a process that finds what is planted where it is started."""
     place = planted(GOOD)
     write_curve(place / "in.txt", torus_trefoil(40))
-    assert "count vertices\n" in command("--help").stdout
-    assert command("count", "in.txt").stdout == "40\n"
-    assert "mine\t" in command("methods").stdout
-    words = ["--method", "mine", "--term", "stiffness=0.1", "--max-iterations", "2", "--vertices", "40"]
-    done = command("relax", "in.txt", "out.columns", *words)
+    given = "--method mine --term stiffness=0.1 --max-iterations 2 --vertices 40"
+    lines = "--help", "count in.txt", "methods", f"relax in.txt out.columns {given}", "relax --help-all"
+    done = finished([sys.executable, "-c", LINES, *lines], cwd=place)
     assert done.returncode == 0, done.stderr
     (place / "out.columns").rename(place / "out.txt")
     assert len(read_curve(place / "out.txt")) == 40
-    shown = " ".join(command("relax", "--help-all").stdout.split())
-    assert "by name: bending, stiffness" in shown
-    assert ".columns" in shown
+    for said in ("count vertices\n", "\n40\n", "\nmine\t", ".columns"):
+        assert said in done.stdout
+    assert "by name: bending, stiffness" in " ".join(done.stdout.split())
 
 
 @pytest.mark.parametrize(

@@ -21,9 +21,10 @@ def smooth(kind):
     rng = np.random.default_rng(7)
     obj = add_curve([torus_trefoil(14).vertices + 3 * k for k in (0, 4)], kind=kind)
     for spline in obj.data.splines:
-        spline.resolution_u = 4
         for point in spline.bezier_points if kind == "BEZIER" else spline.points:
             point.radius, point.tilt = rng.random(2)
+            if kind == "BEZIER":
+                point.handle_left_type = point.handle_right_type = "AUTO"
     obj.data.splines[1].material_index, obj.data.splines[0].use_smooth = 2, False
     return {"vertices": 0}
 
