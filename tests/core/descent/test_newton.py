@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from changed_moves import change
 from dense_stability import POINTS, at, dense_modes, saddle, tangent_basis
+from families import crossed
 from mobius_flow.core import RelaxOptions, Status, Task, minimize
 from mobius_flow.core.base.tolerances import BULK
 from mobius_flow.core.base.types import FloatArray
@@ -69,8 +70,7 @@ def test_the_shift_grows_where_steps_are_short(monkeypatch):
     np.testing.assert_allclose(shifts, shift * newton.factor ** np.arange(1, 5))
 
 
-@pytest.mark.parametrize("pins", [(), (0, 1, 17)])
-@pytest.mark.parametrize("points", [1, 2])
+@pytest.mark.parametrize(("pins", "points"), crossed([(), (0, 1, 17)], [1, 2]))
 def test_energies_at_rest_are_exact_on_their_mesh(pins, points, monkeypatch):
     """Though gradients are those of the default tolerance a run to the last digits gains nothing more."""
     change(monkeypatch, Settle, gradient=1e-300)  # L-BFGS goes as far as it has to
