@@ -5,7 +5,6 @@ import signal
 from importlib.util import find_spec
 from pathlib import Path
 
-import pytest
 import scipy.linalg  # noqa: F401 (a pool can be bounded once it is there)
 import threadpoolctl
 from hypothesis import HealthCheck, settings
@@ -31,7 +30,7 @@ collect_ignore = [] if Path(__file__).parents[2].joinpath("shared").is_dir() els
 collect_ignore.append("plugins")  # modules for a copy of the package, see test_plugins.py
 
 
-def pytest_ignore_collect(collection_path: Path) -> bool | None:
+def pytest_ignore_collect(collection_path):
     """Leave out what needs Blender's module where there is none."""
     if collection_path.suffix != ".py" or find_spec("bpy"):
         return None
@@ -39,12 +38,12 @@ def pytest_ignore_collect(collection_path: Path) -> bool | None:
     return None if needed is None else True
 
 
-def pytest_addoption(parser: pytest.Parser) -> None:
+def pytest_addoption(parser):
     """Long tests run when asked for."""
     parser.addoption("--slow", action="store_true", help="run the tests marked slow, too")
 
 
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+def pytest_collection_modifyitems(config, items):
     """Leave them out otherwise."""
     if not config.getoption("--slow"):
         slow = [item for item in items if item.get_closest_marker("slow")]

@@ -70,7 +70,7 @@ def test_only_what_blender_runs_is_in_the_zip(archive):
     assert all(f"**{button}**" in text for button in ("Add Knot", "Relax", "Render Film"))
 
 
-def reviewed(path: Path) -> set[str]:
+def reviewed(path):
     """What in a module reviewers of extensions look for."""
     modules = {"ctypes", "multiprocessing", "pickle", "signal", "socket", "subprocess", "threading", "urllib"}
     found = set()

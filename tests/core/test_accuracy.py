@@ -1,9 +1,8 @@
 """The hierarchical solver looks at its own errors during a run."""
 
-import numpy as np
 import pytest
 from hard_curves import bent_trefoil
-from mobius_flow.core import Curve, RelaxOptions, Result, minimize
+from mobius_flow.core import RelaxOptions, minimize
 from mobius_flow.core.energies.hierarchy import HierarchicalMoebiusEnergy, SampledErrors, fields
 from mobius_flow.core.knots import knot, overhand
 from mobius_flow.core.knots.shapes import least_energies
@@ -11,7 +10,7 @@ from mobius_flow.core.knots.shapes import least_energies
 INACCURATE = "the hierarchical solver misses the requested accuracy"
 
 
-def short(vertices: int = 1500, **options: object) -> Result:
+def short(vertices=1500, **options):
     wanted = RelaxOptions(**({"solver": "hierarchical", "mesh": "fixed", "max_iterations": 3} | options))
     return minimize(bent_trefoil(vertices), wanted)
 
@@ -54,7 +53,7 @@ def test_what_cannot_be_reached_is_told():
     assert INACCURATE in short(accuracy=1e-12).message
 
 
-def wrong_kernels(monkeypatch: pytest.MonkeyPatch) -> None:
+def wrong_kernels(monkeypatch):
     """One Taylor coefficient of the logarithm is wrong."""
     original = fields.kernel_derivatives
 
@@ -66,17 +65,17 @@ def wrong_kernels(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(fields, "kernel_derivatives", kernels)
 
 
-def wrong_derivative(monkeypatch: pytest.MonkeyPatch) -> None:
+def wrong_derivative(monkeypatch):
     original = HierarchicalMoebiusEnergy.value_and_derivative
 
-    def value_and_derivative(self: HierarchicalMoebiusEnergy, curve: Curve) -> tuple[float, np.ndarray]:
+    def value_and_derivative(self, curve):
         value, derivative = original(self, curve)
         return value, 1.01 * derivative
 
     monkeypatch.setattr(HierarchicalMoebiusEnergy, "value_and_derivative", value_and_derivative)
 
 
-def wrong_value(monkeypatch: pytest.MonkeyPatch) -> None:
+def wrong_value(monkeypatch):
     original = HierarchicalMoebiusEnergy.value
     monkeypatch.setattr(HierarchicalMoebiusEnergy, "value", lambda self, curve: (1.0 + 3e-6) * original(self, curve))
 

@@ -7,7 +7,7 @@ import pytest
 from mobius_flow.core import METHODS, Curve, CurveError, RelaxOptions, Status, WithOutcome, relax
 from mobius_flow.core.base.errors import Place
 from mobius_flow.core.collision import Contact, FreeMotion, Limit, survives_rounding
-from mobius_flow.core.descent import NoStep, Point, SearchState, Step, problem
+from mobius_flow.core.descent import NoStep, Step, problem
 from mobius_flow.core.driver import run as driver
 from mobius_flow.core.driver.run import Run
 from shapes import regular_polygon, torus_trefoil
@@ -28,10 +28,10 @@ class Forgetful:
 
     second_order, other_metrics = False, ()
 
-    def __init__(self, limit: Limit) -> None:
+    def __init__(self, limit):
         self._rule, self._limit, self._count = METHODS["lbfgs"].rule, limit, 0
 
-    def step(self, point: Point, state: SearchState) -> tuple[Step | NoStep, SearchState]:
+    def step(self, point, state):
         step, state = self._rule.step(point, state)
         self._count += 1
         if self._count == 3:

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from families import crossed
-from mobius_flow.core import Curve, Mesh, Obstacle, Result, minimize
+from mobius_flow.core import Curve, Mesh, Obstacle, minimize
 from scipy.spatial.transform import Rotation
 from shapes import torus_trefoil
 from solids import box, rod
@@ -34,7 +34,7 @@ KINDS = {
 }
 
 
-def relaxed(kind: str, seed: int | None, method: str, tolerance: float) -> Result:
+def relaxed(kind, seed, method, tolerance):
     """A curve's relaxation, or that of the same curve elsewhere, as floating-point numbers have it."""
     task, options = KINDS[kind]
     options = replace(options, method=method, tolerance=tolerance, vertices=len(task.curve), max_iterations=120)

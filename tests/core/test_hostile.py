@@ -24,7 +24,7 @@ SQUARE = np.array([[0.0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]])
 TWICE = np.linspace(0, 2 * np.pi, 41)
 
 
-def check_run(curve: Curve, options: RelaxOptions) -> None:
+def check_run(curve, options):
     """Run, and check every iterate and every motion."""
     before = None
     relaxation = relax(curve, options)
@@ -125,7 +125,7 @@ def test_the_command_line_says_it_in_one_line(words, tmp_path, capsys, monkeypat
         assert not Path("OUT.txt").exists()
 
 
-def text(vertices: Array) -> str:
+def text(vertices):
     return "".join(" ".join(map(repr, point)) + "\n" for point in vertices.tolist())
 
 
@@ -169,7 +169,7 @@ def test_any_options_are_valid_or_refused_in_one_sentence(wanted):
 
 
 @st.composite
-def polygons(draw: st.DrawFn) -> Curve:
+def polygons(draw):
     """Small polygons and links with corners on a grid, which touch often, or at random, in any units and place."""
     sizes = draw(st.lists(st.integers(3, 7), min_size=1, max_size=2))
     rng = np.random.default_rng(draw(st.integers(0, 2**32)))

@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from descent_contracts import point_on
-from mobius_flow.core import Curve, Iterate, MobiusFlowError, RelaxOptions, Status, Task, minimize
-from mobius_flow.core.base.types import FloatArray
+from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, Status, Task, minimize
 from mobius_flow.core.curve import Mesh, refine
 from mobius_flow.core.curve.pins import Pins, arcs, ends_of, spans
 from mobius_flow.core.curve.refine import smoothed, subdivide, superfluous
@@ -77,7 +76,7 @@ BENT = torus_trefoil(90).with_vertices(torus_trefoil(90).vertices * [1.0, 1.3, 1
 PINS = (3, 30, 62)
 
 
-def checked(curve: Curve, **options: object) -> tuple[list[Iterate], str]:
+def checked(curve, **options):
     """The iterates of a proved run, at every one of which all pins of the start are found among the vertices."""
     options = {"pins": PINS, **options}
     result, iterates = proved(curve, **options)
@@ -122,7 +121,7 @@ def test_pinned_tangents_stay_on_finer_meshes():
         np.testing.assert_allclose(after, before, atol=1e-12)
 
 
-def directions(curve: Curve, vertex: FloatArray) -> FloatArray:
+def directions(curve, vertex):
     """Unit tangents on either side of a vertex."""
     k = int(np.flatnonzero((curve.vertices == vertex).all(axis=1))[0])
     edges = [int(curve.mesh.previous[k]), k]

@@ -173,7 +173,7 @@ def test_nonsense_ends_in_one_sentence(name, tmp_path, monkeypatch):
     assert "refused" in ends.values()
 
 
-def _end(function: Callable[..., object], arguments: dict[str, object]) -> str:
+def _end(function, arguments):
     """How a call ends; warnings are errors."""
     try:
         function(**arguments)
@@ -185,7 +185,7 @@ def _end(function: Callable[..., object], arguments: dict[str, object]) -> str:
 
 
 @checked
-def bake(cakes: int, heat: float = 180.0, shelf: str | None = None, *names: str, fan: Callable[[], None] = list) -> int:
+def bake(cakes, heat=180.0, shelf=None, *names, fan=list):
     """Any function."""
     return cakes
 

@@ -17,10 +17,10 @@ TREFOIL = torus_trefoil(40)
 class Clock:
     """It goes on by a second whenever it is looked at."""
 
-    def __init__(self) -> None:
+    def __init__(self):
         self.looks = 0
 
-    def __call__(self) -> float:
+    def __call__(self):
         self.looks += 1
         return float(self.looks)
 

@@ -11,7 +11,7 @@ from mobius_flow.core.curve import Curve
 from mobius_flow.core.io import read_curve, write_curve
 
 
-def _interrupted_write(path: Path) -> None:
+def _interrupted_write(path):
     path.write_text("half")
     raise KeyboardInterrupt
 

@@ -66,7 +66,7 @@ class Oven:
     shelf: str = option("top", "Shelf", "where it stands", choices=("top", "middle"))
     fan: bool = option(False, "Fan", "blow")
 
-    def __post_init__(self) -> None:
+    def __post_init__(self):
         for each in declared(type(self)):
             object.__setattr__(self, each.name, each.checked(getattr(self, each.name)))
 

@@ -7,9 +7,8 @@ from dataclasses import dataclass, field, replace
 import pytest
 import threadpoolctl
 from mobius_flow.core import RelaxOptions, minimize, relax
-from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.driver.info import info, measure
-from mobius_flow.core.energies.density import Partials, PointPairs
+from mobius_flow.core.energies.density import Partials
 from mobius_flow.core.energies.kpoint import KPointEnergy
 from mobius_flow.core.energies.quadrature import MIDPOINT
 from mobius_flow.lab.compare.comparison import compare
@@ -21,7 +20,7 @@ OWN = 2  # threads of the caller's pools
 POOLS = threadpoolctl.ThreadpoolController().select(user_api="blas")
 
 
-def threads() -> set[int]:
+def threads():
     """Numbers of threads of this process's BLAS pools."""
     return {library["num_threads"] for library in POOLS.info()}
 
@@ -53,18 +52,18 @@ class Spy:
     constant = 0.0
     scale_exponent = -3.0
 
-    def value(self, pairs: PointPairs) -> FloatArray:
+    def value(self, pairs):
         self.seen.update(threads())
         if self.faulty:
             raise FaultError
         return pairs.r2**-1.5
 
-    def derivative(self, pairs: PointPairs) -> Partials:
+    def derivative(self, pairs):
         self.seen.update(threads())
         return Partials(r2=-1.5 * pairs.r2**-2.5)
 
     @property
-    def options(self) -> RelaxOptions:
+    def options(self):
         """Of a short relaxation."""
         return replace(SHORT, energy=KPointEnergy("spy", "1/r³", self, MIDPOINT))
 

@@ -7,25 +7,25 @@ import numpy as np
 import pytest
 from degenerate_motions import ARCS, tied_windows
 from mobius_flow.core import Mesh
-from mobius_flow.core.collision import boxes, is_free
+from mobius_flow.core.collision import is_free
 from mobius_flow.core.collision.boxes import BoxTree, contact_window, still_triangles
 from solids import sphere
 
 MESHES = [Mesh((3,)), Mesh((4,)), Mesh((100,)), Mesh((3, 3)), Mesh((7, 3, 31)), Mesh((3,) * 40), Mesh((257, 4, 64))]
 
 
-def random_leg(mesh: Mesh, m: int, seed: int = 5) -> tuple[np.ndarray, np.ndarray]:
+def random_leg(mesh, m, seed=5):
     rng = np.random.default_rng(seed)
     start = rng.uniform(-1, 1, size=(m, mesh.size)) * rng.choice([0.1, 1.0], size=(1, mesh.size))
     return start, np.clip(start + 0.3 * rng.normal(size=start.shape), -1, 1)
 
 
-def found(tree: BoxTree, near: boxes.Test) -> list[tuple[int, int]]:
+def found(tree, near):
     pairs = [np.sort(tree.order[np.stack(p)], axis=0).T for p in tree.pairs(near)]
     return [(int(i), int(j)) for i, j in np.concatenate(pairs)]
 
 
-def strangers(mesh: Mesh) -> set[tuple[int, int]]:
+def strangers(mesh):
     i, j = np.triu_indices(mesh.size, 1)
     apart = mesh.disjoint(i, j)
     return set(zip(i[apart].tolist(), j[apart].tolist(), strict=True))
@@ -66,7 +66,7 @@ def test_no_pair_that_can_meet_is_lost(mesh, m):
     assert set(found(tree, near)) >= overlapping(mesh, start, end)
 
 
-def overlapping(mesh: Mesh, start: np.ndarray, end: np.ndarray) -> set[tuple[int, int]]:
+def overlapping(mesh, start, end):
     """Pairs of edges whose bounding boxes overlap at one of many times, by brute force."""
     pairs = set()
     for t in np.linspace(0, 1, 21):
@@ -91,7 +91,7 @@ COUNT = int(os.environ.get("MOBIUS_FLOW_MOTIONS", "200"))
 TWO_ARCS = Mesh((2, 2), (False, False))
 
 
-def exact_window(before: list[float], after: list[float]) -> tuple[Fraction, Fraction] | None:
+def exact_window(before, after):
     """When no gap is positive, of gaps that are linear in time; None if never."""
     enter, leave = Fraction(0), Fraction(1)
     for a, b in zip(map(Fraction, before), map(Fraction, after), strict=True):

@@ -11,7 +11,7 @@ from solids import box, plate, rod, sphere
 SQUARE = Curve([[1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [1.0, -1.0, 1.0], [1.0, -1.0, -1.0]])
 
 
-def refusal(curve: Curve, *obstacles: Obstacle) -> CurveError:
+def refusal(curve, *obstacles):
     with pytest.raises(CurveError) as error:
         check_clear(curve, obstacles)
     return error.value
@@ -80,7 +80,7 @@ def test_every_piercing_edge_is_found(seed):
         check_clear(curve, (obstacle,))
 
 
-def pierces(p: np.ndarray, q: np.ndarray, triangle: np.ndarray) -> bool:
+def pierces(p, q, triangle):
     matrix = np.stack([p - q, triangle[1] - triangle[0], triangle[2] - triangle[0]], axis=1)
     s, r, t = np.linalg.solve(matrix, p - triangle[0])
     return bool(0 <= s <= 1 and r >= 0 and t >= 0 and r + t <= 1)
@@ -93,14 +93,14 @@ def test_rounding_must_not_reach_an_obstacle():
     assert not survives_rounding(curve, (plate(1.0 + 4e-16),))
 
 
-def segment_distance(corners: np.ndarray) -> float:
+def segment_distance(corners):
     """By a bounded least-squares solver."""
     x0, x1, y0, y1 = corners
     fit = lsq_linear(np.stack([x1 - x0, y0 - y1], axis=1), y0 - x0, bounds=(0, 1), tol=1e-14)
     return float(np.sqrt(2 * fit.cost))
 
 
-def brute_force(curve: Curve) -> float:
+def brute_force(curve):
     mesh, distances = curve.mesh, []
     for i, j in zip(*np.triu_indices(len(curve), 1), strict=True):
         if mesh.disjoint(i, j):

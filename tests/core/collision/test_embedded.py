@@ -22,7 +22,7 @@ def test_embedded_curves_pass(curve, scale):
     check_embedded(curve.with_vertices(scale * curve.vertices))
 
 
-def refusal(curve: Curve) -> str:
+def refusal(curve):
     with pytest.raises(CurveError) as caught:
         check_embedded(curve)
     return str(caught.value)

@@ -1,7 +1,6 @@
 """The ends of arcs: no fold is taken for free, by the program or by `verify`, against exact times."""
 
 import itertools
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,18 +8,15 @@ from exact_decisions import meet
 from mobius_flow.core import Curve, Mesh
 from mobius_flow.core.collision import Limit, free_motion, is_free, minimal_gap, survives_rounding
 from mobius_flow.core.collision.gap import folds
-from mobius_flow.core.proof import Verdict
 from shapes import opened, straight_arc, torus_trefoil
 from trajectory_files import checked, trajectory
 
-Motion = tuple[np.ndarray, np.ndarray]
 
-
-def verdict(folder: Path, mesh: Mesh, *frames: np.ndarray) -> Verdict:
+def verdict(folder, mesh, *frames):
     return checked(folder, trajectory((mesh.component_sizes, frames), component_closed_000=np.array(mesh.closed)))
 
 
-def collapses(mesh: Mesh, start: np.ndarray, end: np.ndarray) -> bool:
+def collapses(mesh, start, end):
     """Whether an arc is not embedded at some time: exact, by the definition, but for folds at vertices in between."""
     tails, heads = mesh.tails.tolist(), mesh.heads.tolist()
     edges = list(zip(tails, heads, strict=True))
@@ -54,7 +50,7 @@ def test_random_motions_of_arcs(tmp_path, size, dimension):
     assert min(found.values()) > 1
 
 
-def turned(angle: float) -> np.ndarray:
+def turned(angle):
     return np.array([np.cos(angle), np.sin(angle), 0.0])
 
 

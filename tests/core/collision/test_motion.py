@@ -7,13 +7,13 @@ import pytest
 from exact_decisions import meet, until
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mobius_flow.core import Curve, Mesh
+from mobius_flow.core import Mesh
 from mobius_flow.core.collision import FreeMotion, Limit, free_motion, is_free
 from mobius_flow.core.collision.motion import walk
 from shapes import hopf_link, regular_polygon, torus_trefoil
 
 
-def smooth_displacement(curve: Curve, seed: int, waves: int = 8) -> np.ndarray:
+def smooth_displacement(curve, seed, waves=8):
     rng, n = np.random.default_rng(seed), len(curve)
     t = 2 * np.pi * np.arange(n) / n
     k = np.arange(1, waves)
@@ -59,7 +59,7 @@ def test_time_is_confirmed_by_sampling(seed, size):
     assert is_free(curve.mesh, start, start + (1 - 1e-9) * motion.time * step)
 
 
-def volume(curve: Curve, points: np.ndarray, pair: tuple[int, int]) -> float:
+def volume(curve, points, pair):
     heads = curve.mesh.heads
     i, j = pair
     return float(

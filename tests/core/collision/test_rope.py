@@ -20,7 +20,7 @@ COUNT = int(os.environ.get("MOBIUS_FLOW_MOTIONS", "30"))
 ARCS = Mesh((2, 2), (False, False))
 
 
-def squared_distance(legs: np.ndarray, width: np.ndarray) -> np.ndarray:
+def squared_distance(legs, width):
     """8 (|x − y|² − width²) for points x, y of moving edges: of degree 2 in their places and in time, of integers.
 
     Its coefficients in Bernstein's basis, shape (legs, 3, 3, 3), from vertices, shape (2, legs, 4, 3).
@@ -29,7 +29,7 @@ def squared_distance(legs: np.ndarray, width: np.ndarray) -> np.ndarray:
     vectors = {"D": x0 - y0, "e": x1 - x0, "f": y0 - y1}
     one, twice, square = np.array([[1, 1, 1], [0, 1, 2], [0, 0, 1]], dtype=object)  # 1, 2 s and s²
 
-    def term(u: str, v: str, s: np.ndarray, t: np.ndarray) -> np.ndarray:
+    def term(u, v, s, t):
         """4 ⟨u, v⟩ times functions of the places."""
         (a, b), (c, d) = vectors[u], vectors[v]
         over_time = np.stack([4 * (a * c).sum(1), 2 * (a * d + b * c).sum(1), 4 * (b * d).sum(1)], axis=1)
@@ -40,7 +40,7 @@ def squared_distance(legs: np.ndarray, width: np.ndarray) -> np.ndarray:
     return np.asarray(2 * total + term("e", "f", twice, twice) - 8 * (width**2)[:, None, None, None])
 
 
-def exactly_apart(legs: np.ndarray, width: np.ndarray) -> np.ndarray:
+def exactly_apart(legs, width):
     """Whether edges stay further apart than a width: the cube of places and times is halved until signs tell."""
     cubes, of, apart = squared_distance(legs, width), np.arange(len(width)), np.ones(len(width), dtype=bool)
     for depth in range(120):
@@ -54,7 +54,7 @@ def exactly_apart(legs: np.ndarray, width: np.ndarray) -> np.ndarray:
     return apart
 
 
-def random_legs(rng: np.random.Generator, kind: str, count: int) -> tuple[np.ndarray, np.ndarray]:
+def random_legs(rng, kind, count):
     """Legs of pairs of edges with integers for coordinates, shape (2, legs, 4, 3), and widths about where they fail."""
     size = 3 if kind == "lattice" else 1 << 20
     legs = rng.integers(-size, size + 1, (2, count, 4, 3))

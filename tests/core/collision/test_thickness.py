@@ -1,7 +1,5 @@
 """Thickness against values by hand and against brute force."""
 
-from collections.abc import Sequence
-
 import numpy as np
 import pytest
 from hard_curves import rope
@@ -10,7 +8,7 @@ from mobius_flow.core.collision.gap import bending_radii, thickness
 from mobius_flow.core.knots import knot, smooth_knot
 
 
-def slow_thickness(curve: Curve, count: int = 20) -> float:
+def slow_thickness(curve, count=20):
     """The same over all pairs of some points on each edge: too large by what lies between them."""
     bend = bending_radii(curve).min()
     t = np.arange(count) / count
@@ -25,7 +23,7 @@ def slow_thickness(curve: Curve, count: int = 20) -> float:
     return float(0.5 * best)
 
 
-def stadium(cuts: Sequence[float]) -> Curve:
+def stadium(cuts):
     """Two half circles of radius 1, joined by straight lines of length 10 that have vertices at some places."""
     angle = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 41)
     turn = np.column_stack([np.cos(angle), np.sin(angle), 0.0 * angle])

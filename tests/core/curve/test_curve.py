@@ -70,7 +70,7 @@ def test_component_sizes_that_are_none(sizes):
     assert list(map(type, Mesh(list(np.array([3, 4]))).component_sizes)) == [int, int]
 
 
-def uneven_circle() -> Curve:
+def uneven_circle():
     """A circle whose longest edge is four times the shortest; only that is left to mend."""
     gaps = 1 + 0.6 * np.cos(2 * np.pi * np.arange(60) / 60)
     t = 2 * np.pi * np.cumsum(gaps) / gaps.sum()

@@ -102,7 +102,7 @@ def test_the_arcs_without_one_edge_have_all_pairs_of_edges_but_those_with_it():
 RATIO = 3.0
 
 
-def of_all_pairs(curve: Curve, furthest: float = np.inf) -> float:
+def of_all_pairs(curve, furthest=np.inf):
     i, j = np.triu_indices(len(curve), 1)
     distance = np.linalg.norm(curve.vertices[i] - curve.vertices[j], axis=1)
     chosen = (arc_distance_of_vertices(curve, i, j) > RATIO * distance) & (distance <= furthest)

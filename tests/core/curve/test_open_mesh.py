@@ -15,7 +15,7 @@ SIZES, CLOSED = (5, 2, 3, 4, 6, 3), (True, False, False, True, False, True)
 MESH = Mesh(SIZES, CLOSED)
 
 
-def listed_edges() -> list[tuple[int, int, int]]:
+def listed_edges():
     """Tail, head and component of each edge."""
     edges, first = [], 0
     for number, (size, closed) in enumerate(zip(SIZES, CLOSED, strict=True)):

@@ -10,7 +10,7 @@ from mobius_flow.core.knots.closures import closed_far_away
 from shapes import hopf_link, lattice_knot, regular_polygon
 
 
-def contains(curve: Curve, refined: Curve) -> bool:
+def contains(curve, refined):
     """Whether the refined vertices include the curve's, in order, and the others lie on its edges."""
     position = 0
     for k, vertex in enumerate(curve.vertices):
@@ -54,7 +54,7 @@ def test_neighbours_become_nearer_than_strands():
     assert np.diff(np.sort(along[:, 0])).max() < 0.2
 
 
-def kite(degrees: float, cuts: int) -> Curve:
+def kite(degrees, cuts):
     """A plane quadrangle with one corner of the given angle, its sides cut into pieces, uneven ones if several."""
     half = np.deg2rad(degrees) / 2
     side = np.array([np.cos(half), np.sin(half), 0.0])

@@ -17,12 +17,12 @@ from shapes import torus_trefoil
 from taylor import taylor_slope
 
 
-def point_at(curve: Curve, **options):
+def point_at(curve, **options):
     problem = start_problem(curve, RelaxOptions(**options))
     return problem.at(problem.units.from_user(curve.vertices))
 
 
-def iterations(method: str, n: int, limit: int) -> int:
+def iterations(method, n, limit):
     options = RelaxOptions(method=method, tolerance=1e-3, vertices=n, max_iterations=limit)
     result = minimize(torus_trefoil(n), options)
     return len(result.energies) - 1 if result.status is Status.CONVERGED else limit

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from descent_cases import GEOMETRIES, start
 from descent_contracts import assert_armijo, assert_certified, assert_weak_wolfe, taken
-from mobius_flow.core import Curve, Objective
-from mobius_flow.core.base.types import FloatArray
-from mobius_flow.core.descent import Point, SearchState, Step
+from mobius_flow.core import Objective
+from mobius_flow.core.descent import SearchState, Step
 from mobius_flow.core.descent.directions import SteepestDescent
 from mobius_flow.core.descent.hessian import lagrangian_hessian
 from mobius_flow.core.descent.line_searches import Armijo, FirstTrial, LineSearch
@@ -49,7 +48,7 @@ def test_wolfe_does_not_take_steps_that_are_too_short(geometry):
 class Underestimating(Objective):
     """An objective whose second derivative is half of what it should be: models of it promise too much."""
 
-    def hessian(self, curve: Curve) -> FloatArray:
+    def hessian(self, curve):
         return 0.5 * super().hessian(curve)
 
 
@@ -65,7 +64,7 @@ def test_trust_region_rejects_what_the_model_did_not_foresee():
     assert ratio(point, shorter.point) > 0.89
 
 
-def ratio(start: Point, end: Point) -> float:
+def ratio(start, end):
     """Actual to predicted reduction, the prediction made from the tangential part of the step."""
     s = start.tangent_space.project(end.vertices - start.vertices)
     predicted = -float(np.sum(start.derivative * s) + 0.5 * np.sum(s * lagrangian_hessian(start)(s)))

@@ -5,12 +5,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from descent_cases import narrow, start
 from descent_contracts import point_on, taken
-from mobius_flow.core import Curve, Iterate, RelaxOptions, Status, minimize, relax
-from mobius_flow.core.base.types import FloatArray
-from mobius_flow.core.descent import NoStep, Point, SearchState, Step
+from mobius_flow.core import Curve, RelaxOptions, Status, minimize, relax
+from mobius_flow.core.descent import NoStep, SearchState
 from mobius_flow.core.descent.directions import LimitedMemoryBFGS
 from mobius_flow.core.descent.line_searches import Armijo, LineSearch
-from mobius_flow.core.solve.metrics import InnerProduct, MoebiusMetric
+from mobius_flow.core.solve.metrics import MoebiusMetric
 
 
 @dataclass(frozen=True)
@@ -19,12 +18,12 @@ class Counted(MoebiusMetric):
 
     curves: list[Curve] = field(default_factory=list)
 
-    def at(self, curve: Curve) -> InnerProduct:
+    def at(self, curve):
         self.curves.append(curve)
         return super().at(curve)
 
 
-def counted(point: Point) -> tuple[Point, list[Curve]]:
+def counted(point):
     metric = Counted()
     return point.within(replace(point.problem, metric=metric)), metric.curves
 
@@ -56,7 +55,7 @@ def test_a_metric_serves_no_longer_where_contact_limits_a_step():
 class Unless:
     """A search that finds nothing while the metric is an old one."""
 
-    def along(self, point: Point, direction: FloatArray, natural: float, last: float) -> Step | NoStep:
+    def along(self, point, direction, natural, last):
         return NoStep("old") if point.metric_age else Armijo().along(point, direction, natural, last)
 
 
@@ -79,7 +78,7 @@ def test_a_curve_has_converged_only_in_its_own_metric():
     assert relative_gradient(result.last) <= 0.5 * (old + own)
 
 
-def relative_gradient(iterate: Iterate, norm: float | None = None) -> float:
+def relative_gradient(iterate, norm=None):
     """What tolerances bound: the norm of the projected gradient, by default in the curve's own metric, to √E."""
     norm = point_on(iterate.curve).gradient_norm if norm is None else norm
     return norm / float(np.sqrt(iterate.energy))

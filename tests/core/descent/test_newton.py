@@ -9,8 +9,6 @@ from dense_stability import POINTS, at, dense_modes, saddle, tangent_basis
 from families import crossed
 from mobius_flow.core import RelaxOptions, Status, Task, minimize
 from mobius_flow.core.base.tolerances import BULK
-from mobius_flow.core.base.types import FloatArray
-from mobius_flow.core.descent import Point
 from mobius_flow.core.descent.hessian import lagrangian_hessian, lagrangian_matrix, smooth_starts, soft_modes
 from mobius_flow.core.descent.line_searches import Armijo, FirstTrial
 from mobius_flow.core.descent.second_order import Curvature, Newton
@@ -133,7 +131,7 @@ def test_where_nothing_makes_it_definite_gradients_end_the_run(monkeypatch):
     assert result.outcome.negative_eigenvalues is None
 
 
-def starts(point: Point) -> FloatArray:
+def starts(point):
     return smooth_starts(point, np.random.default_rng(5))
 
 

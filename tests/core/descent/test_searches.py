@@ -16,7 +16,7 @@ from descent_contracts import (
 )
 from mobius_flow.core import Curve
 from mobius_flow.core.collision import Contact
-from mobius_flow.core.descent import NoStep, Point, SearchState, Step
+from mobius_flow.core.descent import NoStep, SearchState, Step
 from mobius_flow.core.descent.directions import ConjugateGradient, LimitedMemoryBFGS, SteepestDescent
 from mobius_flow.core.descent.line_searches import Armijo, FirstTrial, LineSearch
 from mobius_flow.core.descent.step import Leg, Rejected, attempt
@@ -88,7 +88,7 @@ def test_a_chord_through_a_strand_is_rejected():
     assert isinstance(attempt(point, nearer, point.residual, lambda q: True), Leg)
 
 
-def crossed_rods() -> Point:
+def crossed_rods():
     """Two thin triangles with a gap of 1 between edges that cross when seen from above."""
     lower = [[-2.0, 0, 0], [2, 0, 0], [0, 0, -3]]
     upper = [[0.0, -2, 1], [0, 2, 1], [0, 0.5, 4]]

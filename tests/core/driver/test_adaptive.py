@@ -16,7 +16,7 @@ from tasks import proved
 RULE = Resolution(200)
 
 
-def near_strands(gap: float) -> Curve:
+def near_strands(gap):
     """A long thin loop with a bulge: two strands ``gap`` apart."""
     x = np.linspace(0, 4, 60)
     upper = np.stack([x, gap * np.ones_like(x), 0 * x], axis=1)

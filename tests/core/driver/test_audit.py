@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
-from melts import Found, melt, passings_by_eigenvalues, planted
-from mobius_flow.core import Audit, Curve, MobiusFlowError, audit
+from melts import melt, passings_by_eigenvalues, planted
+from mobius_flow.core import Curve, MobiusFlowError, audit
 from mobius_flow.core.knots.diagrams.invariants import linking_numbers
-from motions import Array
 from shapes import regular_polygon
 
 CIRCLE = regular_polygon(12).vertices
@@ -13,7 +12,7 @@ HOPF = np.concatenate([CIRCLE, CIRCLE[:, [0, 2, 1]] + [1.0, 0.07, 0.03]])
 APART = HOPF + np.repeat([[0.0, 0, 0], [5, 0, 0]], 12, axis=0)
 
 
-def told(report: Audit) -> Found:
+def told(report):
     """As the oracle tells it."""
     each = report.passings
     first = report.topology.beads[report.topology.tails[each["edges"]]]
@@ -51,7 +50,7 @@ def test_it_does_not_matter_how_chains_are_wrapped_or_who_works():
     assert [each[0:2] for each in told(audit(frames, 40))] == sorted(map(tuple, own["edges"].tolist()))
 
 
-def linking(points: Array) -> int:
+def linking(points):
     """The linking number of two rings of half the beads each."""
     (found,) = linking_numbers(Curve.from_components(np.split(points, 2)))
     return found
@@ -100,7 +99,7 @@ def test_rings_may_go_round_the_box():
     assert [each.before for each in report.meetings()] == [None]
 
 
-def nan(points: Array) -> Array:
+def nan(points):
     return np.where(np.arange(points.size).reshape(points.shape) == 4, np.nan, points)
 
 

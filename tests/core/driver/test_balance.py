@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, Hand, MoebiusEnergy, RelaxOptions, Status, minimize, relax
 from mobius_flow.core.curve.measures import bending
-from mobius_flow.core.descent import Point, Step
 from mobius_flow.core.driver.moves import balance
 from mobius_flow.core.driver.moves.balance import CUT_OFF, Balance, MoebiusImages
 from mobius_flow.core.driver.prepare import start_problem
@@ -19,24 +18,24 @@ from tasks import proved
 from taylor import taylor_slope
 
 
-def unbalanced(curve: Curve, *v: float) -> Curve:
+def unbalanced(curve, *v):
     """A Möbius image whose edges are about as even as the curve's."""
     return MoebiusImages(curve, curve.edge_lengths).at(np.array([1.0, *v]))
 
 
-def point(curve: Curve, **options: object) -> Point:
+def point(curve, **options):
     return start_problem(curve, RelaxOptions(**options)).at_curve(curve)
 
 
-def run_at(start: Point) -> Run:
+def run_at(start):
     return Run(start.problem, Curve(start.placed, start.problem.mesh), RelaxOptions())
 
 
-def way_to_balance(start: Point) -> tuple[Step, ...]:
+def way_to_balance(start):
     return Balance(run_at(start)).way(start)
 
 
-def largest_chord(curve: Curve) -> float:
+def largest_chord(curve):
     return float(np.linalg.norm(curve.vertices[:, None] - curve.vertices[None], axis=2).max())
 
 
@@ -90,7 +89,7 @@ def test_what_bends_least_stays(curve):
     assert way_to_balance(point(curve)) == ()
 
 
-def uneven_circle() -> Curve:
+def uneven_circle():
     angles = np.sort(np.random.default_rng(0).uniform(0.0, 2.0 * np.pi, 30))
     return Curve.from_components([np.stack([np.cos(angles), np.sin(angles), np.zeros(30)], axis=1)])
 

@@ -22,12 +22,12 @@ def everywhere(monkeypatch):
     change(monkeypatch, CoarseStart, min_vertices=100)
 
 
-def bent(curve: Curve) -> Curve:
+def bent(curve):
     """Something to do."""
     return curve.with_vertices(curve.vertices + 0.1 * np.sin(3 * curve.vertices[:, ::-1]))
 
 
-def relaxed(curve: Curve, **options: object) -> list[Iterate]:
+def relaxed(curve, **options):
     return proved(curve, **{"vertices": len(curve), "untangle": "never"} | options)[1]
 
 

@@ -1,6 +1,5 @@
 """By default a run ends on a mesh that resolves what it ends at: its energy is that of the smooth curve."""
 
-from collections.abc import Mapping
 from itertools import pairwise
 from types import MappingProxyType
 
@@ -8,7 +7,7 @@ import numpy as np
 import pytest
 from changed_moves import change
 from families import family
-from mobius_flow.core import METHODS, Curve, Iterate, Objective, RelaxOptions, Result, Status, Task, minimize, relax
+from mobius_flow.core import METHODS, Curve, Objective, RelaxOptions, Status, Task, minimize, relax
 from mobius_flow.core.curve import Mesh
 from mobius_flow.core.driver.moves import FinerMesh
 from mobius_flow.core.energies import ENERGIES
@@ -21,7 +20,7 @@ SMOOTH = {"5_1": torus_knot_minimum(2, 5), "6_2": 172.0607, "7_6": 207.2577}
 """Minima of smooth curves, those beside the torus knot by extrapolation; see docs/accuracy.md."""
 
 
-def recorded(curve: Curve, **options: object) -> tuple[Result, list[Curve]]:
+def recorded(curve, **options):
     """A run's result, and its curve on each of its meshes when that was new."""
     curves: list[Curve] = []
 
@@ -71,7 +70,7 @@ def test_the_bends_of_a_resolved_curve_get_more_vertices_until_its_energy_is_exa
         assert len(result.curve) < 2 * len(curves[0])
 
 
-def left(curve: Curve, **options: object) -> tuple[Iterate, Iterate]:
+def left(curve, **options):
     """The last iterate on a run's first mesh, and the first one on its second."""
     for before, after in pairwise(relax(curve, RelaxOptions(**options))):
         if not after.path:
@@ -97,7 +96,7 @@ def test_the_share_is_one_of_the_error(monkeypatch):
     assert still_to_gain(before) < 0.5 * (after.energy - before.energy)
 
 
-def still_to_gain(iterate: Iterate, options: Mapping[str, str] = MappingProxyType({})) -> float:
+def still_to_gain(iterate, options=MappingProxyType({})):
     """How far above the end of a run on its mesh it is."""
     energy, vertices = options.get("energy", "moebius"), len(iterate.curve)
     resting = RelaxOptions(energy=energy, tolerance=1e-6, mesh="fixed", vertices=vertices, edge_lengths="keep")

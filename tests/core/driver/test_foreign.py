@@ -6,10 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from mobius_flow.core import Curve, OptionError, RelaxOptions, relax
-from mobius_flow.core.base.types import FloatArray
+from mobius_flow.core import OptionError, RelaxOptions, relax
 from mobius_flow.core.energies import ENERGIES, KPointEnergy
-from mobius_flow.core.energies.density import Partials, PointPairs, TangentPointDensity
+from mobius_flow.core.energies.density import TangentPointDensity
 from mobius_flow.core.energies.quadrature import ENDS
 from mobius_flow.core.solve.metrics import L2Metric, SparseInnerProduct
 from shapes import torus_trefoil
@@ -25,10 +24,10 @@ class Height:
     flat: bool = False  # a derivative of another shape
     name = "height"
 
-    def value(self, curve: Curve) -> float:
+    def value(self, curve):
         return float("nan") if self.undefined else float(np.sum(curve.vertices[:, 2] ** 2))
 
-    def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
+    def value_and_derivative(self, curve):
         derivative = self.slope * curve.vertices * [0.0, 0.0, 1.0]
         return self.value_there * self.value(curve), derivative[:, 2] if self.flat else derivative
 
@@ -36,7 +35,7 @@ class Height:
 class Jagged(Height):
     """Not smooth at any scale: differences say nothing."""
 
-    def value(self, curve: Curve) -> float:
+    def value(self, curve):
         return float(np.sum(np.random.default_rng(abs(hash(curve.vertices.tobytes()))).random(3)))
 
 
@@ -47,13 +46,13 @@ class Lopsided(L2Metric):
     factor: float = 1.0
     more: float = 0.0
 
-    def at(self, curve: Curve) -> SparseInnerProduct:
+    def at(self, curve):
         n = len(curve)
         shifted = sp.diags_array(np.ones(n - 1), offsets=1, shape=(n, n))
         return SparseInnerProduct(sp.csr_array(self.factor * sp.eye_array(n) + self.more * shifted))
 
 
-def start(**options: object) -> None:
+def start(**options):
     next(relax(torus_trefoil(40), RelaxOptions(vertices=40, **options)))
 
 
@@ -94,7 +93,7 @@ class RealOnly(TangentPointDensity):
 
     function: np.ufunc = np.abs
 
-    def derivative(self, pairs: PointPairs) -> Partials:
+    def derivative(self, pairs):
         own = super().derivative(pairs)
         return own._replace(r2=own.r2.real * self.function(pairs.r2) / self.function(pairs.r2.real))
 

@@ -27,7 +27,7 @@ def in_the_box(factor, **more):
     return {"curve": SADDLED, "grow": factor, "avoid": [WALLS], "vertices": 32, "max_iterations": 45} | more
 
 
-def lengths(curve: Curve) -> np.ndarray:
+def lengths(curve):
     return np.array([curve.edge_lengths[s].sum() for s in curve.mesh.edge_slices])
 
 
@@ -136,7 +136,7 @@ def test_arcs_between_pins_grow_and_shrink_to_the_distance_of_their_ends():
     np.testing.assert_array_equal(constraints.lengths, curve.edge_lengths * ([1.0] + 23 * [2.0]))
 
 
-def bow(rise: float) -> Curve:
+def bow(rise):
     """An arc of unit length between its ends, all but straight."""
     x = np.linspace(0.0, 1.0, 25)
     return Curve(np.column_stack([x, rise * np.sin(np.pi * x), np.zeros(25)]), Mesh((25,), (False,)))

@@ -6,19 +6,7 @@ import numpy as np
 import pytest
 from descent_contracts import point_on
 from families import family
-from mobius_flow.core import (
-    METHODS,
-    Curve,
-    Hand,
-    Iterate,
-    MobiusFlowError,
-    Outcome,
-    RelaxOptions,
-    Status,
-    Task,
-    WithOutcome,
-    relax,
-)
+from mobius_flow.core import METHODS, Hand, MobiusFlowError, RelaxOptions, Status, Task, WithOutcome, relax
 from mobius_flow.core.energies.pull import REACH, Pull, share_of
 from mobius_flow.core.knots import knot, knot_type
 from shapes import hopf_link, opened, regular_polygon, torus_trefoil
@@ -36,7 +24,7 @@ CURVES = {
 FIXED = {"vertices": 60, "mesh": "fixed"}
 
 
-def pulled(curve: Curve, away: float = 1.0, component: int = 0) -> Pull:
+def pulled(curve, away=1.0, component=0):
     pull = Pull.at(curve, component, 0.3, 40.0)
     return replace(pull, target=pull.target + away * np.arange(1.0, curve.dimension + 1.0))
 
@@ -97,9 +85,7 @@ def test_shares_of_lengths_are_found_again(curve):
             assert curve.mesh.component[pull.vertex] == component
 
 
-def drag(
-    curve: Curve | Task, hand: Hand, moves: dict[int, object], **settings: object
-) -> tuple[list[Iterate], Outcome]:
+def drag(curve, hand, moves, **settings):
     """The iterates of a run in which something is done to the hand at some of them."""
     run, iterates = WithOutcome(relax(curve, RelaxOptions(**FIXED | settings), hand=hand)), []
     for iterate in run:
@@ -111,15 +97,15 @@ def drag(
     return iterates, run.outcome
 
 
-def held(hand: Hand, _iterate: Iterate) -> None:
+def held(hand, _iterate):
     hand.grab(0, 0.25)
 
 
-def pulled_out(hand: Hand, iterate: Iterate) -> None:
+def pulled_out(hand, iterate):
     hand.move(place_outside(iterate.curve))
 
 
-def place_outside(curve: Curve) -> np.ndarray:
+def place_outside(curve):
     middle = curve.vertices.mean(axis=0)
     return middle + 1.5 * (Pull.at(curve, 0, 0.25, 1.0).target - middle)
 
@@ -255,7 +241,7 @@ TASKS = {
 }
 
 
-def violent(task: Task, options: RelaxOptions, drags: int, seed: int) -> list[Iterate]:
+def violent(task, options, drags, seed):
     """The iterates of a run with so many drags: slow, jumping, jittering, far out, into strands, and nonsense."""
     rng, hand, iterates = np.random.default_rng(seed), Hand(stays=True), []
     busy, left, kind, way = False, 2, 0, np.zeros(3)

@@ -7,10 +7,9 @@ from itertools import cycle, islice, pairwise
 import numpy as np
 import pytest
 from families import family
-from mobius_flow.core import Curve, Iterate, Mesh, Obstacle, RelaxOptions, Result, Status, minimize
+from mobius_flow.core import Curve, Iterate, Mesh, Obstacle, RelaxOptions, Status, minimize
 from mobius_flow.core.collision import FreeMotion, Limit
 from mobius_flow.core.curve import refine
-from mobius_flow.core.descent import Point
 from mobius_flow.core.driver.move import iterates
 from mobius_flow.core.driver.moves import MOVES
 from mobius_flow.core.driver.moves.hops import (
@@ -36,14 +35,13 @@ from tasks import check, wanted
 VERTICES = 60
 OPTIONS = RelaxOptions(radius="none", mesh="fixed", vertices=VERTICES, hops=1, seed=1)
 SADDLE = torus_knot(3, 4, VERTICES)  # in its most symmetric position, where plain descent ends though it is no minimum
-Recorded = tuple[list[Iterate], Result]
 
 
-def run_of(options: RelaxOptions = OPTIONS, curve: Curve = SADDLE) -> Run:
+def run_of(options=OPTIONS, curve=SADDLE):
     return Run(start_problem(curve, options), curve, options)
 
 
-def recorded(**changes: object) -> Recorded:
+def recorded(**changes):
     found: list[Iterate] = []
     return found, minimize(SADDLE, replace(OPTIONS, **changes), found.append)
 
@@ -58,12 +56,12 @@ def plain():
     return recorded(hops=0)
 
 
-def hop_of(found: list[Iterate]) -> Iterate:
+def hop_of(found):
     """The first hop: the one iterate whose way is longer than any step's."""
     return max(found, key=lambda iterate: len(iterate.path))
 
 
-def same(a: list[Iterate], b: list[Iterate]) -> bool:
+def same(a, b):
     return all(np.array_equal(x.curve.vertices, y.curve.vertices) for x, y in zip(a, b, strict=True))
 
 
@@ -199,7 +197,7 @@ def test_hops_keep_pins_move_nothing_that_lengths_hold_and_may_leave_a_circle_th
 
 
 @cache
-def saddle(**options: object) -> Point:
+def saddle(**options):
     return run_of(RelaxOptions(mesh="fixed", vertices=VERTICES, **options)).point
 
 

@@ -16,7 +16,6 @@ from tasks import proved
 PENALISED = [name for name, method in METHODS.items() if not method.geometry.prescribes]
 SADDLE = regular_polygon(32).vertices + 0.1 * np.cos(4 * np.pi * np.arange(32) / 32)[:, None] * [0, 0, 1]
 WALK = np.cumsum(np.random.default_rng(3).normal(size=(9, 3)), axis=0)
-Proofs = set[tuple[bytes, bytes]]
 
 
 @pytest.fixture
@@ -35,7 +34,7 @@ def proofs(monkeypatch):
     return found
 
 
-def assert_written(iterates: list, proofs: Proofs) -> int:
+def assert_written(iterates, proofs):
     """Every leg that is written was proved, bit for bit; returns how many there are."""
     trajectory = Trajectory()
     for iterate in iterates:
@@ -46,7 +45,7 @@ def assert_written(iterates: list, proofs: Proofs) -> int:
     return len(legs)
 
 
-def crooked(curve: Curve) -> Curve:
+def crooked(curve):
     """Coordinates that do not survive the way to the program's units and back."""
     vertices = curve.vertices + np.random.default_rng(83).uniform(1.0, 3.0, size=curve.dimension)
     vertices[0, 0] = 1.1e-13

@@ -7,7 +7,6 @@ import pytest
 from descent_contracts import point_on, with_geometry
 from hard_curves import uneven
 from mobius_flow.core import Curve, RelaxOptions, minimize
-from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.descent.geometry import Geometry
 from mobius_flow.core.solve.constraints import Barycenters, Constraints
 from mobius_flow.core.solve.saddle import TangentSpace
@@ -15,7 +14,7 @@ from mobius_flow.core.solve.saddle.tangent_space import euclidean_correction
 from shapes import chain_of_rings, hopf_link, opened, regular_polygon, straight_arc, torus_trefoil
 
 
-def rough(curve: Curve) -> Curve:
+def rough(curve):
     rng = np.random.default_rng(41)
     return curve.with_vertices(curve.vertices + 0.02 * rng.normal(size=curve.vertices.shape))
 
@@ -67,11 +66,11 @@ def test_short_steps_do_not_drift_away_from_the_lengths():
 class Counting(TangentSpace):
     """A tangent space that counts its solves."""
 
-    def __init__(self, space: TangentSpace) -> None:
+    def __init__(self, space):
         super().__init__(space, space.constraints, None)
         self._space, self.solves = space, 0
 
-    def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
+    def solve(self, eta, xi):
         self.solves += 1
         return self._space.solve(eta, xi)
 

@@ -23,7 +23,7 @@ GROWN = 0.9 * thickness(torus_knot(2, 3, 60))  # what grows has a radius only if
 WALL = Obstacle([[-9.0, -9, 0], [9, -9, 0], [0, 18, 0]], [[0, 1, 2]])
 
 
-def kept(task: Task, **options: object) -> float:
+def kept(task, **options):
     """The least thickness of all iterates over that of the start; each leg is that of the rope of the last radius."""
     iterates = []
     result = minimize(task, RelaxOptions(**options), callback=iterates.append)

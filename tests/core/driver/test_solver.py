@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from changed_moves import change
 from hard_curves import bent_trefoil
-from mobius_flow.core import METHODS, Curve, Iterate, Objective, OptionError, RelaxOptions, Status, minimize, relax
+from mobius_flow.core import METHODS, Objective, OptionError, RelaxOptions, Status, minimize, relax
 from mobius_flow.core.curve import refine
 from mobius_flow.core.descent import NoStep
 from mobius_flow.core.driver import run as run_module
@@ -19,7 +19,7 @@ from mobius_flow.core.knots import knot
 from shapes import torus_trefoil
 
 
-def start(**options: object) -> Iterate:
+def start(**options):
     return next(relax(torus_trefoil(300), RelaxOptions(vertices=300, **options)))
 
 
@@ -55,7 +55,7 @@ def test_a_search_compares_energies_by_the_block_list_of_its_start():
     assert 1e-9 * afresh < abs(trial.energy - afresh) < 1e-6 * afresh
 
 
-def is_hierarchical(curve: Curve, **options: object) -> bool:
+def is_hierarchical(curve, **options):
     """By what a problem is solved that starts from a curve."""
     wanted = RelaxOptions(**options)
     problem = start_problem(curve, wanted)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, CurveError, Iterate, OptionError, RelaxOptions, Task, minimize
+from mobius_flow.core import Curve, CurveError, OptionError, RelaxOptions, Task, minimize
 from mobius_flow.core.curve.measures import bending
 from mobius_flow.core.curve.symmetry import Symmetry, symmetries
 from mobius_flow.core.driver.moves.balance import moebius_image
@@ -16,7 +16,7 @@ from torus_energies import torus_knot_minimum
 EXACT = 1e-10  # shortest edges, of rounded coordinates
 
 
-def error(last: Iterate, *others: Iterate) -> float:
+def error(last, *others):
     """How far vertices are from where symmetry puts them, under the group that the last curve is said to have."""
     group = symmetries(last.curve, 1e-6).subgroup(last.symmetry)
     kept = Symmetry(group.name, group.centre, group.matrices)

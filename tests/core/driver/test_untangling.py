@@ -1,12 +1,11 @@
 """Strand moves within a run: when they are made, what iterates and reports say of them, and what they must not lose."""
 
-from collections.abc import Callable, Iterator
 from dataclasses import replace
 from itertools import count, islice
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, Objective, Obstacle, RelaxOptions, Status, Task, minimize, relax
+from mobius_flow.core import Curve, Objective, RelaxOptions, Status, Task, minimize, relax
 from mobius_flow.core.base.deadline import TimeLimit, check_time
 from mobius_flow.core.base.messages import Message
 from mobius_flow.core.collision import check_embedded
@@ -26,7 +25,7 @@ EASY = knot("braid(1,-2,3)", 40)  # an unknot of four crossings, and two moves
 GOERITZ = knot("goeritz")
 
 
-def plates(curve: Curve, part: float) -> tuple[Obstacle, Obstacle]:
+def plates(curve, part):
     """Two plates that leave a curve between them so much more room, as a part of its size."""
     low, high = curve.vertices[:, 2].min(), curve.vertices[:, 2].max()
     gap = part * np.ptp(curve.vertices, axis=0).max()
@@ -102,11 +101,11 @@ def test_strand_moves_are_no_iterations(easy):
     assert result.last.strand_moves.left == 0
 
 
-def _cut(monkeypatch: pytest.MonkeyPatch, crossings: int, stop: Callable[[], None]) -> None:
+def _cut(monkeypatch, crossings, stop):
     """Have strand moves stopped in the middle of the next one, once so few crossings are left."""
     whole = untangling.untangled
 
-    def cut(*given: object) -> Iterator[Legs]:
+    def cut(*given):
         few = False
         for stage in whole(*given):
             if few:

@@ -15,7 +15,7 @@ from taylor import taylor_slope
 BARRIER = Barrier()
 
 
-def one_pair(x0: list[float], x1: list[float], y0: list[float], y1: list[float]) -> EdgePairs:
+def one_pair(x0, x1, y0, y1):
     """One pair of edges, by way of a curve that has them as edges 0 and 4."""
     far = [[50.0, 0, 0], [50.0, 50.0, 0], [0, 50.0, 50.0], [0, 0, 90.0], [-70.0, 0, 0]]
     curve = Curve([x0, x1, far[0], far[1], y0, y1, *far[2:]])
@@ -32,7 +32,7 @@ def test_one_pair(gap, by_midpoints, by_integral):
     assert exact(pair).value[0] == pytest.approx(by_integral, abs=1e-9)
 
 
-def brute_force_pairs(curve: Curve) -> set[tuple[int, int]]:
+def brute_force_pairs(curve):
     """The definition, pair by pair."""
     found = set()
     for i in range(len(curve)):

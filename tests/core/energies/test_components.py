@@ -47,7 +47,7 @@ def test_shares():
     assert MoebiusEnergy().value(arc) == pytest.approx(4 * share, abs=1e-12)
 
 
-def o_hara(curve_at, length: float) -> float:
+def o_hara(curve_at, length):
     """∬ (1/r² − 1/ϱ²) of an arc that is parametrised by [0, 1] with constant speed, by Gauss points on a triangle."""
     points, weights = np.polynomial.legendre.leggauss(80)
     points, weights = 0.5 * (points + 1), 0.5 * weights

@@ -8,16 +8,7 @@ from energy_references import arc_density, circle_density, pair_sum, tangent_poi
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mobius_flow.core import Curve, Objective
-from mobius_flow.core.energies import (
-    ENERGIES,
-    TERMS,
-    Barrier,
-    Bending,
-    Energy,
-    Term,
-    is_moebius_invariant,
-    moebius_kpoint,
-)
+from mobius_flow.core.energies import ENERGIES, TERMS, Barrier, Bending, Energy, is_moebius_invariant, moebius_kpoint
 from mobius_flow.core.energies.barrier import near_pairs
 from mobius_flow.core.knots import knot
 from shapes import crossing, lattice_knot, opened, regular_polygon, straight_arc
@@ -37,7 +28,7 @@ ENERGY = pytest.mark.parametrize("energy", ALL.values(), ids=ALL)
 ASSEMBLED = [energy for energy in ALL.values() if hasattr(energy, "hessian")]
 
 
-def star(n: int) -> Curve:
+def star(n):
     """A polygon of the plane that does not cross itself."""
     t, r = 2 * np.pi * np.arange(n) / n, np.random.default_rng(1).uniform(0.5, 1.5, n)
     return Curve(np.stack([r * np.cos(t), r * np.sin(t)], axis=1))
@@ -54,7 +45,7 @@ NEAR = {f"gap {gap}": crossing(gap) for gap in (0.3, 0.05, 1e-3, 1e-5)}
 COARSE = {"lattice": lattice_knot("3_1"), "diagram": knot("thistlethwaite")}
 
 
-def direction_for(curve: Curve) -> np.ndarray:
+def direction_for(curve):
     return np.random.default_rng(11).normal(size=curve.vertices.shape)
 
 
@@ -119,7 +110,7 @@ def test_sums_over_pairs(name, curve):
     assert ENERGIES[name].value(curve) == pytest.approx(slow, rel=1e-12)
 
 
-def rings(n: int, ratio: float = 1.8) -> Curve:
+def rings(n, ratio=1.8):
     polygon = regular_polygon(n, 2).vertices
     return Curve.from_components([polygon, ratio * polygon])
 
@@ -150,7 +141,7 @@ def test_known_energies_are_approached(name, of):
         assert np.polyfit(np.log(counts), np.log(errors), 1)[0] == pytest.approx(-rate, abs=0.1)
 
 
-def wound(seed: int) -> Curve:
+def wound(seed):
     """Two strands side by side, not smooth, some edges nearer to each other than they are long."""
     t = 4 * np.pi * np.arange(24) / 24
     r = 1 + 0.12 * np.cos(1.5 * t)
@@ -158,12 +149,12 @@ def wound(seed: int) -> Curve:
     return Curve(points + 0.02 * np.random.default_rng(seed).normal(size=points.shape))
 
 
-def scale_exponent(energy: Term) -> float:
+def scale_exponent(energy):
     """Of the energy under scaling; the barrier has none of its own: its energy is dimensionless."""
     return getattr(energy, "scale_exponent", 0.0)
 
 
-def is_one_sided(energy: Term) -> bool:
+def is_one_sided(energy):
     """Whether its points on an edge are others from the other end: then unequal edges tell orientations apart."""
     points = np.array(energy.rule.points) if isinstance(energy, Energy) else np.array([0.5])
     return not np.allclose(np.sort(points), np.sort(1.0 - points))

@@ -8,8 +8,6 @@ from families import crossed
 from mobius_flow.core.energies.barrier import inverse_square
 from mobius_flow.core.energies.edge_pairs import EdgePairs, change, stepped
 
-Points = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
-
 SHAPES = {
     "crossing": lambda g: ([0, 0, 0], [1, 0, 0], [0.3, -0.6, g], [0.5, 0.4, g]),
     "crossing at a small angle": lambda g: ([0, 0, 0], [1, 0, 0], [0.1, -0.01, g], [0.9, 0.02, g]),
@@ -28,12 +26,12 @@ SHAPES = {
 }
 
 
-def points_of(shape: str, gap: float) -> Points:
+def points_of(shape, gap):
     p, q, r, s = (np.array(point, dtype=float) for point in SHAPES[shape](gap))
     return p, q, r, s
 
 
-def pairs_of(points: Points) -> EdgePairs:
+def pairs_of(points):
     x0, x1, y0, y1 = (p[None] for p in points)
     return EdgePairs(0.5 * ((x0 - y0) + (x1 - y1)), x1 - x0, y1 - y0)
 

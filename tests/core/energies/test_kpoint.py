@@ -19,7 +19,7 @@ from taylor import derivative_slope
 ARC = pytest.mark.parametrize("energy", [VERTEX_ENERGY, EDGE_ENERGY], ids=lambda each: each.name)
 
 
-def quadrature_error(points: int, size: float, seed: int) -> float:
+def quadrature_error(points, size, seed):
     """Relative error of Σ W_IJ between two triangles, ``size`` large and about 2 apart, against ∬ F."""
     first, second = size * np.random.default_rng(seed).normal(size=(2, 3, 3))
     curve = Curve.from_components([first, second + np.array([2.0, 0.5, 0.3])])

@@ -2,7 +2,6 @@
 
 import shutil
 import subprocess
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -44,7 +43,7 @@ def test_energy_per_length(n):
     assert missing[1] == pytest.approx(missing[3])
 
 
-def equilateral(curve: Curve) -> Curve:
+def equilateral(curve):
     """The same kind of polygon with equal edges, by Newton's method on the lengths."""
     n, edges = len(curve), np.arange(len(curve))
     for _ in range(30):
@@ -59,7 +58,7 @@ def equilateral(curve: Curve) -> Curve:
     return curve
 
 
-def evolver_energy(curve: Curve, folder: Path) -> float:
+def evolver_energy(curve, folder):
     """What its method circle_knot_energy says."""
     mesh = curve.mesh
     lines = ["STRING", "space_dimension 3", "quantity knot energy method circle_knot_energy global", "vertices"]

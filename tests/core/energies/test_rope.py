@@ -14,7 +14,7 @@ from shapes import regular_polygon
 from taylor import derivative_slope, hessian_slope, taylor_slope
 
 
-def tight(curve: Curve, share: float = 0.9) -> Rope:
+def tight(curve, share=0.9):
     radius = np.full(len(curve.mesh.component_sizes), share * thickness(curve))
     return Rope(radius).frozen_at(curve)
 

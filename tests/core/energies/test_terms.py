@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, MobiusFlowError, MoebiusEnergy, Objective, OptionError, RelaxOptions, minimize
+from mobius_flow.core import MobiusFlowError, MoebiusEnergy, Objective, OptionError, RelaxOptions, minimize
 from mobius_flow.core.energies import ENERGIES, TERMS, Bending, Weighted, is_moebius_invariant
 from shapes import regular_polygon, torus_trefoil
 from smooth_curves import random_polygon
@@ -43,10 +43,10 @@ class Height:
     name = "height"
     description = "Σ z"
 
-    def value(self, curve: Curve) -> float:
+    def value(self, curve):
         return float(curve.vertices[:, 2].sum())
 
-    def value_and_derivative(self, curve: Curve) -> tuple[float, np.ndarray]:
+    def value_and_derivative(self, curve):
         return self.value(curve), np.full_like(curve.vertices, 1.0) * [0.0, 0.0, 1.0]
 
 

@@ -1,7 +1,6 @@
 """What the readers understand, and what they drop with a note."""
 
 import logging
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -49,7 +48,7 @@ UNDERSTOOD = {
 }
 
 
-def _write(tmp_path: Path, name: str, text: str) -> Path:
+def _write(tmp_path, name, text):
     path = tmp_path / name
     path.write_bytes(text.encode())
     return path
@@ -91,7 +90,7 @@ def test_what_is_understood_and_what_is_noted(tmp_path, name, caplog):
     assert np.array_equal(curve.vertices, np.concatenate(expected))
 
 
-def _atom(serial: int, residue: int, point: list[int], chain: str = "A", name: str = " CA ", also: str = " ") -> str:
+def _atom(serial, residue, point, chain="A", name=" CA ", also=" "):
     place = "".join(f"{coordinate:8.3f}" for coordinate in point)
     return f"ATOM  {serial:5d} {name}{also}GLY {chain}{residue:4d}    {place}  1.00  0.00           C\n"
 

@@ -17,7 +17,7 @@ COORDINATES = st.floats(allow_nan=False, allow_infinity=False, width=64)
 
 
 @st.composite
-def curves(draw: st.DrawFn, dimension: int = 3) -> Curve:
+def curves(draw, dimension=3):
     closed = draw(st.lists(st.booleans(), min_size=1, max_size=3))
     sizes = [draw(st.integers(3 if flag else 2, 6)) for flag in closed]
     parts = [draw(hnp.arrays(np.float64, (size, dimension), elements=COORDINATES)) for size in sizes]

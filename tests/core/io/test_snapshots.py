@@ -14,7 +14,7 @@ Writer = Callable[[Path, list[Array], float], None]
 POINTS = np.array([[0.25, 1.0, 3.5], [1.25, 1.5, 0.5], [0.5, 2.0, 1.0]])
 
 
-def dump(*frames: Array, box: str = "BOX BOUNDS pp pp ff\n0 2\n0 4\n1 9", atoms: str = "id mol x y z") -> str:
+def dump(*frames, box="BOX BOUNDS pp pp ff\n0 2\n0 4\n1 9", atoms="id mol x y z"):
     text = ""
     for k, points in enumerate(frames):
         text += f"ITEM: TIMESTEP\n{100 * k}\nITEM: NUMBER OF ATOMS\n{len(points)}\nITEM: {box}\nITEM: ATOMS {atoms}\n"
@@ -23,7 +23,7 @@ def dump(*frames: Array, box: str = "BOX BOUNDS pp pp ff\n0 2\n0 4\n1 9", atoms:
     return text
 
 
-def read(path: Path, text: str) -> list[Snapshot]:
+def read(path, text):
     path.write_text(text, encoding="utf-8")
     return list(snapshots(path))
 
@@ -96,7 +96,7 @@ def test_a_missing_file_is_told(tmp_path):
             list(snapshots(tmp_path / name))
 
 
-def write_gsd(path: Path, frames: list[Array], box: float) -> None:
+def write_gsd(path, frames, box):
     gsd = pytest.importorskip("gsd.hoomd")
     with gsd.open(path, "w") as file:
         for step, points in enumerate(frames):
@@ -108,7 +108,7 @@ def write_gsd(path: Path, frames: list[Array], box: float) -> None:
             file.append(frame)
 
 
-def write_by_mdanalysis(path: Path, frames: list[Array], box: float) -> None:
+def write_by_mdanalysis(path, frames, box):
     MDAnalysis = pytest.importorskip("MDAnalysis")
     universe = MDAnalysis.Universe.empty(len(frames[0]), trajectory=True)
     with MDAnalysis.Writer(str(path), len(frames[0])) as file:

@@ -13,11 +13,11 @@ from mobius_flow.core.knots import Drawing, torus_knot
 from mobius_flow.core.knots.diagrams.projection import plane_crossings
 
 
-def flat(curve: Curve) -> Curve:
+def flat(curve):
     return curve.with_vertices(curve.vertices[:, :2])
 
 
-def scribble(seed: int, points: int = 160) -> Curve:
+def scribble(seed, points=160):
     """A random closed curve with a few dozen crossings at most."""
     rng = np.random.default_rng(seed)
     t = np.linspace(0, 2 * np.pi, points, endpoint=False)[:, None]
@@ -26,7 +26,7 @@ def scribble(seed: int, points: int = 160) -> Curve:
     return Curve(waves @ (rng.normal(size=(10, 2)) / np.tile(modes, 2)[:, None] ** 0.7))
 
 
-def circle(x: float, y: float = 0.0, radius: float = 1.0, points: int = 40) -> np.ndarray:
+def circle(x, y=0.0, radius=1.0, points=40):
     t = 2 * np.pi * (np.arange(points) + 0.3) / points
     return np.column_stack([x + radius * np.cos(t), y + radius * np.sin(t)])
 

@@ -11,12 +11,10 @@ import numpy as np
 import pytest
 from exact_decisions import meet_triangle
 from mobius_flow.core import Curve, Mesh, Task, Trajectory, relax
-from mobius_flow.core.base.types import IntArray
 from mobius_flow.core.driver import RelaxOptions
 from mobius_flow.core.knots import knot
 from mobius_flow.core.proof import checker
 from mobius_flow.core.proof import filter as leg_filter
-from motions import Array
 from shapes import regular_polygon, torus_trefoil
 from solids import box, rod
 from trajectory_files import checked, trajectory
@@ -84,7 +82,7 @@ def test_the_command_says_which_and_why(tmp_path):
     assert "bad.npz: rejected: stage 0, frame 0: edges " in done.stdout or not names
 
 
-def doubtful_pairs(start: Array, end: Array, heads: IntArray, clearance: float = 0.0) -> Array:
+def doubtful_pairs(start, end, heads, clearance=0.0):
     """All of them, each by the vertices of its edges; shape (4, pairs)."""
     return np.concatenate([np.empty((4, 0)), *leg_filter.doubtful_pairs(start, end, heads, clearance)], axis=1)
 

@@ -13,11 +13,11 @@ from shapes import regular_polygon
 from trajectory_files import archive, checked, trajectory
 
 
-def npy(shape: tuple[int, ...], data: bytes, descr: str = "<f8", fortran: bool = False) -> bytes:
+def npy(shape, data, descr="<f8", fortran=False):
     return headed(repr({"descr": descr, "fortran_order": fortran, "shape": shape}), data)
 
 
-def headed(header: str, data: bytes) -> bytes:
+def headed(header, data):
     return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header.encode() + data
 
 
@@ -26,9 +26,7 @@ SQUARE = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]).tobytes()
 FORGED = Path(__file__).parents[4] / "shared/audit"
 
 
-def verdict(
-    folder: Path, stage: bytes, sizes: bytes = SIZES, packed: int = zipfile.ZIP_STORED, **more: bytes
-) -> Verdict:
+def verdict(folder, stage, sizes=SIZES, packed=zipfile.ZIP_STORED, **more):
     """On a file of these arrays."""
     members = {"stage_000": stage, "component_sizes_000": sizes} | more
     return verify(archive(folder / "T.npz", {f"{name}.npy": data for name, data in members.items()}, packed))

@@ -5,19 +5,14 @@ known from elsewhere: the knots before and after have different signatures.
 """
 
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError, Mesh, RelaxOptions, Trajectory, relax
-from mobius_flow.core.base.types import FloatArray
 from mobius_flow.core.collision import check_embedded
 from mobius_flow.core.knots import knot
 from mobius_flow.core.knots.diagrams import quick_invariants
-from mobius_flow.core.proof import Verdict
 from trajectory_files import checked, trajectory
-
-Stages = list[tuple[Mesh, FloatArray]]
 
 RUNS: dict[str, tuple[str, RelaxOptions]] = {
     "trefoil": ("3_1", RelaxOptions(max_iterations=5)),
@@ -35,7 +30,7 @@ SEEDS = range(5)
 
 
 @cache
-def run(name: str) -> Stages:
+def run(name):
     """The stages of a run."""
     kind, options = RUNS[name]
     record = Trajectory()
@@ -46,11 +41,11 @@ def run(name: str) -> Stages:
     return [(Mesh(tuple(arrays[f"component_sizes_{k:03d}"].tolist())), arrays[f"stage_{k:03d}"]) for k in range(count)]
 
 
-def verdict_on(folder: Path, stages: Stages) -> Verdict:
+def verdict_on(folder, stages):
     return checked(folder, trajectory(*((mesh.component_sizes, frames) for mesh, frames in stages)))
 
 
-def finger(curve: Curve, rng: np.random.Generator) -> FloatArray:
+def finger(curve, rng):
     """A displacement that pushes the strand at a random vertex through the strand nearest to it; shape (n, m)."""
     i = int(rng.integers(len(curve)))
     component, sizes = curve.mesh.component, curve.mesh.component_sizes
@@ -64,7 +59,7 @@ def finger(curve: Curve, rng: np.random.Generator) -> FloatArray:
     return rng.uniform(1.3, 1.8) * weight[:, None] * (curve.vertices[j] - curve.vertices[i])
 
 
-def embedded(curve: Curve) -> bool:
+def embedded(curve):
     try:
         check_embedded(curve)
     except CurveError:
@@ -72,7 +67,7 @@ def embedded(curve: Curve) -> bool:
     return True
 
 
-def mutated(stages: Stages, rng: np.random.Generator) -> tuple[Stages, int, int]:
+def mutated(stages, rng):
     """The stages with a strand moved through another, and the stage and frame before it moves."""
     several = [k for k, (_, frames) in enumerate(stages) if len(frames) > 1]
     for _ in range(200):

@@ -3,20 +3,19 @@
 import numpy as np
 import pytest
 from mobius_flow.core import CurveError
-from mobius_flow.core.proof.passings import Passings, Placed, passings
-from motions import Array
+from mobius_flow.core.proof.passings import Placed, passings
 
 NO_BOX = np.zeros((3, 3))
 LYING = np.array([[-1.0, 0, 0], [1, 0, 0]])
 
 
-def of_two(start: Array, end: Array, cell: Array = NO_BOX, *, from_start: bool = True) -> Passings:
+def of_two(start, end, cell=NO_BOX, *, from_start=True):
     """Contacts of two open edges, whose four ends are rows."""
     frames = (Placed(np.array(each, dtype=float), np.zeros((4, 3), dtype=int), cell) for each in (start, end))
     return passings(*frames, np.arange(4), np.array([0, 2]), from_start)
 
 
-def bar(x: float, height: float, tilt: float = 0.0) -> Array:
+def bar(x, height, tilt=0.0):
     """An edge across the lying one."""
     return np.array([[x, -1.0, height - tilt], [x, 1.0, height + tilt]])
 

@@ -14,14 +14,14 @@ ARC = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [1, 1, 1]])
 OBSTACLE: Arrays = {"obstacle_000_vertices": np.eye(3) + 20.0, "obstacle_000_faces": np.array([[0, 1, 2]])}
 
 
-def small() -> Arrays:
+def small():
     """Two linked squares and a triangle that hardly move, on one mesh and on another one with a vertex more."""
     frames = FRAME + 0.125 * np.eye(3)[0] * np.arange(4)[:, None, None]
     finer = np.insert(frames[-1:], 1, frames[-1:, :2].mean(axis=1), axis=1)
     return trajectory(([4, 4, 3], frames), ([5, 4, 3], finer))
 
 
-def beside_a_multiple_root() -> Arrays:
+def beside_a_multiple_root():
     """Two strands meet in the plane they are in all the time but for heights that vanish just before the start."""
     e, frames = 2.0**-20, []
     shadow = np.array([[-8, -5], [2, 7], [-4, -3], [-4, 4.0]])
@@ -88,7 +88,7 @@ def test_changes_of_stage(tmp_path, name):
     assert reason in verdict.reason
 
 
-def with_middle(points: np.ndarray, edge: int, shift: float = 0.0) -> np.ndarray:
+def with_middle(points, edge, shift=0.0):
     return np.insert(points, edge + 1, 0.5 * (points[edge] + points[edge + 1]) + shift, axis=0)
 
 

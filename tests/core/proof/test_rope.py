@@ -2,7 +2,6 @@
 
 import os
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,7 +12,6 @@ from mobius_flow.core.proof import checker, verify
 from mobius_flow.core.proof.filter import FloatingSieve
 from shapes import regular_polygon
 
-Arrays = dict[str, np.ndarray]
 COUNT = int(os.environ.get("MOBIUS_FLOW_MOTIONS", "30"))
 
 
@@ -26,7 +24,7 @@ def run():
     return {name: np.asarray(array) for name, array in trajectory.arrays().items()}
 
 
-def verdicts(path: Path, arrays: Arrays) -> tuple[checker.Verdict, checker.Verdict]:
+def verdicts(path, arrays):
     np.savez(path / "rope.npz", **arrays)
     return verify(path / "rope.npz"), checker.check(path / "rope.npz")
 
@@ -70,7 +68,7 @@ def test_radii_that_are_none(tmp_path, run, radius, reason):
         assert reason in verdict.reason
 
 
-def moved(run: Arrays, seed: int) -> Arrays:
+def moved(run, seed):
     """A vertex of some frame is elsewhere: a forgery, unless it is a rope all the same."""
     rng, stage = np.random.default_rng(seed), run["stage_000"].copy()
     frame, vertex = rng.integers(1, len(stage)), rng.integers(stage.shape[1])
@@ -78,7 +76,7 @@ def moved(run: Arrays, seed: int) -> Arrays:
     return run | {"stage_000": stage}
 
 
-def crowded(start: np.ndarray, end: np.ndarray, radius: float) -> bool:
+def crowded(start, end, radius):
     """Whether at some of the times on a leg two points more than a whole circle apart along it are too near."""
     for t in np.linspace(0.0, 1.0, 9):
         p = (1 - t) * start + t * end

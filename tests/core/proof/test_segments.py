@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from degenerate_motions import crossing_shadows
 from exact_decisions import meet, until
-from mobius_flow.core.proof.checker import END, START, Polynomial, Time, common_divisor, halved, roots, sign, times
+from mobius_flow.core.proof.checker import END, START, common_divisor, halved, roots, sign, times
 
 CROSS = [[-1, 0, 1], [1, 0, 1], [0, -1, 0], [0, 1, 0]]
 FLAT = [[0, 1], [1, 1], [0, 0], [1, 0]]
 IN_A_ROW = [[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]]
 
 
-def moved(points: list[list[float]], first: list[float], second: list[float]) -> list[list[float]]:
+def moved(points, first, second):
     steps = (first, first, second, second)
     return [[x + d for x, d in zip(p, step, strict=True)] for p, step in zip(points, steps, strict=True)]
 
@@ -64,19 +64,19 @@ def test_edges_that_meet_beside_a_multiple_root():
         assert meet(start, end), (start.tolist(), end.tolist())
 
 
-def linear(root: Fraction) -> Polynomial:
+def linear(root):
     """A polynomial that increases and vanishes at a rational number."""
     return [-root.numerator, root.denominator - root.numerator]
 
 
-def product(*factors: Polynomial) -> Polynomial:
+def product(*factors):
     result = [1]
     for factor in factors:
         result = times(result, factor)
     return result
 
 
-def interval(time: Time) -> tuple[Fraction, Fraction]:
+def interval(time):
     _, i, j, m = time
     return Fraction(i, m), Fraction(j, m)
 

@@ -1,14 +1,11 @@
 """Changes of mesh: vertices that rounding puts beside their edge, against exact decisions about all pairs of edges."""
 
 from fractions import Fraction
-from pathlib import Path
 
 import numpy as np
 import pytest
 from exact_decisions import meet
 from mobius_flow.core import Mesh
-from mobius_flow.core.base.types import FloatArray
-from mobius_flow.core.proof import Verdict
 from mobius_flow.core.proof.checker import RefusedError, straightened
 from trajectory_files import checked, trajectory
 
@@ -16,7 +13,7 @@ DENORMAL = 5e-324
 UNITS = (DENORMAL, 2.0**-52, 2.0**-20)
 
 
-def changed(folder: Path, bent: FloatArray, strand: FloatArray) -> Verdict:
+def changed(folder, bent, strand):
     """On a polygon that loses vertex 1 beside a strand."""
     stages = [
         ([len(part), len(strand)], [np.concatenate([part, strand])]) for part in (bent, np.delete(bent, 1, axis=0))
@@ -40,7 +37,7 @@ def test_the_smallest_doubles_have_last_places_that_are_as_large(tmp_path):
     assert changed(tmp_path, bent, strand).accepted
 
 
-def crosses(bent: FloatArray, strand: FloatArray) -> bool:
+def crosses(bent, strand):
     """Whether putting vertex 1 onto the edge between its neighbours meets anything, by all pairs of edges."""
     moved = straightened(bent.tolist(), [0, *range(2, len(bent))])
     points = np.concatenate([bent, strand])

@@ -1,7 +1,6 @@
 """Legs, stages, obstacles and pins of trajectories: what is true is accepted, what is not is refused with the place."""
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from mobius_flow.core import Curve, Obstacle, RelaxOptions, Trajectory, relax
 from mobius_flow.core.collision import free_motion
@@ -9,13 +8,12 @@ from mobius_flow.core.proof import Verdict, verify
 from shapes import hopf_link, regular_polygon, torus_trefoil
 from solids import box, plate, rod, sphere
 from tasks import wanted
-from trajectory_files import Arrays, checked, trajectory
+from trajectory_files import checked, trajectory
 
-Array = npt.NDArray[np.float64]
 PINNED = torus_trefoil(40)
 
 
-def walk(curve: Curve, steps: int, seed: int = 3) -> list[Array]:
+def walk(curve, steps, seed=3):
     """Frames of a random motion that is free of contact."""
     rng, frames = np.random.default_rng(seed), [curve.vertices]
     t = 2 * np.pi * np.arange(len(curve)) / len(curve)
@@ -27,13 +25,13 @@ def walk(curve: Curve, steps: int, seed: int = 3) -> list[Array]:
     return frames
 
 
-def refined(frame: Array, *parameters: float) -> Array:
+def refined(frame, *parameters):
     """Every edge cut at the parameters, at rounded points."""
     following = np.roll(frame, -1, axis=0)
     return np.stack([(1 - t) * frame + t * following for t in (0.0, *parameters)], axis=1).reshape(-1, frame.shape[1])
 
 
-def rising(steps: int, top: float) -> list[Array]:
+def rising(steps, top):
     """A trefoil, of heights within ±1, that rises."""
     return [torus_trefoil(60).vertices + np.array([0.0, 0.0, top * k / steps]) for k in range(steps + 1)]
 
@@ -113,7 +111,7 @@ def test_rounding_of_inserted_vertices_is_checked(tmp_path, between, still):
     assert between == (("meets obstacle 1" if still else "meet") in verdict.reason)
 
 
-def bundle(strands: int, height: float = 0.0) -> Arrays:
+def bundle(strands, height=0.0):
     """Arcs side by side, all parallel and so near that nothing but whole numbers shows them to be apart."""
     row, column = np.divmod(np.arange(strands), 9)
     tails = np.stack([1.0 + 2.0**-52 * row, 1.0 + 2.0**-52 * column, height * row], axis=1)
@@ -157,7 +155,7 @@ def test_a_start_that_pierces_or_touches(tmp_path):
         assert (verdict.accepted, verdict.frame, verdict.obstacle) == (False, 0, 0)
 
 
-def moved(*vertices: int) -> list[Array]:
+def moved(*vertices):
     """A trefoil of which some vertices move in the second of two legs, by a unit in the last place."""
     frames = np.stack([PINNED.vertices] * 3)
     frames[2, vertices, 0] = np.nextafter(frames[2, vertices, 0], np.inf)

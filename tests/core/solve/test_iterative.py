@@ -8,13 +8,12 @@ import pytest
 from descent_contracts import point_on
 from mobius_flow.core import Curve, Objective
 from mobius_flow.core.curve import refine
-from mobius_flow.core.descent import METHODS, Point, SearchState, Step
+from mobius_flow.core.descent import METHODS, SearchState, Step
 from mobius_flow.core.descent.task import centred
 from mobius_flow.core.knots import knot, torus_knot
 from mobius_flow.core.solve.constraints import Constraints
 from mobius_flow.core.solve.hierarchical import CompressedInnerProduct, moebius_inner_product
 from mobius_flow.core.solve.metrics import DenseInnerProduct, MoebiusMetric
-from mobius_flow.core.solve.saddle import TangentSpace
 from mobius_flow.core.solve.saddle.iterative import (
     IterativeTangentSpace,
     Tolerances,
@@ -36,7 +35,7 @@ CURVE = pytest.mark.parametrize("name", CURVES)
 
 
 @cache
-def spaces(name: str) -> tuple[TangentSpace, TangentSpace]:
+def spaces(name):
     """The iterative tangent space, and the same by dense factorisations."""
     curve = centred(CURVES[name])
     inner, constraints = moebius_inner_product(curve), Constraints.of(curve).derivative(curve)
@@ -44,7 +43,7 @@ def spaces(name: str) -> tuple[TangentSpace, TangentSpace]:
 
 
 @cache
-def derivative(name: str) -> np.ndarray:
+def derivative(name):
     return Objective().value_and_derivative(centred(CURVES[name]))[1]
 
 
@@ -94,7 +93,7 @@ def test_projection(name):
     assert dense.norm(p - dense.project(v)) < 0.1 * dense.norm(v - dense.project(v))
 
 
-def outer_iterations(monkeypatch, space: TangentSpace, covector: np.ndarray) -> int:
+def outer_iterations(monkeypatch, space, covector):
     """How many products with A a projected gradient takes, checked to be one."""
     calls = 0
     original = CompressedInnerProduct.apply
@@ -111,12 +110,12 @@ def outer_iterations(monkeypatch, space: TangentSpace, covector: np.ndarray) -> 
     return calls
 
 
-def smooth_load(curve: Curve) -> np.ndarray:
+def smooth_load(curve):
     """A covector that does not depend on the mesh, but for its quadrature."""
     return np.sin(3 * curve.vertices) * curve.edge_lengths[:, None]
 
 
-def space_at(curve: Curve) -> TangentSpace:
+def space_at(curve):
     return moebius_inner_product(curve).tangent_space(Constraints.of(curve).derivative(curve))
 
 
@@ -129,9 +128,9 @@ def test_iterations_do_not_grow_with_the_mesh(monkeypatch, kind):
     assert counts[0] <= (8 if kind == "torus" else 25)
 
 
-def with_compressed_metric(curve: Curve) -> Point:
+def with_compressed_metric(curve):
     class Compressed(MoebiusMetric):
-        def at(self, curve: Curve) -> CompressedInnerProduct:
+        def at(self, curve):
             return moebius_inner_product(curve)
 
     point = point_on(curve)
@@ -188,11 +187,11 @@ MATRIX = FACTOR @ FACTOR.T + 0.1 * np.eye(30)
 RIGHT = RNG.normal(size=(30, 3))
 
 
-def product(x: np.ndarray) -> np.ndarray:
+def product(x):
     return MATRIX @ x
 
 
-def diagonal(r: np.ndarray) -> np.ndarray:
+def diagonal(r):
     return r / np.diag(MATRIX)[:, None]
 
 
@@ -235,7 +234,7 @@ def test_nothing_to_solve():
     assert not np.any(conjugate_gradients(product, lambda r, _: (r, r), np.zeros((30, 3)), 10))
 
 
-def solve(matrix: np.ndarray, iterations: int, *, indefinite: bool = False) -> np.ndarray:
+def solve(matrix, iterations, *, indefinite=False):
     return conjugate_gradients(lambda x: matrix @ x, lambda r, _: (r, r), RIGHT, iterations, indefinite=indefinite)
 
 

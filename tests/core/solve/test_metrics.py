@@ -13,10 +13,10 @@ from scipy.special import sici
 from shapes import hopf_link, opened, regular_polygon, straight_arc, torus_trefoil
 
 
-def term_2(k: int) -> float:
+def term_2(k):
     """Term 2 of J_C for u = cos kx: ∬ |u(x) − u(y)|²/r² (1/r² − 1/ϱ²) = 4π ∫_0^π (1 − cos kt)/r² (1/r² − 1/t²) dt."""
 
-    def integrand(t: float) -> float:
+    def integrand(t):
         r2 = (2 * np.sin(0.5 * t)) ** 2
         return (1 - np.cos(k * t)) / r2 * (1 / r2 - 1 / t**2)
 
@@ -28,7 +28,7 @@ def test_term_2_of_the_first_mode():
     assert term_2(1) == pytest.approx(2, abs=1e-8)
 
 
-def closed_form(name: str, k: int) -> float:
+def closed_form(name, k):
     """⟨u, u⟩ of u = cos kx on the unit circle."""
     pi = np.pi
     # ∬ |u'(x) − u'(y)|²/ϱ² = 4π k² ∫_0^π (1 − cos kt)/t² dt

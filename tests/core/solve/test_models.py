@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from hard_curves import hard_unknot, lattice_closure, unknot_word
-from mobius_flow.core import Curve, Mesh
+from mobius_flow.core import Mesh
 from mobius_flow.core.curve import refine
 from mobius_flow.core.knots import knot
 from mobius_flow.core.solve.constraints import ConstraintDerivative
@@ -18,7 +18,7 @@ MODELS = {"circulants": Circulants, "resolvents": Resolvents}
 MODEL = pytest.mark.parametrize("model", MODELS)
 
 
-def spread(curve: Curve, model: str) -> float:
+def spread(curve, model):
     """Condition number of the exact J_C against the model, on functions of mean 0 on every component."""
     inner = MoebiusMetric().at(curve)
     n, matrix = len(curve), inner.dense()
@@ -57,7 +57,7 @@ def test_components_of_all_sizes(model):
     assert spread(chain_of_rings(12, (5, 40, 11, 4)), model) < 30
 
 
-def tension_spread(curve: Curve, model: str) -> float:
+def tension_spread(curve, model):
     """Condition number of C M⁻¹ Cᵀ, on the lengths, preconditioned by the model's own near inverse."""
     m = MODELS[model](curve.mesh, curve.edge_lengths, moebius_inner_product(curve).apply)
     rows = ConstraintDerivative.of_lengths(curve)

@@ -7,19 +7,17 @@ import pytest
 import scipy.sparse as sp
 from families import crossed
 from mobius_flow.core import Curve
-from mobius_flow.core.base.types import FloatArray, IntArray
 from mobius_flow.core.curve.pins import Pins, free_edges
 from mobius_flow.core.solve.constraints import Barycenters, ConstraintDerivative, Constraints
 from mobius_flow.core.solve.hierarchical import fractional_inner_product, moebius_inner_product
 from mobius_flow.core.solve.metrics import METRICS, DenseInnerProduct, SparseInnerProduct
-from mobius_flow.core.solve.metrics.inner_product import InnerProduct
 from mobius_flow.core.solve.saddle.iterative import PinnedModel, Tolerances
 from mobius_flow.core.solve.saddle.tangent_space import euclidean_correction
 from shapes import half_circle, hopf_link, opened, regular_polygon, torus_trefoil
 from taylor import taylor_slope
 
 
-def rough(curve: Curve) -> Curve:
+def rough(curve):
     rng = np.random.default_rng(71)
     return curve.with_vertices(curve.vertices + 0.02 * rng.normal(size=curve.vertices.shape))
 
@@ -58,25 +56,25 @@ INNER_PRODUCTS = {name: metric.at for name, metric in METRICS.items()} | {
 }
 
 
-def case(name: str) -> tuple[Curve, Constraints]:
+def case(name):
     curve, parts, vertices = CASES[name]
     pins = Pins.of(curve, np.array(vertices, dtype=np.intp))
     return curve, Constraints(curve.edge_lengths, Barycenters.of(curve, pins, parts), pins)
 
 
-def inner_product(product: str, curve: Curve) -> InnerProduct:
+def inner_product(product, curve):
     inner = INNER_PRODUCTS[product](curve)  # a triangle has no pairs of disjoint edges: J_C needs its local part
     return inner.plus(SparseInnerProduct(sp.eye_array(3))) if len(curve) == 3 else inner
 
 
-def rough_field(curve: Curve, pins: IntArray) -> FloatArray:
+def rough_field(curve, pins):
     """It vanishes at pins."""
     u = np.random.default_rng(73).normal(size=curve.vertices.shape)
     u[pins] = 0.0
     return u
 
 
-def columns(derivative: ConstraintDerivative) -> FloatArray:
+def columns(derivative):
     """DΦ as a matrix, with a column for every coordinate, pinned or not."""
     units = np.eye(int(np.prod(derivative.shape)))
     return np.stack([derivative.apply(unit.reshape(derivative.shape)) for unit in units], axis=1)

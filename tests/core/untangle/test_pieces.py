@@ -25,11 +25,11 @@ from taylor import taylor_slope
 
 
 @cache
-def scrambled(name: str) -> Curve:
+def scrambled(name):
     return scramble(knot(name, 60), 1, moves=1500)
 
 
-def messy(name: str, held: tuple[int, ...] = (), *, is_open: bool = False) -> PlaneDrawing:
+def messy(name, held=(), *, is_open=False):
     """The drawing of a messy curve from a random direction."""
     curve = scrambled(name)
     if is_open:
@@ -38,7 +38,7 @@ def messy(name: str, held: tuple[int, ...] = (), *, is_open: bool = False) -> Pl
     return PlaneDrawing.of(curve.mesh, seen, holds(curve.mesh, np.array([*held, *curve.mesh.ends.ravel()], dtype=int)))
 
 
-def laid(name: str, vertices: int = 120, held: tuple[int, ...] = (), radius: float | None = None) -> ElasticRope:
+def laid(name, vertices=120, held=(), radius=None):
     """A knot's rope on the table after a few steps."""
     curve = knot(name, vertices)
     own = None if radius is None else np.array([radius])
@@ -49,7 +49,7 @@ def laid(name: str, vertices: int = 120, held: tuple[int, ...] = (), radius: flo
     return rope
 
 
-def drawing(rope: ElasticRope) -> PlaneDrawing:
+def drawing(rope):
     return PlaneDrawing.of(rope.mesh, rope.seen, rope.held)
 
 

@@ -1,22 +1,19 @@
 """Whole curves are untangled by proved motions: knots, links, arcs, among pins and obstacles, and interrupted."""
 
-from collections.abc import Generator, Sequence
 from itertools import islice
 
 import numpy as np
 import pytest
 from families import family
-from mobius_flow.core import Curve, Iterate, Mesh, Obstacle, Task
+from mobius_flow.core import Curve, Iterate, Mesh, Task
 from mobius_flow.core.collision import check_embedded
 from mobius_flow.core.knots import knot, knot_type, scramble
-from mobius_flow.core.untangle import Legs, Untangled, untangled, worth
+from mobius_flow.core.untangle import Legs, untangled, worth
 from solids import plate
 from tasks import check
 
 
-def check_stages(
-    start: Curve, stages: Sequence[Legs], pins: Sequence[int] = (), walls: Sequence[Obstacle] = ()
-) -> None:
+def check_stages(start, stages, pins=(), walls=()):
     """Have the independent check accept stages."""
     frames = [(start, ()), *((each, path) for s in stages for each, path in ((s.start, ()), (s.end, s.path)))]
     iterates: list[Iterate] = []
@@ -26,7 +23,7 @@ def check_stages(
     check(iterates, Task(curve=start, obstacles=tuple(walls)))
 
 
-def run(curve: Curve, pins: Sequence[int] = (), walls: Sequence[Obstacle] = ()) -> tuple[Curve, Untangled]:
+def run(curve, pins=(), walls=()):
     """Where it ends and how, if the independent check accepts the way."""
     stages: list[Legs] = []
     found = ended(untangled(curve, np.array(pins, dtype=np.intp), walls), stages)
@@ -34,7 +31,7 @@ def run(curve: Curve, pins: Sequence[int] = (), walls: Sequence[Obstacle] = ()) 
     return stages[-1].end, found
 
 
-def ended(work: Generator[Legs, None, Untangled], stages: list[Legs]) -> Untangled:
+def ended(work, stages):
     """How it ends."""
     while True:
         try:

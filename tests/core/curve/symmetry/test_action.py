@@ -6,8 +6,7 @@ from dense_stability import tangent_basis
 from descent_contracts import point_on
 from mobius_flow.core import Curve
 from mobius_flow.core.curve.refine import subdivide
-from mobius_flow.core.curve.symmetry import NO_SYMMETRY, Symmetry, symmetries
-from mobius_flow.core.descent import Point
+from mobius_flow.core.curve.symmetry import NO_SYMMETRY, symmetries
 from mobius_flow.core.descent.hessian import lagrangian_matrix
 from mobius_flow.core.descent.second_order import Curvature
 from mobius_flow.core.driver.moves.remesh import split_edges
@@ -16,12 +15,12 @@ from mobius_flow.core.knots import smooth_knot, torus_knot
 RNG = np.random.default_rng(7)
 
 
-def symmetric(curve: Curve) -> tuple[Curve, Symmetry]:
+def symmetric(curve):
     mean, symmetry, _ = symmetries(curve).symmetrised(curve, curve.mesh.component_sizes)
     return mean, symmetry
 
 
-def symmetric_point(curve: Curve, **options: object) -> Point:
+def symmetric_point(curve, **options):
     mean, symmetry = symmetric(curve)
     point = point_on(mean, edge_lengths="auto", mesh="fixed", **options)
     return point.problem.on(mean, symmetry=symmetry)

@@ -16,7 +16,7 @@ CORNER = np.roll(np.eye(3), 1, axis=0)  # a third of a turn about (1, 1, 1)
 FIFTH = Rotation.from_rotvec(0.4 * np.pi * np.array([0.0, 1.0, 0.5 + 0.5 * np.sqrt(5.0)]) / 1.902113032590307)
 
 
-def about_z(turns: float) -> np.ndarray:
+def about_z(turns):
     return Rotation.from_rotvec([0.0, 0.0, 2.0 * np.pi * turns]).as_matrix()
 
 
@@ -49,7 +49,7 @@ GENERATORS = {
 }
 
 
-def generated(matrices: list[np.ndarray]) -> np.ndarray:
+def generated(matrices):
     found = [np.eye(3)]
     for each in found:  # which grows
         for one in matrices:
@@ -64,13 +64,13 @@ def test_every_kind_of_group_has_its_name(name):
     assert schoenflies(noise * (TURN @ generated(GENERATORS[name]) @ TURN.T)) == name
 
 
-def hidden(curve: Curve) -> Curve:
+def hidden(curve):
     """The same curve elsewhere, with components in another order, beginning elsewhere and run through backwards."""
     parts = [np.roll(part[::-1], 17, axis=0) for part in curve.components[::-1]]
     return Curve.from_components([3.0 * part @ TURN.T + [10.0, -5.0, 2.0] for part in parts])
 
 
-def ellipses(count: int) -> Curve:
+def ellipses(count):
     """The Borromean rings as three ellipses."""
     t = 2.0 * np.pi * np.arange(count) / count
     one = np.stack([2.0 * np.cos(t), np.sin(t), 0.0 * t], axis=1)

@@ -8,7 +8,6 @@ import pytest
 from hard_curves import bent_trefoil
 from mobius_flow.core import Curve, OptionError
 from mobius_flow.core.curve.refine import refine, subdivide
-from mobius_flow.core.descent import Point
 from mobius_flow.core.driver import RelaxOptions
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.energies.barrier import replaced_pairs
@@ -36,7 +35,7 @@ CURVE = pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)
 LIST = pytest.mark.parametrize(("theta", "leaf"), [(0.2, 1), (0.25, 4), (0.5, 8), (0.9, 3)])
 
 
-def multiplicity(blocks: BlockList) -> np.ndarray:
+def multiplicity(blocks):
     """How often each pair of edges is counted, symmetric; shape (n, n)."""
     n = len(blocks.tree.order)
     far, near = np.zeros((n, n)), np.zeros((n, n))
@@ -113,20 +112,20 @@ NAME = pytest.mark.parametrize("name", LARGE)
 
 
 @cache
-def point(name: str) -> Point:
+def point(name):
     options = RelaxOptions(solver="hierarchical", mesh="fixed", vertices=len(LARGE[name]))
     return start_problem(LARGE[name], options).at_curve(LARGE[name])
 
 
 @cache
-def energy(name: str) -> HierarchicalMoebiusEnergy:
+def energy(name):
     """The energy that a run looks at there."""
     curve = point(name).curve
     return HierarchicalMoebiusEnergy(without=replaced_pairs(curve)).frozen_at(curve)
 
 
 @cache
-def true_errors(name: str) -> tuple[float, float]:
+def true_errors(name):
     """Of the energy and of its derivative along the projected gradient."""
     curve = point(name).curve
     value, derivative = energy(name).value_and_derivative(curve)

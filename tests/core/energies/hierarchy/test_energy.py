@@ -15,7 +15,7 @@ from smooth_curves import SMOOTH_CURVES, random_polygon
 from taylor import derivative_slope
 
 
-def fourfold(n: int) -> Curve:
+def fourfold(n):
     """A curve of four dimensions."""
     rotation, _ = np.linalg.qr(np.random.default_rng(1).normal(size=(4, 4)))
     t = 2 * np.pi * np.arange(n) / n
@@ -45,14 +45,14 @@ def lists(monkeypatch):
 CURVE = pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)
 
 
-def with_small_leaves(curve: Curve, theta: float = HierarchicalMoebiusEnergy.theta) -> HierarchicalMoebiusEnergy:
+def with_small_leaves(curve, theta=HierarchicalMoebiusEnergy.theta):
     """The energy with many blocks even on small curves."""
     energy = HierarchicalMoebiusEnergy(BlockList.of(curve, theta, 4))
     assert len(energy.blocks.first) > len(curve) / 4
     return energy
 
 
-def direction_for(curve: Curve) -> np.ndarray:
+def direction_for(curve):
     return np.random.default_rng(11).normal(size=curve.vertices.shape)
 
 
@@ -119,7 +119,7 @@ def test_many_vertices_lose_no_digits():
     assert slope == pytest.approx(limit[1], rel=1e-5), "what the order of the expansions promises, see `theta`"
 
 
-def flat_trefoil() -> Curve:
+def flat_trefoil():
     """A curve with strands nearer than the barrier allows, and with many blocks all the same."""
     curve = torus_trefoil(1200)
     return curve.with_vertices(curve.vertices * [1.0, 1.0, 0.01])

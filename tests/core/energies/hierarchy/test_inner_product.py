@@ -1,11 +1,8 @@
 """Compressed inner products, the sums over pairs that they are made of, and the polynomials of their kernels."""
 
-from collections.abc import Iterator
-
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from mobius_flow.core import Curve
 from mobius_flow.core.curve import refine
 from mobius_flow.core.energies.hierarchy import BlockList
 from mobius_flow.core.energies.hierarchy.polynomials import kernel_derivatives, polynomials
@@ -38,7 +35,7 @@ METRIC = pytest.mark.parametrize("name", COMPRESSED)
 CURVE = pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)
 
 
-def assert_equivalent(name: str, curve: Curve) -> None:
+def assert_equivalent(name, curve):
     """Eigenvalues relative to the exact inner product."""
     eigenvalues = eigvalsh(COMPRESSED[name](curve).dense(), METRICS[name].at(curve).dense())
     assert eigenvalues[0] > 0.8
@@ -132,12 +129,12 @@ SMALL = {
 EACH = pytest.mark.parametrize("curve", SMALL.values(), ids=SMALL)
 
 
-def forms_with_weights(curve: Curve) -> tuple[BlockList, np.ndarray, np.ndarray]:
+def forms_with_weights(curve):
     blocks, rng = BlockList.of(curve, 0.5, 4), np.random.default_rng(19)
     return blocks, rng.uniform(size=len(blocks.near[0])), rng.uniform(size=len(blocks.first))
 
 
-def weighted_pairs(blocks: BlockList, near: np.ndarray, far: np.ndarray) -> Iterator[tuple[int, int, float]]:
+def weighted_pairs(blocks, near, far):
     yield from zip(*blocks.near, near, strict=True)
     for (a, b, c, d), weight in zip(blocks.ranges.T, far, strict=True):
         for i in blocks.tree.order[a:b]:
@@ -145,7 +142,7 @@ def weighted_pairs(blocks: BlockList, near: np.ndarray, far: np.ndarray) -> Iter
                 yield i, j, weight
 
 
-def by_pairs(curve: Curve, pairs: Iterator[tuple[int, int, float]], x: np.ndarray) -> float:
+def by_pairs(curve, pairs, x):
     """Σ w ℓ_I ℓ_J (x_I − x_J)² over ordered pairs."""
     ell = curve.edge_lengths
     return 2 * sum(weight * ell[i] * ell[j] * (x[i] - x[j]) ** 2 for i, j, weight in pairs)

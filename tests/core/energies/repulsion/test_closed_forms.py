@@ -7,7 +7,6 @@ from families import crossed
 from mobius_flow.core import Curve
 from mobius_flow.core.curve.obstacle import Obstacle
 from mobius_flow.core.energies.edge_pairs import change, stepped
-from mobius_flow.core.energies.repulsion.repulsion import Schedule
 from mobius_flow.core.energies.repulsion.simplices import Simplices
 from repulsion_references import edge_integral, potential_by_quadrature, repulsion
 from taylor import taylor_slope
@@ -34,11 +33,11 @@ CORNERS = pytest.mark.parametrize("corners", [TRIANGLE, SEGMENT], ids=["triangle
 ONLY = np.array([0])
 
 
-def simplex(corners: np.ndarray) -> Simplices:
+def simplex(corners):
     return Simplices(np.ascontiguousarray(corners[:, :, None]))
 
 
-def potential(corners: np.ndarray, x: np.ndarray) -> tuple[float, np.ndarray]:
+def potential(corners, x):
     value, gradient = simplex(corners).potential(ONLY, x[:, None, None])
     return value[0, 0], gradient[:, 0, 0]
 
@@ -87,12 +86,12 @@ SHAPES = {
 }
 
 
-def curve_of(start: list[float], end: list[float]) -> Curve:
+def curve_of(start, end):
     """A curve with that edge."""
     return Curve([start, end, [9.0, 9.0, 9.0]])
 
 
-def integrated(obstacle: Obstacle, curve: Curve) -> tuple[float, Schedule]:
+def integrated(obstacle, curve):
     """∫ Φ ds over the first edge, and by what panels."""
     term = repulsion(obstacle).frozen_at(curve)
     return float(2 * np.pi * curve.edge_lengths[0] / term.clearance(curve)[0]), term.schedule

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from mobius_flow.core.curve.obstacle import Obstacle
 from mobius_flow.core.energies.edge_pairs import change, stepped
 from mobius_flow.core.energies.repulsion.repulsion import THETA, Schedule
 from mobius_flow.core.energies.repulsion.simplices import Clusters
@@ -10,7 +9,7 @@ from repulsion_references import repulsion, soup, sphere, wavy
 from taylor import taylor_slope
 
 
-def wires(seed: int, count: int) -> Obstacle:
+def wires(seed, count):
     """Segments all over the surroundings of the unit ball."""
     rng = np.random.default_rng(seed)
     places = rng.normal(size=(count, 1, 3))

@@ -23,7 +23,7 @@ STRIP = Curve([[0.0, 0, H], [1.0, 0, H], [0.5, 0, H + 40.0]])  # an edge along b
 ARCS = Curve.from_components([wavy(20).vertices, wavy(30).vertices + 5.0], [False, True])
 
 
-def over_triangle(gap: float, shape: str = "face") -> Curve:
+def over_triangle(gap, shape="face"):
     """A curve that comes as near as ``gap`` to a face, with an edge along it or a vertex towards it, or to a side."""
     far = [[0.8, 0.4, 0.9], [0.1, 0.5, 1.1], [-0.3, -0.2, 0.8]]
     near = {
@@ -34,7 +34,7 @@ def over_triangle(gap: float, shape: str = "face") -> Curve:
     return Curve([*near, *far])
 
 
-def assert_slopes(term: Repulsion | Objective, curve: Curve, largest: float = 1e-3) -> None:
+def assert_slopes(term, curve, largest=1e-3):
     """Of both derivatives; the second one is symmetric as a matrix too."""
     v = np.random.default_rng(11).normal(size=curve.vertices.shape)
     assert derivative_slope(term, curve, v, largest) == pytest.approx(2, abs=0.05)

@@ -17,7 +17,7 @@ FACTORS = {"3_1#m5_2": [3, 5], "4_1#4_1#L2a1": [2, 4, 4], "8_19": [8]}
 NAMES = ["0_1", "3_1", "m5_2", "8_19", "10_132", "L2a1", "L6a4", "L7n1", "3_1#m4_1"]
 
 
-def messy(name: str, seed: int) -> Diagram:
+def messy(name, seed):
     return next(views(scramble(knot(name, 120), seed, moves=300), 1, seed=seed))
 
 
