@@ -38,13 +38,13 @@ def closed_far_away(curve: Curve, direction: tuple[float, ...] | None = None) ->
             corner = 1.5 * between / np.linalg.norm(between)
             far = middle + (4.0 + k) * radius * np.stack([last, corner, first])
         parts.append(np.concatenate([part, far]))
-    closed = Curve(np.concatenate(parts), Mesh(tuple(map(len, parts))))
+    whole = Curve(np.concatenate(parts), Mesh(tuple(map(len, parts))))
     try:
-        check_embedded(closed)
+        check_embedded(whole)
     except CurveError:  # its place may be on what was added
         sentence = "ways from the ends of components to each other, far out, meet; close them at random instead"
         raise CurveError(sentence) from None
-    return closed
+    return whole
 
 
 @checked

@@ -106,7 +106,6 @@ def grid_drawing(piece: Diagram) -> list[FloatArray]:
     """
     # by darts, 2k along line k and 2k + 1 back; weights by lines
     tails, turns, weights = list[int](), list[int](), list[float]()
-
     cutting = 0.01  # weight of the length of a line that only cuts faces, beside one of the drawing
 
     def line(start: int, end: int, weight: float, turn: int, turn_back: int) -> int:
@@ -172,14 +171,11 @@ def grid_drawing(piece: Diagram) -> list[FloatArray]:
             if other not in heading:
                 heading[other] = way % 4
                 waiting.append(other)
-    places = [
-        _spread(
-            [(tails[d], tails[d ^ 1], weights[d // 2]) for d, way in heading.items() if way == axis],
-            [(tails[d], tails[d ^ 1]) for d, way in heading.items() if way == 1 - axis],
-            nodes,
-        )
-        for axis in (0, 1)
-    ]
+    places = []
+    for axis in (0, 1):
+        along = [(tails[d], tails[d ^ 1], weights[d // 2]) for d, way in heading.items() if way == axis]
+        across = [(tails[d], tails[d ^ 1]) for d, way in heading.items() if way == 1 - axis]
+        places.append(_spread(along, across, nodes))
     return [np.column_stack(places)[path] for path in paths]
 
 

@@ -230,37 +230,24 @@ def fractional_inner_product(
     )
 
 
-_COMPRESSED: Mapping[type, Callable[[Curve, Tolerances | None, float, int], CompressedInnerProduct]] = {
-    MoebiusMetric: moebius_inner_product,
-    FractionalMetric: fractional_inner_product,
-}
+Compress = Callable[[Curve, Tolerances | None, float, int], CompressedInnerProduct]
+_COMPRESS: Mapping[type, Compress] = {MoebiusMetric: moebius_inner_product, FractionalMetric: fractional_inner_product}
 
 
 @dataclass(frozen=True)
 class CompressedMetric:
     """A nonlocal metric by products in O(N log N), midpoint rule."""
 
-    metric: Metric  # the dense one
+    # name, description, extends_penalty, rule: those of the dense one
+    name: str
+    description: str
+    extends_penalty: bool
+    rule: Rule | None
+    compress: Compress
     tolerances: Tolerances = field(default_factory=Tolerances)  # for what is solved with it
     theta: float = 0.5  # separation parameter of blocks
     leaf: int = 4  # edges up to which clusters are not halved
     most_vertices = 200_000  # some 3 GB, and half a minute a step
-
-    @property
-    def name(self) -> str:
-        return self.metric.name
-
-    @property
-    def description(self) -> str:
-        return self.metric.description
-
-    @property
-    def extends_penalty(self) -> bool:
-        return self.metric.extends_penalty
-
-    @property
-    def rule(self) -> Rule | None:
-        return self.metric.rule
 
     def with_rule(self, rule: Rule) -> "CompressedMetric":
         """The metric itself; OptionError if another rule is asked for: there is none."""
@@ -269,12 +256,14 @@ class CompressedMetric:
         return self
 
     def at(self, curve: Curve) -> InnerProduct:
-        return _COMPRESSED[type(self.metric)](curve, self.tolerances, self.theta, self.leaf)
+        return self.compress(curve, self.tolerances, self.theta, self.leaf)
 
 
 def compressed(metric: Metric, tolerances: Tolerances) -> Metric:
     """A metric in its form for many vertices: local ones are already sparse."""
-    return CompressedMetric(metric, tolerances) if type(metric) in _COMPRESSED else metric
+    compress = _COMPRESS.get(type(metric))
+    own = metric.name, metric.description, metric.extends_penalty, metric.rule
+    return metric if compress is None else CompressedMetric(*own, compress, tolerances)
 
 
 def block_count(curve: Curve) -> int:

@@ -8,7 +8,6 @@ from mobius_flow.core.energies.hierarchy import BlockList
 from mobius_flow.core.energies.hierarchy.polynomials import kernel_derivatives, polynomials
 from mobius_flow.core.knots import HARD_UNKNOTS, knot, torus_knot
 from mobius_flow.core.solve.hierarchical import (
-    CompressedMetric,
     PairForms,
     RunningSum,
     fractional_inner_product,
@@ -47,7 +46,7 @@ def assert_equivalent(name, curve):
 def test_a_compressed_product_is_near_the_exact_one_symmetric_and_solved_with(name, curve):
     """It is exact where all pairs are near."""
     expected = METRICS[name].at(curve).dense()
-    found = CompressedMetric(METRICS[name], leaf=len(curve)).at(curve).dense()
+    found = COMPRESSED[name](curve, leaf=len(curve)).dense()
     np.testing.assert_allclose(found, expected, atol=1e-12 * np.abs(expected).max(), rtol=0)
     assert_equivalent(name, curve)
     inner = COMPRESSED[name](curve)
