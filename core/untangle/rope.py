@@ -25,20 +25,13 @@ from ..knots.diagrams.projection import plane_crossings
 from .model import ElasticModel, add_at
 
 
-class ViewCount(NamedTuple):
-    """How many crossings there are in the view, after how many strand moves."""
-
-    crossings: int
-    moves: int
-
-
-@dataclass(frozen=True, eq=False)
-class Legs:
+class Legs(NamedTuple):
     """Motions on one mesh; they start where the previous ones end, except for vertices on straight edges."""
 
     start: Curve  # where they begin, in the user's units
-    path: tuple[FloatArray, ...] = ()  # the vertices at the end of each leg, (n, 3); empty where only the mesh changes
-    seen: ViewCount | None = None  # at the end
+    path: tuple[FloatArray, ...]  # the vertices at the end of each leg, (n, 3); empty where only the mesh changes
+    crossings: int  # in the view, at the end
+    moves: int  # of strands, by then
 
     @property
     def end(self) -> Curve:
@@ -87,7 +80,7 @@ class ElasticRope:
 
     def take(self, crossings: int, moves: int) -> Legs:
         """The motions that have not been taken yet; what is seen at their end comes with them."""
-        legs = Legs(self._start, tuple(self.path), ViewCount(crossings, moves))
+        legs = Legs(self._start, tuple(self.path), crossings, moves)
         self.path, self._start, self._key = [], self.curve, None
         return legs
 

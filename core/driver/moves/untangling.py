@@ -150,8 +150,7 @@ class Untangling(Move):
             except StopIteration as stop:
                 reason: Message = stop.value.reason
                 return refused or reason
-            if (seen := stages[-1].seen) is None:
-                continue
+            seen = stages[-1]
             if least is None or earlier is None:
                 earlier = earlier or StrandMoves(seen.crossings, seen.crossings)
                 least = seen.crossings - 1 if run.options.untangle == "always" else seen.crossings // 2
@@ -159,7 +158,7 @@ class Untangling(Move):
             self._in_vain = Message(in_vain, left=seen.crossings, before=earlier.before)
             if seen.crossings > least:
                 continue
-            end = stages[-1].end
+            end = seen.end
             if lengths.stretched(end):
                 refused = Message("others would stretch the curve between pins")
                 continue

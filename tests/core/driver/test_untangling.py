@@ -1,6 +1,5 @@
 """Strand moves within a run: when they are made, what iterates and reports say of them, and what they must not lose."""
 
-from dataclasses import replace
 from itertools import count, islice
 
 import numpy as np
@@ -16,7 +15,6 @@ from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.driver.run import Run
 from mobius_flow.core.knots import knot, overhand, scramble
 from mobius_flow.core.untangle import Legs, Untangled
-from mobius_flow.core.untangle.rope import ViewCount
 from shapes import regular_polygon
 from solids import plate
 from tasks import proved
@@ -106,12 +104,12 @@ def _cut(monkeypatch, crossings, stop):
     whole = untangling.untangled
 
     def cut(*given):
-        few = False
+        left = crossings + 1
         for stage in whole(*given):
-            if few:
-                yield replace(stage, path=stage.path[:1], seen=None)
+            if left <= crossings:
+                yield stage._replace(path=stage.path[:1], crossings=left)
                 stop()
-            few = few or (stage.seen is not None and stage.seen.crossings <= crossings)
+            left = stage.crossings
             yield stage
 
     monkeypatch.setattr(untangling, "untangled", cut)
@@ -211,8 +209,8 @@ def test_moves_that_leave_more_crossings_than_go_are_in_vain(monkeypatch):
 def test_moves_that_stretch_the_curve_between_pins_are_refused(monkeypatch):
     def far(curve, pins, *_):
         away = 9.0 * curve.length * ~np.isin(np.arange(len(curve)), pins)
-        yield Legs(curve, (), ViewCount(2, 0))
-        yield Legs(curve, (curve.vertices + away[:, None],), ViewCount(1, 1))
+        yield Legs(curve, (), 2, 0)
+        yield Legs(curve, (curve.vertices + away[:, None],), 1, 1)
         return Untangled(1, False, Message("one crossing is left"), 1)
 
     monkeypatch.setattr(untangling, "untangled", far)
