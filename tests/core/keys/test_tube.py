@@ -165,20 +165,25 @@ def crowding(vertices, radius):
     return pdist(points)[squareform(far, checks=False)].min() / (2.0 * radius)
 
 
+@pytest.fixture(scope="module")
+def rope():
+    iterates = []
+    minimize(knot("8_3"), RelaxOptions(radius="keep"), iterates.append)
+    return iterates
+
+
 @pytest.mark.parametrize(
     ("measure", "timing"), [(Measure.LENGTH, None), (Measure.RADIUS, Timing(length=120))], ids=["few", "smooth"]
 )
-def test_a_rope_is_drawn_as_it_is_and_has_room_from_key_to_key(measure, timing):
+def test_a_rope_is_drawn_as_it_is_and_has_room_from_key_to_key(measure, timing, rope):
     """Also where the mesh changes on the way, so that keys have points on edges."""
-    iterates = []
-    minimize(knot("8_3"), RelaxOptions(radius="keep"), iterates.append)
-    motion, _ = recorded(iterates, measure)
+    motion, _ = recorded(rope, measure)
     keys = motion.keys(is_rope, None if timing else 40, timing)
     assert keys.certified
     assert bool(timing) == (keys.kinds[Kind.ADDED] > 20)
     radii = rope_radii(motion.start.mesh, keys)
     lengths = [Curve(key.points.astype(float), motion.start.mesh).length for key in keys.keys]
-    expected = 0.998 * iterates[-1].radius[0] * np.array(lengths) / iterates[0].curve.length
+    expected = 0.998 * rope[-1].radius[0] * np.array(lengths) / rope[0].curve.length
     np.testing.assert_allclose(radii, np.outer(expected, np.ones(motion.start.mesh.size)), rtol=0.01)
     for (a, one), (b, other) in pairwise(zip(keys.keys, radii[:, 0], strict=True)):
         for t in (0.0, 0.5):
