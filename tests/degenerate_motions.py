@@ -3,8 +3,6 @@
 Coordinates are small whole numbers or dyadic fractions, so two segments that miss each other do so clearly.
 """
 
-from collections.abc import Callable
-
 import numpy as np
 import numpy.typing as npt
 
@@ -14,19 +12,8 @@ Rng = np.random.Generator
 
 END = 2.0**-20
 # Where roots are told apart: the ends and the halvings of (−2⁻²⁰, 1], and numbers just outside [0, 1]
-TIMES = (
-    -END,
-    1.0,
-    0.5 - END / 2,
-    0.25 - 3 * END / 4,
-    0.75 - END / 4,
-    0.0,
-    0.5,
-    1 + END,
-    -(2.0**-30),
-    1 + 2.0**-30,
-    -0.5,
-)
+HALVINGS = (-END, 1.0, 0.5 - END / 2, 0.25 - 3 * END / 4, 0.75 - END / 4)
+TIMES = (*HALVINGS, 0.0, 0.5, 1 + END, -(2.0**-30), 1 + 2.0**-30, -0.5)
 
 
 def _whole(rng: Rng, *shape: int, size: int = 4) -> Array:
@@ -162,18 +149,8 @@ def standing(rng: Rng) -> Motion:
     return start, end
 
 
-KINDS: tuple[Callable[[Rng], Motion], ...] = (
-    collinear_once,
-    coplanar_once,
-    one_point_once,
-    ends_at,
-    always_coplanar,
-    always_collinear,
-    parallel,
-    points,
-    lattice,
-    standing,
-)
+ALWAYS = (always_coplanar, always_collinear, parallel, points, lattice, standing)
+KINDS = (collinear_once, coplanar_once, one_point_once, ends_at, *ALWAYS)
 
 ARCS = 32  # more than a tree has roots: boxes above the leaves hold two edges each
 

@@ -3,7 +3,7 @@
 A motion has the rows x₀, x₁ of the segment and y₀, y₁, y₂ of the triangle, which are the same at both times.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from itertools import combinations
 
@@ -141,19 +141,7 @@ def glide(rng: Rng) -> Motion:
     return still(start @ turn, end @ turn)
 
 
-KINDS: tuple[Callable[[Rng], Motion], ...] = (
-    gaussian,
-    lattice,
-    in_plane,
-    inside,
-    graze_face,
-    graze_edge,
-    needle,
-    sizes_apart,
-    slow,
-    through,
-    glide,
-)
+KINDS = (gaussian, lattice, in_plane, inside, graze_face, graze_edge, needle, sizes_apart, slow, through, glide)
 
 
 def placed(rng: Rng, motion: Motion) -> Motion:

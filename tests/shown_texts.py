@@ -10,19 +10,9 @@ from mobius_flow.core.knots import KNOTS
 
 ADDON = Path(registration.__file__).parent
 CORE = ADDON.parent / "core"
-_MARKS = {
-    "_refused": 1,
-    "Condition": 0,
-    "Message": 0,
-    "adding": 0,
-    "iface_": 0,
-    "rpt_": 0,
-    "sentence": 2,
-    "stalled": 0,
-    "stalling": 0,
-    "tip_": 0,
-    "value": 1,
-}  # what is called with a text, and as which argument
+# what is called with a text, and as which argument
+_MARKS = dict.fromkeys(["Condition", "Message", "adding", "iface_", "rpt_", "stalled", "stalling", "tip_"], 0)
+_MARKS |= {"_refused": 1, "sentence": 2, "value": 1}
 _SAYS = {"report": 2, "poll_message_set": 1, "Refusal": 1}  # what must be told marked texts, by its arguments
 _DRAWS = {"invoke_confirm", "label", "menu", "operator", "prop", "prop_enum"}  # what Blender draws
 _WORDS = {"message", "text", "title"}  # what it is told to draw, by these names

@@ -28,15 +28,8 @@ OUTPUTS = {
 }
 FILES = [*OUTPUTS][:4]
 ALL = [
-    "relax",
-    "trefoil.txt",
-    "place/o.txt",
-    "--report",
-    "place/r.json",
-    "--trajectory",
-    "place/t.npz",
+    *["relax", "trefoil.txt", "place/o.txt", "--report", "place/r.json", "--trajectory", "place/t.npz", "--quiet"],
     *SHORT,
-    "--quiet",
 ]
 
 pytestmark = pytest.mark.usefixtures("room")
