@@ -40,6 +40,7 @@ NONSENSE = [5, -1, 10**400, 2.5, float("nan"), 1j, None, True, "x", "", b"x", []
 NONSENSE += [np.zeros((2, 2)), np.array("x")]
 SHORT = RelaxOptions(max_iterations=0, vertices=20)
 TREFOIL = torus_trefoil(20)
+ARC = Curve([[0.0, 0.0, 0.0], [1.0, 0.1, 0.0], [2.0, 0.0, 0.0]], Mesh((3,), (False,)))
 PLANAR = Curve(torus_trefoil(20).vertices[:, :2])
 START = next(relax(TREFOIL, SHORT))
 WALL = Obstacle([[9.0, 0.0, 0.0], [9.0, 1.0, 0.0], [9.0, 0.0, 1.0]], [[0, 1, 2]], "wall")
@@ -76,16 +77,9 @@ FINE: dict[str, tuple[Callable[..., object], dict[str, object]]] = {
     "morph": (core.morph, {"a": TREFOIL, "b": TREFOIL, "options": SHORT, "callback": lambda *_: None}),
     "separate": (
         core.separate,
-        {
-            "curve": TREFOIL,
-            "radius": 0.01,
-            "over": "z",
-            "lengths": "keep",
-            "free_ends": True,
-            "callback": lambda *_: None,
-        },
+        {"curve": ARC, "radius": 0.01, "over": "z", "lengths": "keep", "free_ends": True, "callback": lambda *_: None},
     ),
-    "tighten": (core.tighten, {"curve": TREFOIL, "vertices": 100, "starts": 1, "seed": 0, "callback": lambda *_: None}),
+    "tighten": (core.tighten, {"curve": ARC, "vertices": 100, "starts": 1, "seed": 0, "callback": lambda *_: None}),
     "audit": (
         core.audit,
         {

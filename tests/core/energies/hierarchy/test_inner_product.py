@@ -7,12 +7,7 @@ from mobius_flow.core.curve import refine
 from mobius_flow.core.energies.hierarchy import BlockList
 from mobius_flow.core.energies.hierarchy.polynomials import kernel_derivatives, polynomials
 from mobius_flow.core.knots import HARD_UNKNOTS, knot, torus_knot
-from mobius_flow.core.solve.hierarchical import (
-    PairForms,
-    RunningSum,
-    fractional_inner_product,
-    moebius_inner_product,
-)
+from mobius_flow.core.solve.hierarchical import PairForms, RunningSum, fractional_inner_product, moebius_inner_product
 from mobius_flow.core.solve.metrics import METRICS, DenseInnerProduct, SparseInnerProduct
 from scipy.linalg import eigvalsh
 from shapes import chain_of_rings, graded_trefoil, hopf_link, opened, regular_polygon, torus_trefoil
