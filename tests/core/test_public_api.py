@@ -179,7 +179,7 @@ def _end(function, arguments):
 
 
 @checked
-def bake(cakes, heat=180.0, shelf=None, *names, fan=list):
+def bake(cakes: int, heat: float = 180.0, shelf: str | None = None, *names: str, fan: Callable[[], None] = list) -> int:
     """Any function."""
     return cakes
 
