@@ -100,17 +100,11 @@ class Effort:
         Directions to look from: a curve of many crossings simplifies better in some.
     work
         Crossings visited while views are simplified, all views together: some ten seconds.
-    doubled
-        Crossings of the largest knots compared by the polynomials of their doubles.
-    names
-        Longest list of possible names.
     """
 
     vertices: int = number(20_000)
     views: int = number(12)
     work: int = number(600_000)
-    doubled: int = number(14)
-    names: int = number(16)
 
 
 DEFAULT_EFFORT = Effort()
@@ -209,15 +203,15 @@ def knot_type(curve: Curve, effort: Effort = DEFAULT_EFFORT) -> KnotType:
     if best is None:
         told = f"not identified: {diagram.crossings:,} crossings are left after as much simplifying as is allowed"
         return KnotType((), False, None, (), told)
-    return type_of_diagram(shuffled_down(best, _is_enough), effort)
+    return type_of_diagram(shuffled_down(best, _is_enough))
 
 
-def type_of_diagram(diagram: Diagram, effort: Effort = DEFAULT_EFFORT) -> KnotType:
+def type_of_diagram(diagram: Diagram) -> KnotType:
     """Identify the type of a simplified diagram."""
-    pieces = [[_factor_type(factor, effort) for factor in factors(piece)] for piece in diagram.pieces()]
+    pieces = [[_factor_type(factor) for factor in factors(piece)] for piece in diagram.pieces()]
     every = [each for piece in pieces for each in piece]
     names: set[str] = set()
-    if 0 < prod(len(each.names) for each in every) <= effort.names:
+    if 0 < prod(len(each.names) for each in every) <= 16:  # longer lists of possible names tell nobody anything
         chosen = (product(*(each.names for each in piece)) for piece in pieces)
         knotted = [[[name for name in each if name != "0_1"] for each in ways] for ways in chosen]
         sums = [["#".join(sorted(each, key=_order)) or "0_1" for each in ways] for ways in knotted]
@@ -244,7 +238,7 @@ def _order(name: str) -> tuple[int, str]:
     return sum(map(crossing_number, name.split(" ⊔ "))), name
 
 
-def _factor_type(factor: Diagram, effort: Effort) -> KnotType:
+def _factor_type(factor: Diagram) -> KnotType:
     """The type of a factor, by the table."""
     if not factor.crossings:
         return KnotType(("0_1",), True, factor, (NO_CROSSINGS,))
@@ -273,7 +267,8 @@ def _factor_type(factor: Diagram, effort: Effort) -> KnotType:
         compare(alexander, ALEXANDER)
         if len(names) > 1:
             compare(signature, SIGNATURE)
-        if names and factor.crossings <= effort.doubled and (len(names) > 1 or factor.crossings > KNOTS_TO):
+        # doubles have four times as many crossings
+        if names and factor.crossings <= 14 and (len(names) > 1 or factor.crossings > KNOTS_TO):
             compare(doubled_bracket, DOUBLED)
         if names and factor.crossings > KNOTS_TO:
             compare(floer, FLOER)

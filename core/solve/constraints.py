@@ -46,14 +46,6 @@ class Barycenters:
         each = [np.sum(moments * own, axis=1) for own in self._memberships(curve.mesh)]
         return replace(self, target=np.concatenate([np.empty(0), *each]))
 
-    def scaled(self, factor: float) -> "Barycenters":
-        """Barycenters stay where they are: Σ ℓ_I m_I is a length times a place, and lengths grow."""
-        return replace(self, target=factor * self.target)
-
-    def residual(self, curve: Curve) -> FloatArray:
-        """How far Σ ℓ_I m_I is from the targets; shape (p·m,)."""
-        return self.on(curve).target - self.target
-
     def error(self, lengths: FloatArray, mesh: Mesh, residual: FloatArray) -> float:
         """The largest displacement of a barycenter; of Σ ℓ_I m_I itself the rounding may exceed any tolerance."""
         totals = [own @ lengths for own in self._memberships(mesh)]
@@ -97,10 +89,11 @@ class Constraints:
         return cls(curve.edge_lengths, held, pins)
 
     def scaled(self, factor: float, mesh: Mesh) -> "Constraints":
-        """All lengths times a factor, but for edges between two pins, and the barycenters to match."""
-        lengths, free = self.lengths.copy(), free_edges(mesh, self.pins.vertices)
+        """All lengths times a factor, but for edges between two pins; barycenters stay where they are."""
+        lengths, free, held = self.lengths.copy(), free_edges(mesh, self.pins.vertices), self.barycenters
         lengths[free] *= factor
-        return replace(self, lengths=lengths, barycenters=self.barycenters.scaled(factor), grown=factor * self.grown)
+        held = replace(held, target=factor * held.target)  # Σ ℓ_I m_I is a length times a place
+        return replace(self, lengths=lengths, barycenters=held, grown=factor * self.grown)
 
     def derivative(self, curve: Curve) -> "ConstraintDerivative":
         edges, held = free_edges(curve.mesh, self.pins.vertices), self.barycenters
@@ -109,8 +102,8 @@ class Constraints:
     def residual(self, curve: Curve) -> FloatArray:
         """Φ(P): the logarithmic errors of r lengths, then the k rows of barycenters; shape (r + k,)."""
         stretch = np.log(curve.edge_lengths / self.lengths)
-        rows = free_edges(curve.mesh, self.pins.vertices)
-        return np.concatenate([stretch[rows], self.barycenters.residual(curve)])
+        rows, held = free_edges(curve.mesh, self.pins.vertices), self.barycenters
+        return np.concatenate([stretch[rows], held.on(curve).target - held.target])
 
     def error(self, mesh: Mesh, residual: FloatArray) -> float:
         """The largest relative error of a length, or what displacements compare to it, that a residual means."""

@@ -94,8 +94,16 @@ def plane_crossings(mesh: Mesh, points: FloatArray, beyond: float = 0.0) -> Plan
     start, end = points[mesh.tails, :2], points[mesh.heads, :2]
     edge = end - start
     longer = np.abs(beyond * edge)
-    low, high = np.minimum(start, end) - longer, np.maximum(start, end) + longer
-    i, j = meeting_boxes(low, high, low, high)
+    low, high = (np.minimum(start, end) - longer).T.copy(), (np.maximum(start, end) + longer).T.copy()
+    pairs = [(np.empty(0, dtype=np.intp),) * 2]
+    for first in range(0, mesh.edges, 64):  # edges near each other: only what meets the box around them is looked at
+        a, b = low[:, first : first + 64], high[:, first : first + 64]
+        near = np.arange(first + 1, mesh.edges)
+        for bottom, top, p, q in zip(low, high, a, b, strict=True):
+            near = near[(bottom[near] <= q.max()) & (top[near] >= p.min())]
+        i, j = np.nonzero(((low[:, None, near] <= b[:, :, None]) & (high[:, None, near] >= a[:, :, None])).all(axis=0))
+        pairs.append((first + i, near[j]))
+    i, j = map(np.concatenate, zip(*pairs, strict=True))
     later = (j > i) & (mesh.heads[i] != mesh.tails[j]) & (mesh.heads[j] != mesh.tails[i])
     i, j = i[later], j[later]
     apart, turn = start[j] - start[i], _cross(edge[i], edge[j])
@@ -107,26 +115,3 @@ def plane_crossings(mesh: Mesh, points: FloatArray, beyond: float = 0.0) -> Plan
 
 def _cross(u: FloatArray, v: FloatArray) -> FloatArray:
     return np.asarray(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
-
-
-def meeting_boxes(
-    low: FloatArray, high: FloatArray, others_low: FloatArray, others_high: FloatArray
-) -> tuple[IntArray, IntArray]:
-    """All pairs of boxes of two lists, given by their lowest and highest corners, that meet, in order.
-
-    Boxes that follow each other should be near each other: only what meets the box around some of them is looked at.
-    """
-    found = [(np.empty(0, dtype=np.intp),) * 2]
-    bottoms, tops = np.ascontiguousarray(others_low.T), np.ascontiguousarray(others_high.T)
-    for first in range(0, len(low), 64):
-        a, b = low[first : first + 64].T, high[first : first + 64].T
-        near = np.arange(len(others_low))
-        for bottom, top, p, q in zip(bottoms, tops, a, b, strict=True):
-            near = near[(bottom[near] <= q.max()) & (top[near] >= p.min())]
-        meets = np.ones((a.shape[1], len(near)), dtype=bool)
-        for bottom, top, p, q in zip(bottoms, tops, a, b, strict=True):
-            meets &= (bottom[near] <= q[:, None]) & (top[near] >= p[:, None])
-        i, j = np.nonzero(meets)
-        found.append((first + i, near[j]))
-    i, j = map(np.concatenate, zip(*found, strict=True))
-    return i, j

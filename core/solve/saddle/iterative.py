@@ -133,10 +133,6 @@ class ConstraintPreconditioner:
         multipliers = self._solve_schur(self.constraints.apply(free), stopping(self._near_inverse, enough))
         return self._model.solve(r - self.constraints.apply_transpose(multipliers)), multipliers
 
-    def square(self, r: FloatArray) -> float:
-        """rᵀ M⁻¹ r."""
-        return float(np.sum(r * self._model.solve(r)))
-
     def shortest(self, xi: FloatArray, tolerance: float) -> FloatArray:
         """The u of least norm in M with C u = ξ, up to a relative error; shapes (rows of C,) -> (n, m)."""
         multipliers = self._solve_schur(xi, relative(self._near_inverse, tolerance))
@@ -234,7 +230,7 @@ class IterativeTangentSpace(TangentSpace):
         """
         c, preconditioner = self.constraints, self._preconditioner
         multipliers = np.zeros(c.count)
-        negligible = Tolerances.rounding**2 * preconditioner.square(r)
+        negligible = Tolerances.rounding**2 * float(np.sum(r * self._model.solve(r)))
 
         def precondition(r: FloatArray, decreases: list[float]) -> tuple[FloatArray, FloatArray] | None:
             nonlocal multipliers
