@@ -131,7 +131,7 @@ class FarField:
         """The moments of all clusters, from the leaves up (P2M and M2M); shape (clusters, rows)."""
         table, moments = self._table, np.zeros((self._tree.size, self._by_center.start))
         for own, positions, leaf_of in self._leaves():
-            power = self._exponentials(self._edges.m[positions] - self._centers[leaf_of])
+            power = table.exponentials((self._edges.m[positions] - self._centers[leaf_of]).T, self._order)
             both = self._edges.ell[positions] * power, table.multiply_linear(self._edges.e[positions].T, power)
             start = self._tree.start[own] - self._tree.start[own[0]]
             moments[own] = np.add.reduceat(np.concatenate(both), start, axis=1).T
@@ -159,7 +159,7 @@ class FarField:
         sums = EdgeDerivatives(np.zeros((n, m)), np.zeros((n, m)), np.zeros(n))
         for _, positions, leaf_of in self._leaves():
             own, ell, e = _rows_of(local, leaf_of), self._edges.ell[positions], self._edges.e[positions]
-            power = self._exponentials(self._edges.m[positions] - self._centers[leaf_of])
+            power = self._table.exponentials((self._edges.m[positions] - self._centers[leaf_of]).T, self._order)
             by_length = contract(own[of_lengths], power, range(2), range(p + 1))
             by_edge = contract(own[of_edges], power, range(1, 3), range(1, p + 2))
             linear = np.concatenate([np.zeros((1, len(e))), e.T])
@@ -170,13 +170,9 @@ class FarField:
             sums.by_length[positions] = by_length[0]
         return sums
 
-    def _exponentials(self, h: FloatArray) -> FloatArray:
-        """exp⟨h, ξ⟩ up to degree p; shapes (k, m) -> (monomials, k)."""
-        return self._table.exponentials(h.T, self._order)
-
     def _shifts(self, parents: IntArray, children: IntArray) -> FloatArray:
         """exp⟨h, ξ⟩ for h from the parents' centers to the children's; shape (monomials, k)."""
-        return self._exponentials(self._centers[children] - self._centers[parents])
+        return self._table.exponentials((self._centers[children] - self._centers[parents]).T, self._order)
 
     def _leaves(self) -> Iterator[tuple[IntArray, IntArray, IntArray]]:
         """Some leaves at a time, their edges, and the leaf of each of these."""

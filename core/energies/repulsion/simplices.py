@@ -21,9 +21,6 @@ from ..barrier import CONTACT
 from ..clusters import ClusterTree, ranges
 from ..edge_pairs import arctan2
 
-Form = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
-"""N², D, ∇N² and ∇D."""
-
 _VALUE = [(-1.0) ** k / (2 * k + 1) for k in range(6)]  # of D g in powers of N²/D²
 _SLOPE = [-((-1.0) ** k) * (k + 1) / (2 * k + 3) for k in range(6)]  # of D³ ∂g/∂N²
 
@@ -67,8 +64,23 @@ class Simplices:
     def potential(self, index: IntArray, at: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Φ and ∇Φ of the simplices ``index``, shape (k,), each at its own points, shape (3, k, points)."""
         seen = self.corners[:, :, index, None] - at
-        form = _triangle_form(seen, self.normals[:, index, None]) if self.are_triangles else _segment_form(*seen)
-        square, d, slope_of_square, slope_of_d = form
+        # N², D and their gradients; at contact N and lengths are what they are 10⁻¹⁶ of the simplex's size away
+        if self.are_triangles:  # N = ⟨a, b × c⟩ and D = |a||b||c| + ⟨a, b⟩|c| + ⟨b, c⟩|a| + ⟨c, a⟩|b|
+            (a, b, c), normal = seen, self.normals[:, index, None]  # twice the area long
+            n, width = dot(normal, a), np.sqrt(norm(normal))
+            ra, rb, rc = (np.maximum(norm(corner), CONTACT * width) for corner in seen)
+            bc, ca, ab = dot(b, c), dot(c, a), dot(a, b)
+            slope_of_d = a * ((rb * rc + bc) / ra + rb + rc)
+            slope_of_d += b * ((rc * ra + ca) / rb + rc + ra)
+            slope_of_d += c * ((ra * rb + ab) / rc + ra + rb)
+            square, d = np.maximum(n * n, (CONTACT * width**3) ** 2), ra * rb * rc + ab * rc + bc * ra + ca * rb
+            slope_of_square, slope_of_d = -2.0 * n * normal, -slope_of_d
+        else:  # N = |a × b| and D = ⟨a, b⟩
+            a, b = seen
+            side = b - a
+            normal = cross(a, side)
+            square, d = np.maximum(dot(normal, normal), (CONTACT * dot(side, side)) ** 2), dot(a, b)
+            slope_of_square, slope_of_d = -2.0 * cross(side, normal), -(a + b)
         # g = atan2(N, D)/N, ∂g/∂N² = (D/(N² + D²) − g)/(2N²) and ∂g/∂D = −1/(N² + D²), from N² > 0 and D
         n, inverse = np.sqrt(square), 1.0 / (square + d * d)
         value = arctan2(n, d) / n
@@ -101,30 +113,6 @@ class Simplices:
             above = np.all([dot(normal, cross(side, a)) > 0.0 for side, a in zip(sides, seen, strict=True)], axis=0)
             square = np.where(above, np.minimum(square, pole), square)
         return np.asarray(np.sqrt(square))
-
-
-def _segment_form(a: FloatArray, b: FloatArray) -> Form:
-    """N = |a × b| and D = ⟨a, b⟩, for ends a and b seen from x; at contact N is what it is 10⁻¹⁶ of the side away."""
-    side = b - a
-    normal = cross(a, side)
-    square = np.maximum(dot(normal, normal), (CONTACT * dot(side, side)) ** 2)
-    return square, dot(a, b), -2.0 * cross(side, normal), -(a + b)
-
-
-def _triangle_form(corners: FloatArray, normal: FloatArray) -> Form:
-    """N = ⟨a, b × c⟩ and D = |a||b||c| + ⟨a, b⟩|c| + ⟨b, c⟩|a| + ⟨c, a⟩|b|, for corners a, b and c seen from x.
-
-    ``normal`` is twice the area long; at contact N and lengths are what they are 10⁻¹⁶ of the triangle's size away.
-    """
-    a, b, c = corners
-    n, width = dot(normal, a), np.sqrt(norm(normal))
-    ra, rb, rc = (np.maximum(norm(corner), CONTACT * width) for corner in corners)
-    bc, ca, ab = dot(b, c), dot(c, a), dot(a, b)
-    slope = a * ((rb * rc + bc) / ra + rb + rc)
-    slope += b * ((rc * ra + ca) / rb + rc + ra)
-    slope += c * ((ra * rb + ab) / rc + ra + rb)
-    square = np.maximum(n * n, (CONTACT * width**3) ** 2)
-    return square, ra * rb * rc + ab * rc + bc * ra + ca * rb, -2.0 * n * normal, -slope
 
 
 def _quotient(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
