@@ -105,70 +105,58 @@ class FarField:
                 starts = np.flatnonzero(np.diff(clusters[order], prepend=-1))
                 values = np.take(np.concatenate([*parts, by_center]), order, axis=1).T
                 total[clusters[order[starts]]] += np.add.reduceat(values, starts)
-        by_second *= self._signs
-        by_second += by_first
-        return value, self._downward(by_second)
-
-    def _chunks(
-        self,
-    ) -> Iterator[tuple[IntArray, IntArray, tuple[FloatArray, FloatArray], list[FloatArray], list[FloatArray]]]:
-        """Some blocks' two clusters, both kernels' derivatives there, and both moments of both clusters (M2L)."""
-        moments = self._upward()
-        signed = moments * self._signs[: self._by_center.start]
-        for start in range(0, len(self._blocks.first), CHUNK):
-            first, second = (side[start : start + CHUNK] for side in (self._blocks.first, self._blocks.second))
-            d = np.ascontiguousarray((self._centers[first] - self._centers[second]).T)
-            own, other = _rows_of(moments, first), _rows_of(signed, second)
-            kernels = kernel_derivatives(self._table, d, self._order + 1)
-            yield first, second, kernels, [own[rows] for rows in self._rows], [other[rows] for rows in self._rows]
-
-    def _by_moments(self, k: int, kernel: FloatArray, other: FloatArray) -> FloatArray:
-        """A kernel's derivatives with respect to one cluster's moments, from the other's; shape (monomials, k)."""
-        degrees, totals = range(k, k + self._order + 1), range(2 * k, 2 * k + self._order + 1)
-        return self._table.contract(kernel, other, degrees, totals)
-
-    def _upward(self) -> FloatArray:
-        """The moments of all clusters, from the leaves up (P2M and M2M); shape (clusters, rows)."""
-        table, moments = self._table, np.zeros((self._tree.size, self._by_center.start))
-        for own, positions, leaf_of in self._leaves():
-            power = table.exponentials((self._edges.m[positions] - self._centers[leaf_of]).T, self._order)
-            both = self._edges.ell[positions] * power, table.multiply_linear(self._edges.e[positions].T, power)
-            start = self._tree.start[own] - self._tree.start[own[0]]
-            moments[own] = np.add.reduceat(np.concatenate(both), start, axis=1).T
-        for parents, children in _links(self._tree.upward()):
-            shift, theirs = self._shifts(parents, children), _rows_of(moments, children)
-            moved = [table.multiply(theirs[rows], shift, self._order + k) for k, rows in enumerate(self._rows)]
-            moments[parents] += np.concatenate(moved).T
-        return moments
-
-    def _downward(self, local: FloatArray) -> EdgeDerivatives:
-        """Derivatives by edge vectors, midpoints and lengths, from the clusters' down (L2L and L2P).
-
-        ``local``, shape (clusters, rows), are those with respect to the moments at fixed centers and to the centers;
-        it is overwritten.
-        """
-        p, (of_lengths, of_edges), contract = self._order, self._rows, self._table.contract
+        # by the moments at fixed centers, and by the centers; shape (clusters, rows)
+        local = by_first + by_second * self._signs
         local[:, self._by_center] /= self._counts[:, None]
+        # from the clusters' down to those by edge vectors, midpoints and lengths (L2L and L2P)
+        p, (of_lengths, of_edges), (n, m) = self._order, self._rows, self._edges.tau.shape
         for parents, children in _links(self._tree.downward()):
             theirs, shift, moved = _rows_of(local, parents), self._shifts(parents, children), []
             for k, rows in enumerate(self._rows):
                 degrees = range(k, p + k + 1)
                 moved.append(contract(theirs[rows], shift, degrees, degrees))
             local[children] += np.concatenate([*moved, theirs[self._by_center]]).T
-        n, m = self._edges.tau.shape
         sums = EdgeDerivatives(np.zeros((n, m)), np.zeros((n, m)), np.zeros(n))
         for _, positions, leaf_of in self._leaves():
-            own, ell, e = _rows_of(local, leaf_of), self._edges.ell[positions], self._edges.e[positions]
-            power = self._table.exponentials((self._edges.m[positions] - self._centers[leaf_of]).T, self._order)
-            by_length = contract(own[of_lengths], power, range(2), range(p + 1))
-            by_edge = contract(own[of_edges], power, range(1, 3), range(1, p + 2))
+            at, ell, e = _rows_of(local, leaf_of), self._edges.ell[positions], self._edges.e[positions]
+            power = self._table.exponentials((self._edges.m[positions] - self._centers[leaf_of]).T, p)
+            by_length = contract(at[of_lengths], power, range(2), range(p + 1))
+            by_edge = contract(at[of_edges], power, range(1, 3), range(1, p + 2))
             linear = np.concatenate([np.zeros((1, len(e))), e.T])
-            by_midpoint = ell * by_length[1:] + own[self._by_center]
+            by_midpoint = ell * by_length[1:] + at[self._by_center]
             by_midpoint += contract(by_edge, linear, range(1, 2), range(2, 3))[1:]
             sums.by_edge[positions] = by_edge[1 : m + 1].T
             sums.by_midpoint[positions] = by_midpoint.T
             sums.by_length[positions] = by_length[0]
-        return sums
+        return value, sums
+
+    def _chunks(
+        self,
+    ) -> Iterator[tuple[IntArray, IntArray, tuple[FloatArray, FloatArray], list[FloatArray], list[FloatArray]]]:
+        """Some blocks' two clusters, both kernels' derivatives there, and both moments of both clusters (M2L)."""
+        # the moments of all clusters, from the leaves up (P2M and M2M); shape (clusters, rows)
+        table, moments = self._table, np.zeros((self._tree.size, self._by_center.start))
+        for leaves, positions, leaf_of in self._leaves():
+            power = table.exponentials((self._edges.m[positions] - self._centers[leaf_of]).T, self._order)
+            both = self._edges.ell[positions] * power, table.multiply_linear(self._edges.e[positions].T, power)
+            begin = self._tree.start[leaves] - self._tree.start[leaves[0]]
+            moments[leaves] = np.add.reduceat(np.concatenate(both), begin, axis=1).T
+        for parents, children in _links(self._tree.upward()):
+            shift, theirs = self._shifts(parents, children), _rows_of(moments, children)
+            moved = [table.multiply(theirs[rows], shift, self._order + k) for k, rows in enumerate(self._rows)]
+            moments[parents] += np.concatenate(moved).T
+        signed = moments * self._signs[: self._by_center.start]
+        for start in range(0, len(self._blocks.first), CHUNK):
+            first, second = (side[start : start + CHUNK] for side in (self._blocks.first, self._blocks.second))
+            d = np.ascontiguousarray((self._centers[first] - self._centers[second]).T)
+            own, other = _rows_of(moments, first), _rows_of(signed, second)
+            kernels = kernel_derivatives(table, d, self._order + 1)
+            yield first, second, kernels, [own[rows] for rows in self._rows], [other[rows] for rows in self._rows]
+
+    def _by_moments(self, k: int, kernel: FloatArray, other: FloatArray) -> FloatArray:
+        """A kernel's derivatives with respect to one cluster's moments, from the other's; shape (monomials, k)."""
+        degrees, totals = range(k, k + self._order + 1), range(2 * k, 2 * k + self._order + 1)
+        return self._table.contract(kernel, other, degrees, totals)
 
     def _shifts(self, parents: IntArray, children: IntArray) -> FloatArray:
         """exp⟨h, ξ⟩ for h from the parents' centers to the children's; shape (monomials, k)."""
