@@ -18,7 +18,6 @@ def closed_far_away(curve: Curve, direction: tuple[float, ...] | None = None) ->
     arcs whose ends are deep inside, it depends on where they leave, as with every closure.  Raises CurveError if the
     curve touches itself, or would where it is closed.
     """
-    check_embedded(curve)
     middle = curve.vertices.mean(axis=0)
     radius = float(np.linalg.norm(curve.vertices - middle, axis=1).max())
     parts = []
@@ -41,7 +40,8 @@ def closed_far_away(curve: Curve, direction: tuple[float, ...] | None = None) ->
     whole = Curve(np.concatenate(parts), Mesh(tuple(map(len, parts))))
     try:
         check_embedded(whole)
-    except CurveError:  # its place may be on what was added
+    except CurveError:
+        check_embedded(curve)
         sentence = "ways from the ends of components to each other, far out, meet; close them at random instead"
         raise CurveError(sentence) from None
     return whole

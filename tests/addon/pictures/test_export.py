@@ -72,6 +72,9 @@ def test_a_scene_plays_the_relaxation_in_its_place_and_size(tmp_path, scale, shi
     assert export.write_blend(tmp_path / "a.blend", iterates)
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "a.blend"))
     obj, scene = bpy.data.objects["Curve"], bpy.context.scene
+    radii = {point.radius for key in obj.data.shape_keys.key_blocks for point in key.data}
+    thick = obj.data.bevel_depth * obj.matrix_world.to_scale().x
+    assert (radii, thick) == ({1.0}, pytest.approx(iterates[-1].radius[0], rel=0.01)), "it is the rope"
     assert scene.camera
     assert obj.data.materials
     obj.data.bevel_depth = 0
