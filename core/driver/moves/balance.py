@@ -13,10 +13,12 @@ a similarity.
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from itertools import product
 
 import numpy as np
 
 from ...base.types import FloatArray
+from ...collision import thickness
 from ...collision.motion import walk
 from ...curve import Curve, arc_lengths, bending, bending_and_derivative, cubic_spline, sample_parameters
 from ...descent import Leg, Point, Problem, Step, leg
@@ -107,8 +109,7 @@ class Balance(Move):
     def way(self, point: Point) -> tuple[Step, ...]:
         """Proved steps to the reachable Möbius image of least bending, in its own problem; empty if none pays."""
         images = MoebiusImages(point.curve, point.problem.constraints.lengths)
-        # a rope that only keeps its thickness is over: what bends less has strands that are nearer
-        own = point.problem.as_rope(None) if self.run.options.radius == "keep" else point.problem
+        keeps, radius = self.run.options.radius == "keep", point.problem.radius
         # also less than the identity's image: a decrease by smoothing alone is no gain, as the flow would undo it
         still = images.at(np.eye(point.curve.dimension + 1)[0])
         enough = (1.0 - self.gain) * min(bending(point.curve), bending(still))
@@ -118,13 +119,17 @@ class Balance(Move):
             if bending(image) > enough or not symmetry.fixes(q[1:]):
                 continue
             # the same problem for the image: the target lengths of each component add up to its length there
+            ropes = [radius]
+            if keeps and radius is not None:
+                # it gives way, as what bends less has strands that are nearer, or is over where strands move too near
+                ropes = [np.minimum(radius, 0.9 * thickness(image) * point.problem.units.scale), None]
             constraints = point.problem.constraints
             lengths = constraints.lengths.copy()
             for part in image.mesh.slices:
                 lengths[part] *= image.edge_lengths[part].sum() / lengths[part].sum()
             held = replace(constraints, lengths=lengths, barycenters=constraints.barycenters.on(image))
-            problem = replace(own, constraints=held)
-            for end in (q, -q):  # the same map, with the pole coming from either side
+            for rope, end in product(ropes, (q, -q)):  # the same map, with the pole coming from either side
+                problem = replace(point.problem.as_rope(rope), constraints=held)
                 if way := self._way(point, images, end, problem):
                     return way
         return ()

@@ -5,6 +5,7 @@ import itertools
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, Hand, MoebiusEnergy, RelaxOptions, Status, minimize, relax
+from mobius_flow.core.collision import thickness
 from mobius_flow.core.curve.measures import bending
 from mobius_flow.core.driver.moves import balance
 from mobius_flow.core.driver.moves.balance import CUT_OFF, Balance, MoebiusImages
@@ -33,6 +34,11 @@ def run_at(start):
 
 def way_to_balance(start):
     return Balance(run_at(start)).way(start)
+
+
+def rope_of(at):
+    """Nine tenths of its thickness, in the user's units; (1,)."""
+    return np.array([0.9 * thickness(at.curve) * at.problem.units.scale])
 
 
 def largest_chord(curve):
@@ -138,9 +144,12 @@ def test_the_next_best_where_there_is_no_way_to_the_best(monkeypatch):
 
 def test_images_that_bend_more_than_their_vertices_promised_are_passed_over(monkeypatch):
     start = point(unbalanced(torus_knot(2, 3, 120), 0.3, 0.1, 0.2))
+    start = start.within(start.problem.as_rope(rope_of(start)))
     found = balance.least_bending(MoebiusImages(start.curve, start.curve.edge_lengths), 3)
     monkeypatch.setattr(balance, "least_bending", lambda *_: [np.array([0.6, 0.8, 0.0, 0.0]), *found])
-    assert bending(way_to_balance(start)[-1].point.curve) < 0.96 * bending(start.curve)
+    end = way_to_balance(start)[-1].point
+    assert bending(end.curve) < 0.96 * bending(start.curve)
+    assert 0.0 < end.problem.radius <= rope_of(end), "a rope that only keeps its thickness stays one"
 
 
 def test_lengths_of_links_follow_their_images():
