@@ -89,7 +89,10 @@ class Problem:
         given = pins, self.obstacles, self.solver, self.geometry, held.barycenters, symmetry
         problem = Problem.of(curve, lengths, *given, radius=self.radius)
         constraints = replace(problem.constraints, grown=held.grown)
-        return replace(problem, constraints=constraints).at_curve(curve)
+        objective = (
+            problem.objective if self.objective.rope else problem.objective.having(Rope, None)
+        )  # that has let go
+        return replace(problem, objective=objective, constraints=constraints).at_curve(curve)
 
     def as_rope(self, radius: FloatArray | None) -> "Problem":
         """The same for a rope of other radii, shape (components,) in the user's units, or for no rope."""

@@ -142,8 +142,11 @@ class Run:
         return self.iterate
 
     def view(self, point: Point) -> None:
-        """Go on from another view of the same curve, of which the method remembers nothing."""
-        self.point, self.memory = point.anchored, SearchState(None, self.memory.last_step)
+        """Go on from another view of the same curve, of which the method remembers nothing unless it does the same."""
+        same = (
+            point.problem.objective is self.problem.objective and point.problem.constraints is self.problem.constraints
+        )
+        self.point, self.memory = point.anchored, self.memory if same else SearchState(None, self.memory.last_step)
 
     def restart(self) -> None:
         """Go on with the requested method, which remembers nothing."""

@@ -5,9 +5,9 @@
 where φ = 0 from z = 1 on. The first sum is over pairs of edges at distance d that are more than half a circle of the
 radius apart along the curve, with arcs of the radius for corners; between ropes of two radii 2r is their sum. The
 second is over both ends of every edge, with the bending radius ϱ = ℓ/(2 tan(θ/2)) at the corner of angle θ there
-(Rawdon, Experimental Mathematics 12, 2003). The barrier begins at c = 3r, less than half a circle is long, as else
-straight pieces would feel it, and b = 2r. φ is that of incremental potential contact (Li et al., ACM Trans. Graphics
-39, 2020).
+(Rawdon, Experimental Mathematics 12, 2003). The barrier begins at c = 4r, or nearly the way along the curve where that
+is less, as else straight pieces would feel it, and b = 2r. φ is that of incremental potential contact (Li et al., ACM
+Trans. Graphics 39, 2020).
 """
 
 from dataclasses import dataclass, field, replace
@@ -39,7 +39,8 @@ class Rope:
     seen: Curve | None = None
     tightest: FloatArray | None = None  # bending radius of each component, if its mesh does not allow the rope's
     weight: float = 0.05  # a tenth of it lets curves stick to the wall, ten times as much holds them off their minima
-    reach: float = 1.5  # of strands' distance, over 2r
+    reach: float = 2.0  # of strands' distance, over 2r: with 1.5 tangles take a tenth more steps
+    share: float = 0.95  # of the way between two strands along the curve, which is the reach if it is less
     bend: float = 2.0  # of bending radii, over r
     _near: list[Any] = field(default_factory=list, init=False, repr=False)  # a curve, and pairs in reach nearby
 
@@ -53,7 +54,7 @@ class Rope:
         Where edges have just been split, corners look sharper than before; they may bend as far as they do until the
         flow has made them smooth.
         """
-        seen = self._seen(curve)
+        seen = cast(Curve, self._seeing(curve).seen)
         allowed = np.minimum(self.radius, 0.9 * np.minimum.reduceat(bending_radii(curve), curve.mesh.offsets[:-1]))
         if seen is self.seen and bool((np.abs(seen.edge_lengths / curve.edge_lengths - 1.0) <= 0.01).all()):
             allowed = np.maximum(allowed, self._tightest)
@@ -76,7 +77,8 @@ class Rope:
     def sparse_hessian(self, curve: Curve) -> sp.csr_array:
         """D²E as a sparse matrix: it couples near edges, and those that meet at a corner."""
         total = sp.csr_array((curve.vertices.size, curve.vertices.size))
-        for (i, j), barrier in ((self._strands(curve), self._apart), (self._corners(curve), self._bent)):
+        rope = self._seeing(curve)
+        for (i, j), barrier in ((rope._strands(curve), rope._apart), (rope._corners(curve), rope._bent)):
             pairs = EdgePairs.of(curve.mesh, curve.vertices, i, j)
             second = [change(barrier(curve, i, j, each).first) for each in pairs.along_coordinates()]
             total = total + scatter_second(curve.mesh, i, j, np.stack(second, axis=2))
@@ -85,7 +87,8 @@ class Rope:
     def _sum(self, curve: Curve, vertices: FloatArray) -> tuple[FloatArray, FloatArray]:
         """E and its derivative at a curve's vertices, or after a complex step from them."""
         mesh, total, first = curve.mesh, np.zeros((), vertices.dtype), np.zeros_like(vertices)
-        for (i, j), barrier in ((self._strands(curve), self._apart), (self._corners(curve), self._bent)):
+        rope = self._seeing(curve)
+        for (i, j), barrier in ((rope._strands(curve), rope._apart), (rope._corners(curve), rope._bent)):
             if len(i):
                 part = barrier(curve, i, j, EdgePairs.of(mesh, vertices, i, j))
                 total = total + part.value.sum()
@@ -96,7 +99,7 @@ class Rope:
 
     def meets(self, curve: Curve) -> bool:
         """Whether strands are no further apart than they must be, so that E is infinite; corners are left aside."""
-        (i, j), r = self._strands(curve), self.radius[curve.mesh.edge_component]
+        (i, j), r = self._seeing(curve)._strands(curve), self.radius[curve.mesh.edge_component]
         chord, _, _ = closest(EdgePairs.of(curve.mesh, curve.vertices, i, j))
         return bool((np.einsum("km,km->k", chord, chord) <= (r[i] + r[j]) ** 2).any())
 
@@ -105,8 +108,6 @@ class Rope:
 
         They are those found for a curve nearby, if there is one.
         """
-        if self.seen is None or self.seen.mesh != curve.mesh:
-            return replace(self, seen=curve)._strands(curve)
         mesh, r, margin = curve.mesh, self.radius[curve.mesh.edge_component], 0.05 * float(self.radius.max())
         if self._near:
             there, i, j = self._near
@@ -115,15 +116,20 @@ class Rope:
         # no distance changes by more than 2 √3 margins nearby
         cut = 2.0 * self.reach * float(self.radius.max()) + 4.0 * margin
         i, j = cKDTree(curve.midpoints).query_pairs(cut + float(curve.edge_lengths.max()), output_type="ndarray").T
-        position, component, ell = self._middles, mesh.edge_component, self.seen.edge_lengths
-        arc = np.abs(position[0, i] - position[0, j])
-        arc = np.minimum(arc, position[1, i] - arc)
-        far = (component[i] != component[j]) | (arc > np.pi * r[i] + 0.5 * (ell[i] + ell[j]))
+        far = self._way(i, j) > np.pi * r[i]
         i, j = i[far], j[far]
         chord, _, _ = closest(EdgePairs.of(mesh, curve.vertices, i, j))
         near = np.einsum("km,km->k", chord, chord) < (self.reach * (r[i] + r[j]) + 4.0 * margin) ** 2
         self._near[:] = curve, i[near], j[near]
         return i[near], j[near]
+
+    def _way(self, i: IntArray, j: IntArray) -> FloatArray:
+        """How far pairs of edges are apart along the curve that is seen, shape (k,): infinite between components."""
+        seen = cast(Curve, self.seen)
+        position, component, ell = self._middles, seen.mesh.edge_component, seen.edge_lengths
+        way = np.abs(position[0, i] - position[0, j])
+        way = np.minimum(way, position[1, i] - way) - 0.5 * (ell[i] + ell[j])
+        return np.where(component[i] == component[j], way, np.inf)
 
     @cached_property
     def _middles(self) -> FloatArray:
@@ -144,8 +150,9 @@ class Rope:
         at = mesh.inner[bending_radii(curve)[mesh.inner] < self.bend * self._tightest[mesh.component[mesh.inner]]]
         return mesh.incoming[at], mesh.outgoing[at]
 
-    def _seen(self, curve: Curve) -> Curve:
-        return curve if self.seen is None or self.seen.mesh != curve.mesh else self.seen
+    def _seeing(self, curve: Curve) -> "Rope":
+        """The rope with lengths of a curve on the mesh of this one: by default its own."""
+        return self if self.seen is not None and self.seen.mesh == curve.mesh else replace(self, seen=curve)
 
     @property
     def _tightest(self) -> FloatArray:
@@ -153,13 +160,14 @@ class Rope:
 
     def _apart(self, curve: Curve, i: IntArray, j: IntArray, pairs: EdgePairs) -> Jet:
         """The barrier between strands."""
-        ell, r = self._seen(curve).edge_lengths, self.radius[curve.mesh.edge_component]
+        ell, r = cast(Curve, self.seen).edge_lengths, self.radius[curve.mesh.edge_component]
         width = r[i] + r[j]
-        return _barrier(distance(pairs), width, self.reach * width, self.weight * ell[i] * ell[j] / (0.5 * width) ** 2)
+        end = np.minimum(self.reach * width, self.share * self._way(i, j))
+        return _barrier(distance(pairs), width, end, self.weight * ell[i] * ell[j] / (0.5 * width) ** 2)
 
     def _bent(self, curve: Curve, i: IntArray, j: IntArray, pairs: EdgePairs) -> Jet:
         """The barrier of corners, for both edges' bending radii."""
-        ell, r = self._seen(curve).edge_lengths, self._tightest[curve.mesh.edge_component[i]]
+        ell, r = cast(Curve, self.seen).edge_lengths, self._tightest[curve.mesh.edge_component[i]]
         sides = zip(bends(pairs), (ell[i], ell[j]), strict=True)
         first, second = (_barrier(radius, r, self.bend * r, 0.5 * self.weight * length / r) for radius, length in sides)
         return first + second

@@ -228,7 +228,7 @@ class _Lengths:
     """Lengths of all arcs between pins and of components without pins, to be restored after strand moves."""
 
     def __init__(self, run: Run) -> None:
-        self._problem = run.problem
+        self._problem = run.problem.as_rope(run.problem.radius)  # again, if it has let go
         targets = self._problem.units.scale * self._problem.constraints.lengths
         self._of = {place: float(targets[arc].sum()) for place, arc in self._arcs(run.iterate.curve)}
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError, Obstacle, OptionError, RelaxOptions, Task, minimize
 from mobius_flow.core.collision import Contact, is_rope, thickness
+from mobius_flow.core.curve import halved
 from mobius_flow.core.curve.measures import bending_radii
 from mobius_flow.core.descent import NoStep, Step
 from mobius_flow.core.driver.moves.remesh import split_edges
@@ -85,34 +86,34 @@ def test_the_radius_gives_way_where_it_is_in_its_own_way():
     assert rope.last.radius[0] < 0.8 * thickness(start)
 
 
-def test_it_gives_way_where_steps_gain_little_of_what_that_promises():
+@pytest.mark.parametrize(("left", "steps"), [(1.0, None), (0.1, GiveWay.patience), (1e-9, 1)])
+def test_it_lets_go_where_it_takes_much_of_the_flow(left, steps):
+    """In step after step, but at once at rest; and stays a rope by its proof, also on another mesh."""
     run = begin(Task.of(knot("3_1", 60)), RelaxOptions(radius="keep", vertices=60, mesh="fixed"))
-    point = run.point
-
-    def answers(gain):
-        """To steps that have gained so much, each."""
-        move, answered = GiveWay(run), []
-        for k in range(21):
-            run.point = copy(point)
-            run.point._energy_and_derivative = point.energy - k * gain, point.derivative
-            answered.append(move.stepped(step) is not None)
-        return answered
-
-    step = run.step()
+    step, before = run.step(), run.point
     assert isinstance(step, Step)
-    patience = GiveWay(run).first[0]
-    assert answers(0.0) == [k > patience and k % GiveWay.every == 2 for k in range(21)]
-    assert not any(answers(0.01 * point.energy))
+    run.point = copy(before)
+    run.point._energy_and_derivative = before.energy, left * before.derivative
+    del run.point._gradient_and_multipliers, run.point.gradient_norm
+    move = GiveWay(run)
+    answers = [move.stepped(step) for _ in range(GiveWay.patience + 1)]
+    assert next((k for k, answer in enumerate(answers, 1) if answer), None) == steps
+    if steps:
+        there = answers[steps - 1].point.problem
+        assert there.objective.rope is None
+        finer = there.on(halved(before.curve.with_vertices(before.placed))).problem
+        assert finer.objective.rope is None
+        assert (finer.radius == before.problem.radius).all()
 
 
 def test_what_a_thinner_rope_promises():
-    """−⟨P, ∂E/∂P⟩ is r ∂E/∂r, but for the lengths that weigh terms."""
+    """−⟨P, ∂E/∂P⟩ is r ∂E/∂r, but for the lengths that weigh terms and bound the reach."""
     curve = knot("4_1", 150)
     radius = np.array([0.8 * thickness(curve)])
     rope = Rope(radius).frozen_at(curve)
     thick, thin = (Rope(share * radius).value(curve) for share in (1.0001, 0.9999))
     promise = -np.sum(rope.value_and_derivative(curve)[1] * curve.vertices)
-    assert promise == pytest.approx((thick - thin) / 2e-4, rel=0.25)
+    assert promise == pytest.approx((thick - thin) / 2e-4, rel=0.4)
 
 
 @pytest.mark.parametrize("name", ["4_1", "L6a4", "goeritz"])
@@ -229,19 +230,20 @@ def test_a_rope_that_has_let_go_gives_way_where_its_proof_is_in_the_way_but_not_
     assert move.stepped(replace(step, limited_by=None)) is None
     assert move.stuck(NoStep("no step")) is None
     for change in (move.stepped(replace(step, limited_by=contact)), move.stuck(NoStep("no step", contact))):
-        assert change.point.problem.objective.rope is not None
+        assert change.point.problem.objective is run.problem.objective, "so that the method remembers what it did"
         assert (change.point.problem.radius < before.problem.radius).all()
     for point in (run.point, before):
         run.view(point.pulled(Pull.at(point.curve, 0, 0.25, 5.0)))
         assert GiveWay(run).stuck(NoStep("no step", contact)) is None
 
 
-def test_a_rope_gives_way_only_where_it_acts():
+def test_a_rope_lets_go_only_where_it_acts():
     """Where a run is stuck for other reasons, a rope that touches nothing stays as it is."""
     run = begin(Task.of(knot("3_1", 60)), RelaxOptions(radius="keep", vertices=60, mesh="fixed"))
     stuck, point = NoStep("no step"), run.point
     change = GiveWay(run).stuck(stuck)
-    assert (change.point.problem.radius < point.problem.radius).all()
+    assert change.point.problem.objective.rope is None
+    assert (change.point.problem.radius == point.problem.radius).all()
     thin = point.problem.as_rope(0.1 * np.asarray(point.problem.radius))
     run.view(point.changing(objective=thin.objective, radius=thin.radius))
     assert GiveWay(run).stuck(stuck) is None
