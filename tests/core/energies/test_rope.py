@@ -57,6 +57,18 @@ def test_thin_ropes_cost_nothing_and_thick_ones_everything():
     assert Rope(np.array([1.001 * thick])).value(curve) == np.inf
 
 
+def test_straight_pieces_feel_nothing():
+    """However far along they are; other strands are felt from four radii on."""
+    t = np.linspace(0.0, 4.0, 41)
+    straight = np.stack([t, 0 * t, 0 * t], axis=1)
+    assert Rope(np.array([0.3])).value(Curve.from_components([straight], closed=(False,))) == 0.0
+    costs = []
+    for z in (1.1, 1.3):
+        back = straight[::-1] + [0.0, z, 0.0]
+        costs.append(Rope(np.array([0.3, 0.3])).value(Curve.from_components([straight, back], closed=(False, False))))
+    assert costs[0] > costs[1] == 0.0
+
+
 def test_it_does_not_depend_on_the_unit():
     curve = knot("L6a4", 90)
     scaled = curve.with_vertices(1e3 * curve.vertices)
