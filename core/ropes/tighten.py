@@ -155,7 +155,7 @@ def _spread(start: Task, unit: float, unknot: bool) -> tuple[PulledRope, Iterabl
     problem = start_problem(replace(start, pins=tuple(start.curve.mesh.ends.ravel().tolist())), options)
     assert problem.objective.rope is not None, "it has a radius"
     # strands that keep away from each other from afar find shorter shapes, for which there is less to do, too
-    far = Rope(problem.objective.rope.radius, weight=0.5, reach=5.0)
+    far = Rope(problem.objective.rope.radius, weight=0.5, reach=5.0, share=np.inf)
     problem = replace(problem, objective=problem.objective.having(Rope, far))
     flow = iterates(Run(problem, start.curve, options), ())
     rope = PulledRope(next(flow), unit)

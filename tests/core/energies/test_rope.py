@@ -64,7 +64,7 @@ def test_straight_pieces_feel_nothing():
     assert Rope(np.array([0.3])).value(Curve.from_components([straight], closed=(False,))) == 0.0
     costs = []
     for z in (1.1, 1.3):
-        back = straight[::-1] + [0.0, z, 0.0]
+        back = straight[::-1] + np.array([0.0, z, 0.0])
         costs.append(Rope(np.array([0.3, 0.3])).value(Curve.from_components([straight, back], closed=(False, False))))
     assert costs[0] > costs[1] == 0.0
 
