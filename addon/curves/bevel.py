@@ -65,7 +65,7 @@ def rope_radii(objects: Sequence[bpy.types.Object]) -> FloatArray:
     ropes = np.array([bake.rope(obj.data) * stretch(obj) for obj in objects])
     if not (ropes.min() > 0.0 and np.ptp(ropes) <= 1e-6 * ropes.min()):
         return np.empty(0)
-    return ropes.min() * np.array([size.factor for size in bake.sizes(objects[0].data)])
+    return float(ropes.min()) * np.array([size.factor for size in bake.sizes(objects[0].data)])
 
 
 def draw(data: bpy.types.Curve, radius: float) -> None:
