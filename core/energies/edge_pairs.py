@@ -111,14 +111,15 @@ def scatter_first(mesh: Mesh, i: IntArray, j: IntArray, first: FloatArray) -> Fl
 
 def scatter_second(mesh: Mesh, i: IntArray, j: IntArray, second: FloatArray) -> sp.csr_array:
     """Second derivative by the vertices, sparse (n·m, n·m), from those by (Δ, e, f) of pairs, shape (k, 3m, 3m)."""
-    k, m = len(i), second.shape[1] // 3
+    n, m = mesh.size, second.shape[1] // 3
     corners = np.stack([mesh.tails[i], mesh.heads[i], mesh.tails[j], mesh.heads[j]], axis=1)
-    index = (m * corners[:, :, None] + np.arange(m)).reshape(k, 4 * m)
     spread = np.kron(CORNERS, np.eye(m))
-    blocks = spread @ second @ spread.T
-    rows, columns = np.broadcast_arrays(index[:, :, None], index[:, None, :])
-    size = mesh.size * m
-    return sp.csr_array((blocks.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size))
+    blocks = (spread @ second @ spread.T).reshape(-1, 4, m, 4, m).swapaxes(2, 3).reshape(-1, m * m)
+    # pairs of vertices are in many pairs of edges: the sums of each of the entries of their blocks
+    pairs, number = np.unique((n * corners[:, :, None] + corners[:, None, :]).ravel(), return_inverse=True)
+    sums = np.stack([np.bincount(number, entries, len(pairs)) for entries in blocks.T], axis=1)
+    begins = np.searchsorted(pairs, n * np.arange(n + 1))
+    return sp.csr_array(sp.bsr_array((sums.reshape(-1, m, m), pairs % n, begins), shape=(n * m, n * m)))
 
 
 class Tile(NamedTuple):

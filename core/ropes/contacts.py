@@ -66,9 +66,12 @@ class Contacts:
         """⟨∇c, v⟩ for a field v, shape (n, m): how fast constraints change, shape (constraints,)."""
         return np.asarray(np.sum(first * np.hstack(EdgePairs.of(self.mesh, v, self.i, self.j)), axis=1))
 
-    def hessian(self, vertices: FloatArray, first: FloatArray, z: FloatArray, k: FloatArray) -> sp.csr_array:
-        """Σ k ∇c ∇cᵀ − Σ z D²c, sparse (n·m, n·m)."""
+    def second(
+        self, vertices: FloatArray, first: FloatArray, z: FloatArray, k: FloatArray
+    ) -> tuple[sp.csr_array, sp.csr_array]:
+        """Σ k ∇c ∇cᵀ and −Σ z D²c, sparse (n·m, n·m)."""
         pairs = EdgePairs.of(self.mesh, vertices, self.i, self.j)
         second = np.stack([change(self.jet(each).first) for each in pairs.along_coordinates()], axis=2)
-        local = k[:, None, None] * first[:, :, None] * first[:, None, :] - z[:, None, None] * second
-        return scatter_second(self.mesh, self.i, self.j, 0.5 * (local + local.transpose(0, 2, 1)))
+        curved = -0.5 * z[:, None, None] * (second + second.transpose(0, 2, 1))
+        stiff = k[:, None, None] * first[:, :, None] * first[:, None, :]
+        return tuple(scatter_second(self.mesh, self.i, self.j, each) for each in (stiff, curved))

@@ -8,11 +8,14 @@ z = −B'(c):
     (D²f − Σ z D²c + Σ k ∇c ∇cᵀ + δ D²f) dx = −∇f − Σ B' ∇c,    dz = −B' − z − k ⟨∇c, dx⟩,
 
 with the barrier  B(c) = −μ (log(c/h) − 2 (c/h − 1) + ((c/h)² − 1)/2)  up to the margin h and 0 from there on, smoothly,
-as a logarithm would depend on what is listed, and  k = z/c + B'' + B'/c.  Where the matrix is not definite, negative
-eigenvalues change their signs (saddle-free Newton); δ shortens steps that are far too long.  Of a step so much is taken
-that f + Σ B falls enough, no c loses most of itself, no vertex moves more than half a radius, and the motion is proved.
-μ and h fall once the rope is well centred, that is, when steps promise very little: polygons' contacts are notched, and
-ropes that come to a small μ in a hurry are caught in notches (Nocedal and Wright, *Numerical Optimization*, ch. 19).
+as a logarithm would depend on what is listed, and  k = z/c + B'' + B'/c.  Of the walls' curvature Σ z D²c so much is
+counted as leaves the matrix definite: all of it near the end, little where contacts of polygons are notched, and where
+steps along negative eigenvectors lead from notch to notch.  δ shortens steps that are far too long.  Of a step so much
+is taken that f + Σ B falls enough, no c loses most of itself, no vertex moves more than half a radius, and the motion
+is proved.  μ and h fall once the rope is well centred, that is, when steps promise very little (Nocedal and Wright,
+*Numerical Optimization*, ch. 19).
+
+The unknowns are the vertices, or the controls of cubic B-splines on which these lie: smooth ropes, which need fewer.
 """
 
 from collections.abc import Callable, Iterator
@@ -20,7 +23,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import LinearOperator, eigsh
+from scipy.sparse.linalg import SuperLU
 
 from ..base.deadline import check_time
 from ..base.types import FloatArray
@@ -46,6 +49,7 @@ class InteriorPoint:
 
     ``proved`` tells of vertices whether the straight motion there is proved that of a rope.  ``gap`` is Σ z c relative
     to the length, ``residual`` |∇f − Σ z ∇c| relative to |∇f|; both are 0 at the shortest rope.  Ends of arcs are held.
+    ``basis``, (n, controls), makes vertices of unknowns; the identity, unless it is given.
     """
 
     curve: Curve
@@ -53,9 +57,9 @@ class InteriorPoint:
     proved: Callable[[FloatArray], bool]
     margin: float = 0.3  # of distances beyond 2, at which the barrier begins
     longest: float = 0.5  # that a vertex moves at once
-    least_margin: float = 0.005
     centred: float = 0.001  # decrease that Newton's step promises, in μ for each constraint, below which μ falls
     patience: int = 15  # steps that bring as little: then it falls, too
+    basis: sp.csr_array | None = None
     proportions: FloatArray | None = None  # of edges; None for equally long ones
     drawn: float = 0.0  # out of the knot, by ends that were led on
     gap: float = field(default=np.inf, init=False)
@@ -64,8 +68,13 @@ class InteriorPoint:
     forces: FloatArray = field(init=False)
 
     def __post_init__(self) -> None:
-        self._delta, self._depth = 0.0, 1.0
-        self._free = ~holds(self.curve.mesh, self.curve.mesh.ends.ravel())
+        mesh = self.curve.mesh
+        self._delta, self._counted = 0.0, 1.0
+        self._least_margin = float(np.mean(self.curve.edge_lengths)) ** 2 / 8.0  # by that polygons' distances are off
+        free = self.basis
+        if free is None:
+            free = sp.eye_array(mesh.size, format="csc")[:, ~holds(mesh, mesh.ends.ravel())]
+        self._unknowns, self._coordinates = sp.csr_array(free), sp.csr_array(sp.kron(free, sp.eye_array(3)))
         self._list(Contacts.near(self.curve, 1.5 * self.margin))
 
     def run(self, gap: float | None, most: int = 400) -> Iterator[float]:
@@ -81,25 +90,28 @@ class InteriorPoint:
             little = self.centred * self.mu * len(self.forces)
             merits.append(self.merit)
             still = len(merits) > self.patience and merits[-1] > merits[-1 - self.patience] - little
-            least = self.mu if gap is None else 0.5 * gap * self.curve.length / len(self.forces)
             centred = decrement < little or still
             if gap is None and centred:
                 return
-            if gap is not None and self.gap <= gap and (self.residual <= 10.0 * gap or (still and self.mu <= least)):
-                return
+            if gap is not None and self.gap <= gap:
+                if self.residual <= 10.0 * gap or (still and len(merits) > 4 * self.patience):
+                    return
             yield share
             if gap is None:
                 self.mu = min(self.mu, weight * float(np.mean(self.curve.edge_lengths)) ** 2)
-            elif self.mu > least and centred:
-                fall = max(FALL, least / self.mu)
-                self.mu, self.margin = fall * self.mu, max(self.least_margin, fall**0.5 * self.margin)
+            elif self.gap > gap and centred:
+                fall = max(FALL, 0.7 * gap / self.gap)
+                self.mu, self.margin = fall * self.mu, max(self._least_margin, fall**0.5 * self.margin)
                 self._list()
                 merits.clear()
 
     @property
     def merit(self) -> float:
         """The length without what was drawn out, and the barrier function: what comes down at one μ."""
-        return self.curve.length - self.drawn + self._walls(self.contacts.values(self.curve.vertices))
+        p = np.ones(self.curve.mesh.edges) if self.proportions is None else self.proportions
+        squares = self.curve.edge_lengths**2
+        p, squares = (np.add.reduceat(each, self.curve.mesh.edge_offsets[:-1]) for each in (p, squares / p))
+        return float(np.sqrt(p * squares).sum()) - self.drawn + self._walls(self.contacts.values(self.curve.vertices))
 
     @property
     def excess(self) -> float:
@@ -123,11 +135,16 @@ class InteriorPoint:
         weight = np.sqrt(sums / squares)[mesh.edge_component] / p
         self._elastic = mesh.difference.T @ sp.diags_array(weight) @ mesh.difference
         slope = self._elastic @ x
-        residual = (slope - contacts.sum_of(first, z))[self._free]
-        self.residual = float(np.linalg.norm(residual) / np.linalg.norm(slope))
+        unknowns = self._unknowns
+        residual = unknowns.T @ (slope - contacts.sum_of(first, z))
+        self.residual = float(np.linalg.norm(residual) / np.linalg.norm(unknowns.T @ slope))
         self.gap = float(z @ c) / self.curve.length
         right = contacts.sum_of(first, push) - slope
-        solve = self._factorised(contacts.hessian(x, first, z, k))
+        factor = self._factorised(*contacts.second(x, first, z, k))
+
+        def solve(force: FloatArray) -> FloatArray:
+            return np.asarray(unknowns @ factor.solve((unknowns.T @ force).ravel()).reshape(-1, 3))
+
         dx = solve(right)
         decrement, dz = float(np.sum(right * dx)), push - z - k * contacts.along(first, dx)
 
@@ -195,32 +212,16 @@ class InteriorPoint:
             forces[new.strands :] = self.forces[old.strands :]
         self.contacts, self.forces, self._listed = new, forces, self.curve.vertices
 
-    def _factorised(self, hessian: sp.csr_array) -> Callable[[FloatArray], FloatArray]:
-        """Solve with Newton's matrix, whose negative eigenvalues change their signs."""
-        elastic = sp.kron(self._elastic, sp.eye_array(3), format="csr")
-        free = np.flatnonzero(np.repeat(self._free, 3))
-        ridge = 1e-6 * elastic.diagonal().mean() * sp.eye_array(elastic.shape[0], format="csr")  # holds it in its place
-        metric = sp.csc_array((elastic + 1e4 * ridge)[free][:, free])
-        matrix = sp.csc_array((hessian + elastic + ridge)[free][:, free]) + self._delta * metric
-        definite = factor = factorised(matrix, symmetric=True)
-        negative = int(np.sum(factor.U.diagonal() < 0.0))
-        lowest, modes = np.ones(0), np.zeros((len(free), 0))
-        if negative:
-            while not (
-                (definite := factorised(matrix + self._depth * metric, symmetric=True)).U.diagonal() > 0.0
-            ).all():
-                self._depth *= 4.0
-            inverse, start = LinearOperator(matrix.shape, definite.solve, dtype=float), np.ones(len(free))
-            found = eigsh(matrix, negative, metric, sigma=-self._depth, OPinv=inverse, tol=1e-4, v0=start)
-            lowest, modes = found[0][found[0] < 0.0], found[1][:, found[0] < 0.0]
-            self._depth = max(1e-3, 1.1 * -float(lowest.min(initial=0.0)))
-
-        def solved(right: FloatArray) -> FloatArray:
-            found, g = np.zeros_like(right), right[self._free].ravel()
-            x = factor.solve(g) - modes @ (2.0 / lowest * (modes.T @ g))
-            if negative and x @ g <= 0.0:  # too near to singular for that
-                x = definite.solve(g)
-            found[self._free] = x.reshape(-1, 3)
-            return found
-
-        return solved
+    def _factorised(self, stiff: sp.csr_array, curved: sp.csr_array) -> SuperLU:
+        """Factors of Newton's matrix by the unknowns, with so much of the walls' curvature that it is definite."""
+        own = self._coordinates
+        elastic = sp.csc_array(own.T @ sp.kron(self._elastic, sp.eye_array(3), format="csr") @ own)
+        ridge = 1e-6 * elastic.diagonal().mean() * sp.eye_array(elastic.shape[0], format="csc")  # holds it in its place
+        matrix = own.T @ stiff @ own + elastic + ridge + self._delta * (elastic + 1e4 * ridge)
+        curvature = own.T @ curved @ own
+        self._counted = min(1.0, self._counted / 0.64)
+        while True:
+            factor = factorised(matrix + self._counted * curvature, symmetric=True)
+            if self._counted == 0.0 or (factor.U.diagonal() > 0.0).all():
+                return factor
+            self._counted = 0.8 * self._counted if self._counted > 0.1 else 0.0

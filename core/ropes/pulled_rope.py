@@ -21,9 +21,13 @@ from ..driver import Relaxation
 from ..driver.moves.hops import Field, random_flow
 from ..driver.moves.hops import radius as radius_of_gyration
 from ..io.trajectory import Iterate
+from ..solve.saddle.tangent_space import factorised
 from .contacts import Contacts
 from .interior_point import FALL, InteriorPoint, outward
+from .splines import cubic_splines
 
+COARSE = 100  # vertices that find the shape, up to twice as many
+PER_CONTROL = 4  # vertices on splines
 GAP = 1e-6  # of forces times clearances, relative to the length, at rest
 
 
@@ -36,6 +40,7 @@ class PulledRope:
         self.last = replace(last, pins=(), radius=radius, energy=last.curve.length / unit)
         self.unit, self.center, self.lengths = unit, last.curve.vertices.mean(axis=0), last.curve.component_lengths
         self.point: InteriorPoint | None = None
+        self.per = 1  # vertices for each control point of splines, if they are on splines
 
     @property
     def curve(self) -> Curve:
@@ -126,48 +131,70 @@ class PulledRope:
         for k in range(1, steps + 1):
             yield from self.follow([self.center + wanted ** (k / steps) * (start - self.center)])
 
-    def doubled(self) -> Iterator[Iterate]:
-        """Twice as many vertices on a smoother curve, larger if the rope needs room; nothing if that is blocked."""
-        before, point = self.last, self.point
-        assert point is not None, "it has been pulled"
-        counts = np.full(self.curve.mesh.edges, 2)
-        touching = np.concatenate([each[: point.contacts.strands] for each in (point.contacts.i, point.contacts.j)])
-        if len(touching) and not self.curve.mesh.all_closed:
-            # ends stay as they are, up to a few edges from where strands touch
-            counts[:], beyond = 1, 4
-            for first, last in pairwise(self.curve.mesh.edge_offsets):
-                if len(own := touching[(touching >= first) & (touching < last)]):
-                    counts[max(own.min() - beyond, first) : min(own.max() + beyond + 1, last)] = 2
-        finer = subdivide(self.curve, counts)
+    def refined(self, vertices: int) -> Iterator[Iterate]:
+        """Twice as many vertices on a smoother curve, larger if the rope needs room; nothing if that is blocked.
+
+        Closed ropes with so many that eight times as many were too many are on cubic B-splines from there on, first
+        with two vertices for each control point, then with four.  Arcs have more only up to a few edges from where
+        strands touch.
+        """
+        before, point, mesh = self.last, self.point, self.curve.mesh
+        counts, per = np.full(mesh.edges, 2), self.per
+        if mesh.all_closed and (per > 1 or len(self.curve) >= 2 * COARSE or 8 * len(self.curve) > vertices):
+            controls, at = [size // per for size in mesh.component_sizes], self.curve.vertices
+            if per > 1:
+                basis = cubic_splines(controls, per)
+                at = factorised(basis.T @ basis).solve(basis.T @ at)
+            finer, goal = subdivide(self.curve, counts), cubic_splines(controls, 2 * per) @ at
+            per = min(2 * per, PER_CONTROL)
+        else:
+            touching = np.zeros(0, dtype=np.intp)
+            if point is not None and not mesh.all_closed:
+                strands = slice(point.contacts.strands)
+                touching = np.concatenate([point.contacts.i[strands], point.contacts.j[strands]])
+            if len(touching):  # ends stay as they are, up to a few edges from where strands touch
+                counts[:], beyond = 1, 4
+                for first, last in pairwise(mesh.edge_offsets):
+                    if len(own := touching[(touching >= first) & (touching < last)]):
+                        counts[max(own.min() - beyond, first) : min(own.max() + beyond + 1, last)] = 2
+            finer = subdivide(self.curve, counts)
+            onward = finer.mesh.at_tails(0.5 * finer.edge_vectors * np.repeat(counts > 1, counts)[:, None])
+            onward[finer.mesh.ends] = 0.0
+            goal = finer.vertices + onward
         check_refined(self.curve, finer, ())
-        onward = finer.mesh.at_tails(0.5 * finer.edge_vectors * np.repeat(counts > 1, counts)[:, None])
-        onward[finer.mesh.ends] = 0.0
-        moved = finer.with_vertices(finer.vertices + onward)
-        larger = max(1.0, (1.0 + 0.5 * point.gap) * self.unit / thickness(moved))
-        halved = [*self.remeshed(finer)]
+        gap = 0.0 if point is None else point.gap
+        larger = max(1.0, (1.0 + 0.5 * gap) * self.unit / thickness(finer.with_vertices(goal)))
+        cut = [*self.remeshed(finer)]
         for scale in larger + 0.002 * np.arange(10):
-            there = self.center + scale * (moved.vertices - self.center)
+            there = self.center + scale * (goal - self.center)
             if self.proves(there):
-                yield from halved
+                self.per = per
+                yield from cut
                 yield from self.follow([there])
+                if per == 2:
+                    yield from self.refined(vertices)
                 return
         self.last = before
 
     def pulled(self, vertices: int) -> Iterator[Iterate]:
         """The steps of an interior point, on half as many vertices as the last one, to the end on so many."""
-        if self.point is None:
-            yield from self.shrunk()
         curve, last = self.curve.with_vertices((self.curve.vertices - self.center) / self.unit), self.point
         # as the square of edges, so that the barrier is about the same on all meshes, and then less
-        mu, margin = 0.03 * (curve.length / len(curve)) ** 2, 0.3
-        if last is not None:
+        square = (self.per * curve.length / len(curve)) ** 2
+        mu, margin, basis = 0.03 * square, 0.3, None
+        if self.per > 1:
+            mu, margin = 5e-4 * square, 0.25 * square
+            basis = cubic_splines([size // self.per for size in curve.mesh.component_sizes], self.per)
+        elif last is not None:
             mu, margin = 0.25 * FALL * last.mu, FALL**0.5 * last.margin
 
         def placed(vertices: FloatArray) -> FloatArray:
             return np.asarray(self.center + self.unit * vertices)
 
         closed, arcs = curve.mesh.all_closed, ~np.asarray(curve.mesh.closed)
-        self.point = point = InteriorPoint(curve, mu, lambda vertices: self.proves(placed(vertices)), margin)
+        self.point = point = InteriorPoint(
+            curve, mu, lambda vertices: self.proves(placed(vertices)), margin, basis=basis
+        )
         if not closed:
             point.longest, point.proportions = 2.0, curve.edge_lengths
             point.drawn = 0.0 if last is None else last.drawn

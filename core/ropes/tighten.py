@@ -28,9 +28,7 @@ from ..driver.run import Run
 from ..energies.rope import Rope
 from ..io.trajectory import Iterate
 from ..knots import knot_type
-from .pulled_rope import GAP, PulledRope
-
-COARSE = 100  # vertices that find the shape, up to twice as many
+from .pulled_rope import COARSE, GAP, PER_CONTROL, PulledRope
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -175,7 +173,10 @@ def _tightened(starts: Sequence[tuple[Task, float]], coarse: int, unknot: bool, 
         for k in range(count):
             rope, spread = _spread(*starts[k % len(starts)], unknot)
             stirred = rope.stirred(rng) if k >= len(starts) else ()
-            steps = chain(spread, rope.thinned(coarse), stirred, rope.pulled(wanted.vertices))
+            if rope.curve.mesh.all_closed and rope.is_tight and k < len(starts):  # what is tight is only refined
+                steps = chain(rope.thinned(max(coarse, wanted.vertices // PER_CONTROL)), rope.shrunk())
+            else:
+                steps = chain(spread, rope.thinned(coarse), stirred, rope.shrunk(), rope.pulled(wanted.vertices))
             if k == 0 and len(starts) == 1:
                 yield rope.last
             if count == 1:
@@ -189,7 +190,7 @@ def _tightened(starts: Sequence[tuple[Task, float]], coarse: int, unknot: bool, 
                 several.append(trial)
         del several[3:]  # which on few vertices are not told apart
         for rope, way in several if coarse < wanted.vertices and len(several) > 1 else ():
-            way += chain(rope.doubled(), rope.pulled(wanted.vertices))
+            way += chain(rope.refined(wanted.vertices), rope.pulled(wanted.vertices))
         if several:
             rope, way = min(several, key=rank)
     except TimeIsUp:
@@ -198,8 +199,8 @@ def _tightened(starts: Sequence[tuple[Task, float]], coarse: int, unknot: bool, 
         raise
     if trials:
         yield from way
-    while (before := len(rope.curve)) < wanted.vertices:
-        yield from rope.doubled()
+    while (before := len(rope.curve)) < wanted.vertices or rope.point is None:
+        yield from rope.refined(wanted.vertices)
         if len(rope.curve) == before:  # it is blocked
             break
         yield from rope.pulled(wanted.vertices)
