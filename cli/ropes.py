@@ -68,8 +68,8 @@ def add_tighten(parser: argparse.ArgumentParser) -> None:
     parser.description = "Pull a knot or link tight: the shortest rope of its thickness."
     parser.epilog = _EPILOG_OF_TIGHTEN
     curves.add_input(parser, "polygons, closed or open")
-    text = "vertices in the end, or up to twice as many (default: 400)"
-    parser.add_argument("--vertices", metavar="N", type=int, default=400, help=text)
+    text = "vertices in the end, or up to twice as many (default: 800)"
+    parser.add_argument("--vertices", metavar="N", type=int, default=800, help=text)
     text = "starts on few vertices, stirred at random but for the first; the best three go on to the end (default: 1)"
     parser.add_argument("--starts", metavar="K", type=int, default=1, help=text)
     parser.add_argument("--seed", metavar="S", type=int, default=0, help="seed of the random motions (default: 0)")

@@ -9,11 +9,11 @@ z = −B'(c):
 
 with the barrier  B(c) = −μ (log(c/h) − 2 (c/h − 1) + ((c/h)² − 1)/2)  up to the margin h and 0 from there on, smoothly,
 as a logarithm would depend on what is listed, and  k = z/c + B'' + B'/c.  Of the walls' curvature Σ z D²c so much is
-counted as leaves the matrix definite: all of it near the end, little where contacts of polygons are notched, and where
-steps along negative eigenvectors lead from notch to notch.  δ shortens steps that are far too long.  Of a step so much
-is taken that f + Σ B falls enough, no c loses most of itself, no vertex moves more than half a radius, and the motion
-is proved.  μ and h fall once the rope is well centred, that is, when steps promise very little (Nocedal and Wright,
-*Numerical Optimization*, ch. 19).
+counted as leaves the matrix definite, but for a small shift: all of it near the end, little where contacts of polygons
+are notched, where steps along negative eigenvectors would lead from notch to notch.  δ shortens steps that are far too
+long.  Of a step so much is taken that f + Σ B falls enough, no c loses most of itself, no vertex moves more than half a
+radius, and the motion is proved.  μ and h fall once the rope is well centred, that is, when steps promise very little
+(Nocedal and Wright, *Numerical Optimization*, ch. 19).
 
 The unknowns are the vertices, or the controls of cubic B-splines on which these lie: smooth ropes, which need fewer.
 """
@@ -93,9 +93,9 @@ class InteriorPoint:
             centred = decrement < little or still
             if gap is None and centred:
                 return
-            if gap is not None and self.gap <= gap:
-                if self.residual <= 10.0 * gap or (still and len(merits) > 4 * self.patience):
-                    return
+            given_up = still and len(merits) > 4 * self.patience
+            if gap is not None and self.gap <= gap and (self.residual <= 10.0 * gap or given_up):
+                return
             yield share
             if gap is None:
                 self.mu = min(self.mu, weight * float(np.mean(self.curve.edge_lengths)) ** 2)
@@ -108,10 +108,7 @@ class InteriorPoint:
     @property
     def merit(self) -> float:
         """The length without what was drawn out, and the barrier function: what comes down at one μ."""
-        p = np.ones(self.curve.mesh.edges) if self.proportions is None else self.proportions
-        squares = self.curve.edge_lengths**2
-        p, squares = (np.add.reduceat(each, self.curve.mesh.edge_offsets[:-1]) for each in (p, squares / p))
-        return float(np.sqrt(p * squares).sum()) - self.drawn + self._walls(self.contacts.values(self.curve.vertices))
+        return self.curve.length - self.drawn + self._walls(self.contacts.values(self.curve.vertices))
 
     @property
     def excess(self) -> float:
@@ -137,7 +134,8 @@ class InteriorPoint:
         slope = self._elastic @ x
         unknowns = self._unknowns
         residual = unknowns.T @ (slope - contacts.sum_of(first, z))
-        self.residual = float(np.linalg.norm(residual) / np.linalg.norm(unknowns.T @ slope))
+        gathered = (len(x) / unknowns.shape[1]) ** 0.5  # by so much forces on controls are larger, about
+        self.residual = float(np.linalg.norm(residual) / np.linalg.norm(slope)) / gathered
         self.gap = float(z @ c) / self.curve.length
         right = contacts.sum_of(first, push) - slope
         factor = self._factorised(*contacts.second(x, first, z, k))
@@ -217,9 +215,13 @@ class InteriorPoint:
         own = self._coordinates
         elastic = sp.csc_array(own.T @ sp.kron(self._elastic, sp.eye_array(3), format="csr") @ own)
         ridge = 1e-6 * elastic.diagonal().mean() * sp.eye_array(elastic.shape[0], format="csc")  # holds it in its place
-        matrix = own.T @ stiff @ own + elastic + ridge + self._delta * (elastic + 1e4 * ridge)
-        curvature = own.T @ curved @ own
-        self._counted = min(1.0, self._counted / 0.64)
+        metric, curvature = elastic + 1e4 * ridge, own.T @ curved @ own
+        matrix = own.T @ stiff @ own + elastic + ridge + self._delta * metric
+        for shift in (0.0, 1e-4, 1e-3, 1e-2):  # negative eigenvalues that are small are lifted
+            factor = factorised(matrix + curvature + shift * metric, symmetric=True)
+            if (factor.U.diagonal() > 0.0).all():
+                return factor
+        self._counted = min(0.8, max(self._counted, 0.1) / 0.64)
         while True:
             factor = factorised(matrix + self._counted * curvature, symmetric=True)
             if self._counted == 0.0 or (factor.U.diagonal() > 0.0).all():

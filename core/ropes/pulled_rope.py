@@ -46,12 +46,10 @@ class PulledRope:
     def curve(self) -> Curve:
         return self.last.curve
 
-    @property
-    def is_tight(self) -> bool:
-        """Whether half of the edges touch others, about as near as any do."""
-        touching = Contacts.near(self.curve.with_vertices(self.curve.vertices / thickness(self.curve)), 0.1)
-        strands = slice(touching.strands)
-        return len(np.unique([touching.i[strands], touching.j[strands]])) > 0.5 * len(self.curve)
+    def touching(self, margin: float) -> float:
+        """The share of edges that are up to a margin, in radii, as near to others as any are."""
+        near = Contacts.near(self.curve.with_vertices(self.curve.vertices / thickness(self.curve)), margin)
+        return len(np.unique([near.i[: near.strands], near.j[: near.strands]])) / self.curve.mesh.edges
 
     @property
     def promise(self) -> float:
@@ -134,13 +132,14 @@ class PulledRope:
     def refined(self, vertices: int) -> Iterator[Iterate]:
         """Twice as many vertices on a smoother curve, larger if the rope needs room; nothing if that is blocked.
 
-        Closed ropes with so many that eight times as many were too many are on cubic B-splines from there on, first
-        with two vertices for each control point, then with four.  Arcs have more only up to a few edges from where
-        strands touch.
+        Closed ropes of 200, or of a quarter of those that are wanted, are on cubic B-splines from there on, first with
+        two vertices for each control point, then with four.  Arcs have more only up to a few edges from where strands
+        touch.
         """
         before, point, mesh = self.last, self.point, self.curve.mesh
         counts, per = np.full(mesh.edges, 2), self.per
-        if mesh.all_closed and (per > 1 or len(self.curve) >= 2 * COARSE or 8 * len(self.curve) > vertices):
+        n, four = len(self.curve), PER_CONTROL * len(self.curve)
+        if per > 1 or (mesh.all_closed and four <= vertices and (n >= 2 * COARSE or 2 * four > vertices)):
             controls, at = [size // per for size in mesh.component_sizes], self.curve.vertices
             if per > 1:
                 basis = cubic_splines(controls, per)
@@ -162,7 +161,7 @@ class PulledRope:
             onward[finer.mesh.ends] = 0.0
             goal = finer.vertices + onward
         check_refined(self.curve, finer, ())
-        gap = 0.0 if point is None else point.gap
+        gap = 1e-3 if point is None else point.gap
         larger = max(1.0, (1.0 + 0.5 * gap) * self.unit / thickness(finer.with_vertices(goal)))
         cut = [*self.remeshed(finer)]
         for scale in larger + 0.002 * np.arange(10):

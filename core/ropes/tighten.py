@@ -35,7 +35,7 @@ from .pulled_rope import COARSE, GAP, PER_CONTROL, PulledRope
 class TightenOptions:
     """How a knot is pulled tight: ``vertices`` in the end, or up to twice as many, and ``starts``, drawn by a seed."""
 
-    vertices: int = 400
+    vertices: int = 800
     starts: int = 1
     seed: int = 0
     time_limit: float | None = None
@@ -75,7 +75,7 @@ class Tightened(Outcome):
 def tighten(
     curve: Curve | Task,
     *,
-    vertices: int = 400,
+    vertices: int = 800,
     starts: int = 1,
     seed: int = 0,
     callback: Callable[[Iterate], None] | None = None,
@@ -158,12 +158,12 @@ def _spread(start: Task, unit: float, unknot: bool) -> tuple[PulledRope, Iterabl
     flow = iterates(Run(problem, start.curve, options), ())
     rope = PulledRope(next(flow), unit)
     # over ends strands could slip
-    return rope, rope.spread(flow) if start.curve.mesh.all_closed and not rope.is_tight else ()
+    return rope, rope.spread(flow) if start.curve.mesh.all_closed and rope.touching(0.1) < 0.5 else ()
 
 
 def _tightened(starts: Sequence[tuple[Task, float]], coarse: int, unknot: bool, wanted: TightenOptions) -> Relaxation:
     rng, count = np.random.default_rng(wanted.seed), max(wanted.starts, len(starts))
-    trials = list[tuple[PulledRope, list[Iterate]]]()
+    trials, fine = list[tuple[PulledRope, list[Iterate]]](), wanted.vertices // PER_CONTROL
 
     def rank(trial: tuple[PulledRope, list[Iterate]]) -> tuple[int, float]:
         """Those of about as many vertices are compared, the others are last."""
@@ -173,8 +173,8 @@ def _tightened(starts: Sequence[tuple[Task, float]], coarse: int, unknot: bool, 
         for k in range(count):
             rope, spread = _spread(*starts[k % len(starts)], unknot)
             stirred = rope.stirred(rng) if k >= len(starts) else ()
-            if rope.curve.mesh.all_closed and rope.is_tight and k < len(starts):  # what is tight is only refined
-                steps = chain(rope.thinned(max(coarse, wanted.vertices // PER_CONTROL)), rope.shrunk())
+            if count == 1 and min(fine, len(rope.curve)) >= 2 * COARSE and rope.touching(0.003) > 0.9:
+                steps = chain(rope.thinned(fine), rope.shrunk())  # it is tight: it is refined only
             else:
                 steps = chain(spread, rope.thinned(coarse), stirred, rope.shrunk(), rope.pulled(wanted.vertices))
             if k == 0 and len(starts) == 1:

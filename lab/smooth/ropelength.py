@@ -12,6 +12,7 @@ from ...core.curve import Curve, check_closed
 from ...core.energies.edge_pairs import EdgePairs
 from ...core.energies.rope import closest
 from ...core.knots.inscribed import equal_steps, is_isotopic
+from ...core.ropes.splines import cubic_splines
 
 
 @checked
@@ -26,15 +27,11 @@ def ropelength_bound(curve: Curve, per_edge: int = 16, smoothed: Sequence[float]
     check_closed(curve, "ropelengths")
     if curve.dimension != 3:
         raise CurveError(f"the curve has dimension {curve.dimension}; ropelengths are of curves in space")
-    t = np.arange(per_edge)[:, None, None] / per_edge
-    weights = ((1.0 - t) ** 3, (3.0 * t - 6.0) * t**2 + 4.0, ((3.0 - 3.0 * t) * t + 3.0) * t + 1.0, t**3)
-    bounds = list[float]()
+    sizes, bounds = curve.mesh.component_sizes, list[float]()
+    basis = cubic_splines(sizes, per_edge)
     for part in smoothed:
-        splines = []
-        for p in curve.components:
-            controls = p + part * (np.roll(p, 1, axis=0) - 2.0 * p + np.roll(p, -1, axis=0))
-            points = np.sum([w * np.roll(controls, 1 - k, axis=0) for k, w in enumerate(weights)], axis=0) / 6.0
-            splines.append(points.swapaxes(0, 1).reshape(-1, 3))
+        controls = [p + part * (np.roll(p, 1, axis=0) - 2.0 * p + np.roll(p, -1, axis=0)) for p in curve.components]
+        splines = np.split(basis @ np.concatenate(controls), per_edge * np.cumsum(sizes)[:-1])
         fine = Curve.from_components(splines)
         if is_isotopic(curve, equal_steps(curve), fine, equal_steps(fine)):
             bounds.append(bound_by_arcs(fine))

@@ -16,7 +16,8 @@ from mobius_flow.core.ropes import TightenOptions, tightening
 from mobius_flow.core.ropes.contacts import Contacts
 from mobius_flow.core.ropes.interior_point import InteriorPoint
 from mobius_flow.core.ropes.pulled_rope import PulledRope
-from scipy.linalg import eigh
+from mobius_flow.core.ropes.splines import cubic_splines
+from scipy.linalg import eigvalsh
 from tasks import check
 from taylor import taylor_slope
 
@@ -50,11 +51,10 @@ def test_contacts_have_first_and_second_derivatives(loose):
 
     first = jet(0.0).first
     assert taylor_slope(lambda t: jet(t).value, [jet(0.0).value, contacts.along(first, v)]) >= 1.95
-    hessian = contacts.hessian(x, first, z, np.zeros_like(z))
-    second = -(hessian @ v.ravel()).reshape(v.shape)
+    outer, curved = contacts.second(x, first, z, z)
+    second = -(curved @ v.ravel()).reshape(v.shape)
     slope = taylor_slope(lambda t: contacts.sum_of(jet(t).first, z), [contacts.sum_of(first, z), second])
     assert slope >= 1.95
-    outer = contacts.hessian(x, first, 0.0 * z, z)
     assert np.allclose(v.ravel() @ (outer @ v.ravel()), z @ contacts.along(first, v) ** 2)
 
 
@@ -86,23 +86,34 @@ def test_forces_of_centred_ropes_are_the_slope_of_the_barrier(loose):
     assert taylor_slope(lambda t: point._walls(c + 0.005 * t * v), [first[0], 0.005 * first[1]]) >= 1.9
 
 
-def test_newton_steps_turn_negative_curvature_round(loose):
-    """As the dense matrix does whose eigenvalues are the absolute values of those in the rope's metric."""
+def test_newton_counts_so_much_of_the_walls_curvature_as_leaves_its_matrix_definite(loose):
     point = InteriorPoint(loose, 0.1, lambda vertices: True)
     point.step()
-    contacts, x, rng = point.contacts, point.curve.vertices, np.random.default_rng(5)
+    contacts, x = point.contacts, point.curve.vertices
     first = contacts.jet(EdgePairs.of(loose.mesh, x, contacts.i, contacts.j)).first
-    hessian = contacts.hessian(x, first, point.forces, point.forces)
+    stiff, curved = contacts.second(x, first, 0.1 * point.forces, point.forces)
     elastic = np.kron(point._elastic.toarray(), np.eye(3))
     ridge = 1e-6 * elastic.diagonal().mean() * np.eye(len(elastic))
-    metric = elastic + 1e4 * ridge
-    eigenvalues, modes = eigh(hessian.toarray() + elastic + ridge + point._delta * metric, metric)
-    assert np.sum(eigenvalues < 0.0) > 10
-    right = rng.normal(size=x.shape)
-    right -= right.mean(axis=0)  # hardly anything holds the rope as a whole
-    expected = modes @ (modes.T @ right.ravel() / np.abs(eigenvalues))
-    found = point._factorised(hessian)(right).ravel()
-    assert np.abs(found - expected).max() < 1e-3 * np.abs(expected).max()
+    factor = point._factorised(stiff, curved)
+    rest = stiff.toarray() + elastic + ridge + point._delta * (elastic + 1e4 * ridge)
+
+    def least(share):
+        return eigvalsh(rest + share * curved.toarray(), subset_by_index=[0, 0])[0]
+
+    assert 0.0 < point._counted < 1.0
+    assert least(point._counted) > 0.0 > least(1.0)
+    right = np.random.default_rng(5).normal(size=x.size)
+    np.testing.assert_allclose(rest @ (y := factor.solve(right)) + point._counted * (curved @ y), right, atol=1e-6)
+
+
+def test_splines_have_controls_of_which_they_are_averages_and_halves_are_theirs():
+    """Of equal points they are at these; twice as many vertices are at the same places, and others between."""
+    basis, finer = (cubic_splines([8, 9], per) for per in (2, 4))
+    assert np.allclose(basis.sum(axis=1), 1.0)
+    assert abs(finer[::2] - basis).max() < 1e-15
+    angles = 2.0 * np.pi * np.arange(9) / 9
+    points = finer[32:, 8:] @ np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    assert np.ptp(np.linalg.norm(points, axis=1)) < 1e-3  # of a curve with two derivatives
 
 
 def run(curve, **settings):
@@ -138,6 +149,16 @@ def test_what_is_tight_is_not_let_loose():
     assert max(again) < 1.2 * min(again)
 
 
+def test_what_is_tight_is_only_refined_and_ends_on_splines():
+    ring = np.exp(2j * np.pi * np.arange(200) / 200)
+    ring = np.stack([ring.real, ring.imag, 0.0 * ring.real], axis=1)
+    tight = Curve.from_components([ring, ring[:, [0, 2, 1]] + [1.0, 0.0, 0.0]])
+    iterates = list(islice(tightening(Task(curve=tight), TightenOptions(vertices=1600)), 9))
+    check(iterates)
+    assert [len(each.curve) for each in iterates[-5:]] == [800, 800, 1600, 1600, 1600]
+    assert iterates[-1].energy < 8.0 * np.pi * 1.001
+
+
 def test_an_unknot_becomes_the_circle_of_its_rope():
     iterates, outcome = run(Curve(CIRCLE * [1.0, 2.0, 1.0] + 0.1 * CIRCLE[:, [2, 2, 0]]), vertices=100)
     last = iterates[-1].curve
@@ -166,13 +187,13 @@ def test_strands_that_keep_away_from_afar_find_shorter_shapes():
 
 
 def test_of_starts_that_come_to_the_same_shape_one_goes_on(monkeypatch):
-    doubled, done = PulledRope.doubled, []
+    refined, done = PulledRope.refined, []
 
-    def noted(rope):
+    def noted(rope, vertices):
         done.append(rope)
-        return doubled(rope)
+        return refined(rope, vertices)
 
-    monkeypatch.setattr(PulledRope, "doubled", noted)
+    monkeypatch.setattr(PulledRope, "refined", noted)
     *_, last = tightening(Task(curve=HOPF), TightenOptions(vertices=200), [HOPF, HOPF])
     assert len(last.curve) == 200
     assert len(set(map(id, done))) == 1
@@ -222,7 +243,7 @@ def test_vertices_double_where_open_ropes_touch_and_ends_stay():
     rope, n = PulledRope(first, first.radius[0]), len(first.curve)
     touching = SimpleNamespace(i=np.array([50, 3]), j=np.array([120, 150]), strands=1)  # then corners
     before, rope.point = rope.curve.vertices - rope.center, SimpleNamespace(gap=0.0, contacts=touching)
-    assert list(rope.doubled())
+    assert list(rope.refined(800))
     after = rope.curve.vertices - rope.center
     assert len(after) == n + 71 + 2 * 4  # edges from one to the other, and some beyond
     scale = np.linalg.norm(after[1]) / np.linalg.norm(before[1])
