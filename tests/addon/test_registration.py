@@ -1,6 +1,8 @@
 """Registering and unregistering leave Blender as it was."""
 
 import ast
+import re
+from importlib import import_module
 from pathlib import Path
 
 import bpy
@@ -55,3 +57,12 @@ def test_no_annotation_is_beyond_the_oldest_blender():
     types = [ast.unparse(part) for note in notes for part in ast.walk(note) if isinstance(part, ast.Attribute)]
     assert {name.split(".")[2] for name in types if name.startswith("bpy.types.")} <= {*OLD.split()}
     assert all(hasattr(bpy.types, name) for name in OLD.split())  # tried with Blender 4.2, too
+
+
+def test_what_the_windows_cases_name_is_there():
+    """They are not run with the other tests, and would be the last to hear that something has moved."""
+    cases = "".join(path.read_text(encoding="utf-8") for path in (ADDON.parent / "tests" / "window").rglob("*.py"))
+    named = re.findall(r'\b(addon|core)\("?([\w.]*)"?\)\.(\w+)', cases)
+    assert len(named) > 20
+    for room, module, name in named:
+        assert hasattr(import_module(f"mobius_flow.{room}.{module}".rstrip(".")), name), (room, module, name)

@@ -256,7 +256,7 @@ def stroke() -> Steps:
 def crossing() -> tuple[int, int]:
     """Where the knot's first crossing is in the window."""
     values = np.array(obj().data["mobius_flow_plane"])
-    plane = core("keys.placement").DrawingPlane(values[:3], values[3:].reshape(3, 3))
+    plane = core("keys.planes").DrawingPlane(values[:3], values[3:].reshape(3, 3))
     curve = core().Curve.from_components(addon("curves.strands").Strands.of(obj()).components)
     drawing = core("knots").Drawing.seen(curve.with_vertices((curve.vertices - plane.origin) @ plane.axes.T))
     place = plane.raised(np.column_stack([drawing.crossings[:1], [0.0]]))[0]
