@@ -82,7 +82,9 @@ def tighten(
 ) -> Result:
     """Pull a knot or link tight: as short as a rope of its radius can be, nine tenths of the curve's thickness.
 
-    In the end there are ``vertices`` or up to twice as many.  Of several ``starts`` all but the first are stirred at
+    In the end there are ``vertices`` or up to twice as many.  What is tight is only refined.
+
+    Of several ``starts`` all but the first are stirred at
     random; the three that are shortest on few vertices are compared on twice as many, and the best of them goes on.
     ``energy`` of iterates is length over radius, ``gradient_norm`` the residual.  The result's outcome is a
     `Tightened`, unless it was cut short.

@@ -16,7 +16,7 @@ from ...core.ropes.splines import cubic_splines
 
 
 @checked
-def ropelength_bound(curve: Curve, per_edge: int = 16, smoothed: Sequence[float] = (0.01, 0.03, 0.06)) -> float:
+def ropelength_bound(curve: Curve, per_edge: int = 16, smoothed: Sequence[float] = (0.0, 0.03)) -> float:
     """A proved upper bound on the ropelength of a polygon's knot type: that of a curve C¹·¹ near it, rounded up.
 
     Arcs are inscribed in a polygon with ``per_edge`` times as many vertices on the cubic B-spline that is controlled by
