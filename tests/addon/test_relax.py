@@ -95,7 +95,7 @@ def test_a_link_keeps_its_splines_and_everything_else():
     data.splines[0].use_smooth = False
     data.bevel_depth, data.bevel_resolution, data.resolution_u = 0.125, 3, 5
     start = stored(data).astype(np.float64)
-    relax(vertices=60, **BOTTOM)
+    relax(vertices=60, radius="keep", **BOTTOM)
     wanted = RelaxOptions(vertices=60, radius=(0.125, 0.125), **BOTTOM)
     result = minimize(Curve.from_components([start[:24], start[24:]]), wanted).curve
     np.testing.assert_array_equal(stored(obj.data), result.vertices.astype(np.float32))

@@ -30,7 +30,7 @@ def test_relax_writes_curve_report_and_trajectory(run):
     assert said["converged"].endswith(" · 80 vertices")
     assert said["wrote"].split() == ["o.obj", "r.json", "t.npz"]
     assert said["next"] == "mobius-flow verify t.npz"
-    assert re.fullmatch(r"a rope of radius 0\.3\d* on the whole path", said["certified"])
+    assert re.fullmatch(r"a rope of radius 0\.75\d* on the whole path", said["certified"])
     values = json.loads(Path("r.json").read_text())
     assert (values["status"], values["vertices"], len(read_curve("o.obj"))) == ("converged", 80, 80)
     assert run("verify", "t.npz")[0] == 0

@@ -111,7 +111,7 @@ FINE: dict[str, tuple[Callable[..., object], dict[str, object]]] = {
     "verify": (verify, {"path": "missing.npz", "callback": lambda *_: None}),
     "knot": (knots.knot, {"name": "3_1", "vertices": 20}),
     "knot_type": (knots.knot_type, {"curve": TREFOIL, "effort": knots.Effort()}),
-    "Effort": (knots.Effort, {"vertices": 1000, "views": 3, "work": 5000, "doubled": 10, "names": 4}),
+    "Effort": (knots.Effort, {"vertices": 1000, "views": 3, "work": 5000}),
     "smooth_knot": (knots.smooth_knot, {"name": "3_1", "vertices": 20}),
     "rounded": (knots.rounded, {"curve": TREFOIL, "least": 40}),
     "torus_knot": (knots.torus_knot, {"p": 2, "q": 3, "vertices": 20, "major": 1.0, "minor": 0.3}),

@@ -9,7 +9,6 @@ from mobius_flow.core import METHODS, Objective, OptionError, RelaxOptions, Stat
 from mobius_flow.core.curve import refine
 from mobius_flow.core.descent import NoStep
 from mobius_flow.core.driver import run as run_module
-from mobius_flow.core.driver.move import Change
 from mobius_flow.core.driver.moves import Fallback
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.driver.run import Run
@@ -152,9 +151,9 @@ def test_it_is_not_asked_where_its_matrices_do_not_fit(rule, monkeypatch):
 def test_it_is_not_asked_twice_in_vain(rule):
     run = run_by()
     fallback = Fallback(run)
-    list(run.change(fallback(STUCK)))
+    run.method = fallback(STUCK).method
     assert run.method is HELPER
-    list(run.change(fallback(STUCK)))
+    run.method = fallback(STUCK).method
     assert run.method.rule is rule
     assert fallback(STUCK) is STUCK
 
@@ -171,9 +170,9 @@ def test_energies_of_another_mesh_are_not_compared(rule):
     run = run_by()
     fallback = Fallback(run)
     for _ in range(2):
-        list(run.change(fallback(STUCK)))
+        run.method = fallback(STUCK).method
     assert fallback(STUCK) is STUCK
-    list(run.change(Change(point=run_by(vertices=150).point)))
+    list(run.enter(run_by(vertices=150).point))
     assert fallback(STUCK).method is HELPER
 
 
