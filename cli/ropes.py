@@ -32,7 +32,7 @@ _EPILOG_OF_TIGHTEN = """\
 examples:
   mobius-flow tighten knot.txt tight.txt --report report.json --trajectory path.npz
   mobius-flow tighten knot.txt film.mp4 --constant-radius --look rope
-  mobius-flow knot 7_7 - | mobius-flow tighten - tight.txt --starts 5 --vertices 800
+  mobius-flow knot 7_7 - | mobius-flow tighten - tight.txt --starts 5 --vertices 1600
 
 exit status:
   0    the rope is as short as it can be nearby, or the time was up
@@ -68,8 +68,8 @@ def add_tighten(parser: argparse.ArgumentParser) -> None:
     parser.description = "Pull a knot or link tight: the shortest rope of its thickness."
     parser.epilog = _EPILOG_OF_TIGHTEN
     curves.add_input(parser, "polygons, closed or open")
-    text = "vertices in the end, or up to twice as many (default: 800)"
-    parser.add_argument("--vertices", metavar="N", type=int, default=800, help=text)
+    text = "vertices in the end, or up to twice as many (default: 800, and 400 of open ropes)"
+    parser.add_argument("--vertices", metavar="N", type=int, help=text)
     text = "starts on few vertices, stirred at random but for the first; the best three go on to the end (default: 1)"
     parser.add_argument("--starts", metavar="K", type=int, default=1, help=text)
     parser.add_argument("--seed", metavar="S", type=int, default=0, help="seed of the random motions (default: 0)")

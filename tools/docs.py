@@ -75,7 +75,7 @@ def commands() -> str:
             if each.option_strings and each.dest not in elsewhere and each.help not in (None, argparse.SUPPRESS):
                 option = f"`{max(each.option_strings, key=len)} {each.metavar or ''}".rstrip() + "`"
                 takers.setdefault(option, []).append(f"`{name}`")
-                texts.setdefault(option, str(each.help))
+                texts.setdefault(option, str(each.help) % vars(each))
     several = [(f"{one} ({', '.join(names)})", texts[one]) for one, names in takers.items() if len(names) > 1]
     sections = {"Several commands": several}
     for name in (*COMMANDS, *joined()):

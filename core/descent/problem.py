@@ -89,9 +89,8 @@ class Problem:
         given = pins, self.obstacles, self.solver, self.geometry, held.barycenters, symmetry
         problem = Problem.of(curve, lengths, *given, radius=self.radius)
         constraints = replace(problem.constraints, grown=held.grown)
-        objective = (
-            problem.objective if self.objective.rope else problem.objective.having(Rope, None)
-        )  # that has let go
+        # a rope that has let go stays so
+        objective = problem.objective if self.objective.rope else problem.objective.having(Rope, None)
         return replace(problem, objective=objective, constraints=constraints).at_curve(curve)
 
     def as_rope(self, radius: FloatArray | None) -> "Problem":

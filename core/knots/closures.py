@@ -30,7 +30,8 @@ def closed_far_away(curve: Curve, direction: tuple[float, ...] | None = None) ->
             last, first = (ends - middle) / np.maximum(np.linalg.norm(ends - middle, axis=1), 1e-300)[:, None]
             between = last + first
             if np.linalg.norm(between) < 1e-6:  # any way round will do: where the curve extends least
-                between = np.linalg.svd(curve.vertices - middle)[2][-1]
+                spread = curve.vertices - middle
+                between = np.linalg.eigh(spread.T @ spread)[1][:, 0]
                 between = between if abs(between @ last) < 0.9 else np.eye(curve.dimension)[np.abs(last).argmin()]
                 between = between - (between @ last) * last
             # lines to a corner that is this far out do not come near the curve

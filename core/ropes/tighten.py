@@ -33,16 +33,20 @@ from .pulled_rope import COARSE, GAP, PER_CONTROL, PulledRope
 
 @dataclass(frozen=True, kw_only=True)
 class TightenOptions:
-    """How a knot is pulled tight: ``vertices`` in the end, or up to twice as many, and ``starts``, drawn by a seed."""
+    """How a knot is pulled tight: ``vertices`` in the end, or up to twice as many, and ``starts``, drawn by a seed.
 
-    vertices: int = 800
+    By default there are 800 vertices, and 400 where components are open, which stay polygons.
+    """
+
+    vertices: int | None = None
     starts: int = 1
     seed: int = 0
     time_limit: float | None = None
 
     def __post_init__(self) -> None:
         for name, low in (("vertices", COARSE), ("starts", 1), ("seed", 0)):
-            check_number(name, getattr(self, name), low - 1, 20_000)
+            if getattr(self, name) is not None:
+                check_number(name, getattr(self, name), low - 1, 20_000)
         if self.time_limit is not None:
             check_number("time_limit", self.time_limit, 0.0, math.inf)
 
@@ -75,17 +79,16 @@ class Tightened(Outcome):
 def tighten(
     curve: Curve | Task,
     *,
-    vertices: int = 800,
+    vertices: int | None = None,
     starts: int = 1,
     seed: int = 0,
     callback: Callable[[Iterate], None] | None = None,
 ) -> Result:
     """Pull a knot or link tight: as short as a rope of its radius can be, nine tenths of the curve's thickness.
 
-    In the end there are ``vertices`` or up to twice as many.  What is tight is only refined.
-
-    Of several ``starts`` all but the first are stirred at
-    random; the three that are shortest on few vertices are compared on twice as many, and the best of them goes on.
+    In the end there are ``vertices`` or up to twice as many, by default 800, and 400 of open ropes.  What is tight is
+    only refined.  Of several ``starts`` all but the first are stirred at random; the three that are shortest on few
+    vertices are compared on twice as many, and the best of them goes on.
     ``energy`` of iterates is length over radius, ``gradient_norm`` the residual.  The result's outcome is a
     `Tightened`, unless it was cut short.
 
@@ -111,10 +114,11 @@ def tightening(task: Task, options: TightenOptions, others: Sequence[Curve] = ()
     if task.curve.dimension != 3:
         raise CurveError(f"the curve has dimension {task.curve.dimension}; only curves in space are pulled tight")
     # open ropes stay as long as they are, so that edges become shorter only where they are cut, once at least
-    few = COARSE if task.curve.mesh.all_closed else 2 * COARSE
-    coarse = options.vertices >> max(0, int(math.log2(options.vertices / few)))
+    few, vertices = (COARSE, 800) if task.curve.mesh.all_closed else (2 * COARSE, 400)
+    vertices = options.vertices or vertices
+    coarse = vertices >> max(0, int(math.log2(vertices / few)))
     if not task.curve.mesh.all_closed:
-        options = replace(options, vertices=max(options.vertices, coarse + 1))
+        vertices = max(vertices, coarse + 1)
     starts = list[tuple[Task, float]]()
     for given in (task, *map(Task.of, others)):
         start = given.refined(max(len(given.curve), coarse))
@@ -137,7 +141,7 @@ def tightening(task: Task, options: TightenOptions, others: Sequence[Curve] = ()
         starts = [(start, 0.9 * thickness(start.curve))]
     if not start.curve.mesh.all_closed:  # which are not scaled until they fit
         starts[0] = start, min(unit, 0.9 * thickness(start.curve))
-    work = BLAS.bounding(_tightened(starts, coarse, unknot, options))
+    work = BLAS.bounding(_tightened(starts, coarse, vertices, unknot, options))
     if options.time_limit is None:
         return work
     return within(TimeLimit(options.time_limit, used=time.perf_counter() - began), work)
@@ -163,9 +167,11 @@ def _spread(start: Task, unit: float, unknot: bool) -> tuple[PulledRope, Iterabl
     return rope, rope.spread(flow) if start.curve.mesh.all_closed and rope.touching(0.1) < 0.5 else ()
 
 
-def _tightened(starts: Sequence[tuple[Task, float]], coarse: int, unknot: bool, wanted: TightenOptions) -> Relaxation:
+def _tightened(
+    starts: Sequence[tuple[Task, float]], coarse: int, vertices: int, unknot: bool, wanted: TightenOptions
+) -> Relaxation:
     rng, count = np.random.default_rng(wanted.seed), max(wanted.starts, len(starts))
-    trials, fine = list[tuple[PulledRope, list[Iterate]]](), wanted.vertices // PER_CONTROL
+    trials, fine = list[tuple[PulledRope, list[Iterate]]](), vertices // PER_CONTROL
 
     def rank(trial: tuple[PulledRope, list[Iterate]]) -> tuple[int, float]:
         """Those of about as many vertices are compared, the others are last."""
@@ -178,7 +184,7 @@ def _tightened(starts: Sequence[tuple[Task, float]], coarse: int, unknot: bool, 
             if count == 1 and min(fine, len(rope.curve)) >= 2 * COARSE and rope.touching(0.003) > 0.9:
                 steps = chain(rope.thinned(fine), rope.shrunk())  # it is tight: it is refined only
             else:
-                steps = chain(spread, rope.thinned(coarse), stirred, rope.shrunk(), rope.pulled(wanted.vertices))
+                steps = chain(spread, rope.thinned(coarse), stirred, rope.shrunk(), rope.pulled(vertices))
             if k == 0 and len(starts) == 1:
                 yield rope.last
             if count == 1:
@@ -191,8 +197,8 @@ def _tightened(starts: Sequence[tuple[Task, float]], coarse: int, unknot: bool, 
             if not several or abs(trial[0].promise / several[-1][0].promise - 1.0) > 2e-4:
                 several.append(trial)
         del several[3:]  # which on few vertices are not told apart
-        for rope, way in several if coarse < wanted.vertices and len(several) > 1 else ():
-            way += chain(rope.refined(wanted.vertices), rope.pulled(wanted.vertices))
+        for rope, way in several if coarse < vertices and len(several) > 1 else ():
+            way += chain(rope.refined(vertices), rope.pulled(vertices))
         if several:
             rope, way = min(several, key=rank)
     except TimeIsUp:
@@ -201,11 +207,13 @@ def _tightened(starts: Sequence[tuple[Task, float]], coarse: int, unknot: bool, 
         raise
     if trials:
         yield from way
-    while (before := len(rope.curve)) < wanted.vertices or rope.point is None:
-        yield from rope.refined(wanted.vertices)
-        if len(rope.curve) == before:  # it is blocked
+    while (before := len(rope.curve)) < vertices or rope.point is None:
+        yield from rope.refined(vertices)
+        blocked = len(rope.curve) == before
+        if not blocked or rope.point is None:
+            yield from rope.pulled(before if blocked else vertices)
+        if blocked:
             break
-        yield from rope.pulled(wanted.vertices)
     point = rope.point
     assert point is not None, "it has been pulled"
     contacts, strands = point.contacts, slice(point.contacts.strands)

@@ -136,10 +136,7 @@ def _tightened(job: Job, task: Task, options: RelaxOptions, trajectory: Trajecto
         with suppress(CurveError):  # the fourth is drawn anew by every seed; hopped curves are far too thin for ropes
             others.append(start(job.name, min(number, 4), options.seed + number)[1])
     wanted = TightenOptions(
-        vertices=800 if options.vertices is None else options.vertices,
-        starts=job.tight,
-        seed=options.seed,
-        time_limit=options.time_limit,
+        vertices=options.vertices, starts=job.tight, seed=options.seed, time_limit=options.time_limit
     )
     return finish(tightening(task, wanted, others), task, trajectory.add)
 

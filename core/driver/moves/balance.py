@@ -128,9 +128,10 @@ class Balance(Move):
             for part in image.mesh.slices:
                 lengths[part] *= image.edge_lengths[part].sum() / lengths[part].sum()
             held = replace(constraints, lengths=lengths, barycenters=constraints.barycenters.on(image))
+            let_go = point.problem.objective.rope is None  # and stays so
             for rope, end in product(ropes, (q, -q)):  # the same map, with the pole coming from either side
-                problem = replace(point.problem.as_rope(rope), constraints=held)
-                if way := self._way(point, images, end, problem):
+                problem = replace(point.problem, radius=rope) if let_go else point.problem.as_rope(rope)
+                if way := self._way(point, images, end, replace(problem, constraints=held)):
                     return way
         return ()
 

@@ -25,12 +25,13 @@ class GiveWay(Move):
     rest: float = 1e-3  # the gradient's norm, relative to √E, from which on there is nothing to be patient for
     worth: float = 1e-3  # part of the energy that the promise must be
     share: float = 0.7  # that is left of the radius each time
-    _start: float = field(default=0.0, init=False)  # radius before it gave way, if it did
     _steps: int = field(default=0, init=False)  # for which it has held the curve up
 
     def __post_init__(self) -> None:
         begins, keeps = self.run.iterate.index == 0, self.run.options.radius == "keep"
-        self._sharp = begins and keeps and self.run.problem.certifiable and self.run.problem.radius is None
+        radius = self.run.problem.radius
+        self._sharp = begins and keeps and self.run.problem.certifiable and radius is None
+        self._start = 0.0 if radius is None else float(radius.max())
 
     def started(self) -> Change | None:
         """Nothing is in the way of a curve that is at rest by itself."""
@@ -74,10 +75,11 @@ class GiveWay(Move):
             return outcome.adding(
                 "the curve is no rope, as a corner is too sharp, or an obstacle too near, at the start"
             )
-        if not self._start or now is None:
+        end = 0.0 if now is None else float(now.max())
+        if end >= self._start:
             return outcome
         told = "the rope gave way from radius {start:.3g} to {end:.3g}, as it was in its own way"
-        return outcome.adding(told, start=self._start, end=float(now.max()))
+        return outcome.adding(told, start=self._start, end=end)
 
     @property
     def _may(self) -> bool:
@@ -95,5 +97,4 @@ class GiveWay(Move):
     def _thinner(self) -> Change:
         radius = self.run.problem.radius
         assert radius is not None
-        self._start = self._start or float(radius.max())
         return Change(point=self.run.point.changing(radius=self.share * radius))
