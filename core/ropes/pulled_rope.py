@@ -124,8 +124,8 @@ class PulledRope:
         if not self.curve.mesh.all_closed:
             return
         start, wanted = self.curve.vertices, 1.001 * self.unit / thickness(self.curve)
-        # 0.95 of the size at least is left at once, where nothing touches
-        steps = max(1, math.ceil(math.log(wanted) / math.log(0.95)))
+        # of the size a twentieth goes or comes at once: changes of lengths cost the checker room
+        steps = max(1, math.ceil(abs(math.log(wanted) / math.log(0.95))))
         for k in range(1, steps + 1):
             yield from self.follow([self.center + wanted ** (k / steps) * (start - self.center)])
 
