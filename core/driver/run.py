@@ -143,9 +143,8 @@ class Run:
 
     def view(self, point: Point) -> None:
         """Go on from another view of the same curve, of which the method remembers nothing unless it does the same."""
-        same = (
-            point.problem.objective is self.problem.objective and point.problem.constraints is self.problem.constraints
-        )
+        parts = "objective", "constraints", "metric", "geometry"
+        same = all(getattr(point.problem, part) is getattr(self.problem, part) for part in parts)
         self.point, self.memory = point.anchored, self.memory if same else SearchState(None, self.memory.last_step)
 
     def restart(self) -> None:

@@ -212,11 +212,11 @@ class SolidTorus:
     @classmethod
     def around(cls, curve: Curve) -> "SolidTorus":
         """The tube around the spline through the vertices of a knot; a CurveError for all but one closed component."""
+        from scipy.interpolate import CubicSpline  # which takes a while to import
+
         if curve.dimension != 3 or curve.mesh.closed != (True,):
             raise CurveError("satellites are drawn around a knot, one closed curve in space")
         closed = np.concatenate([curve.vertices, curve.vertices[:1]])
-        from scipy.interpolate import CubicSpline  # which takes a while to import
-
         spline = CubicSpline(np.append(arc_steps(curve.vertices), 1.0), closed, bc_type="periodic")
 
         def sample(count: int) -> tuple[FloatArray, FloatArray]:

@@ -169,7 +169,7 @@ class InteriorPoint:
             if further is None or further[1] >= found[1]:
                 break
             found, share = further, 2.0 * share
-        if share > 0.5:
+        if share > 0.2:  # with ½ open ropes stay where steps are too short
             self._delta = self._delta / 4.0 if self._delta > 1e-6 else 0.0
         elif share < 0.02:
             self._delta = max(4.0 * self._delta, 1e-4)

@@ -176,6 +176,14 @@ def test_energies_of_another_mesh_are_not_compared(rule):
     assert fallback(STUCK).method is HELPER
 
 
+def test_another_view_is_remembered_only_if_the_problem_is_the_same():
+    run = run_by()
+    run.accept(run.step())
+    for changes, kept in (({"radius": None}, True), ({"metric": HELPER.metric}, False)):
+        run.view(run.point.changing(**changes))
+        assert (run.memory.memory is not None) == kept
+
+
 @pytest.mark.parametrize("method", ["paper", "penalty-lbfgs", HELPER.name])
 def test_the_helper_the_paper_and_penalised_problems_get_no_help(rule, method):
     assert Fallback(run_by(method))(STUCK) is STUCK

@@ -1,5 +1,6 @@
 """Knots pulled tight: derivatives of contacts, equilibrium at rest, proofs of the way, and known lengths."""
 
+from dataclasses import replace
 from itertools import count, islice
 from types import SimpleNamespace
 
@@ -149,7 +150,18 @@ def test_what_is_tight_is_not_let_loose():
     assert max(again) < 1.2 * min(again)
 
 
-def test_what_is_tight_is_only_refined_and_ends_on_splines():
+def test_residuals_are_about_the_same_by_vertices_and_by_controls():
+    basis = cubic_splines([60], 4)
+    curve = Curve(basis @ knot("3_1", 60).vertices)
+    curve = curve.with_vertices(1.01 * curve.vertices / thickness(curve))
+    points = [InteriorPoint(curve, 0.01, lambda _: True, basis=each) for each in (None, basis)]
+    for point in points:
+        point.step()
+    assert points[1].residual == pytest.approx(points[0].residual, rel=0.2)
+
+
+def test_what_is_tight_is_only_refined_and_ends_on_splines(monkeypatch):
+    run = InteriorPoint.run
     ring = np.exp(2j * np.pi * np.arange(100) / 100)
     ring = np.stack([ring.real, ring.imag, 0.0 * ring.real], axis=1)
     tight = Curve.from_components([ring, ring[:, [0, 2, 1]] + [1.0, 0.0, 0.0]])
@@ -157,6 +169,11 @@ def test_what_is_tight_is_only_refined_and_ends_on_splines():
     check(iterates)
     assert [len(each.curve) for each in iterates[-5:]] == [400, 400, 800, 800, 800]
     assert iterates[-1].energy < 8.0 * np.pi * 1.003
+    # and is pulled as it is, if finer meshes are blocked
+    monkeypatch.setattr(PulledRope, "refined", lambda *_: iter(()))
+    monkeypatch.setattr(InteriorPoint, "run", lambda point, gap: [*islice(run(point, gap), 1)])
+    *_, last = tightening(Task(curve=tight), TightenOptions(vertices=800))
+    assert len(last.curve) == 200
 
 
 def test_an_unknot_becomes_the_circle_of_its_rope():
@@ -184,6 +201,28 @@ def test_only_what_is_no_knot_is_left_to_the_flow_and_its_moves(monkeypatch):
 def test_strands_that_keep_away_from_afar_find_shorter_shapes():
     """With the flow's own barrier 8_21 ends at 67.8."""
     assert tighten(knot("8_21", 100), vertices=100).outcome.ropelength < 66.5
+
+
+@pytest.mark.parametrize("factor", [0.6, 1.7])
+def test_ropes_shrink_and_grow_by_a_twentieth_a_leg(factor):
+    """Before they are pulled, where corners are too sharp for their thickness though arcs of the rope fit in."""
+    rope = PulledRope(first := next(tightening(Task(curve=HOPF), TightenOptions(vertices=100))), first.radius[0])
+    rope.last = replace(first, curve=first.curve.with_vertices(factor * first.curve.vertices))
+    lengths = np.array([rope.curve.length, *(each.curve.length for each in rope.shrunk())])
+    assert np.abs(np.log(lengths[1:] / lengths[:-1])).max() <= -np.log(0.95) + 1e-9
+    assert thickness(rope.curve) == pytest.approx(1.001 * rope.unit)
+
+
+def test_open_ropes_end_on_fewer_vertices(monkeypatch):
+    """Unless a number is given: they stay polygons, for which twice as many take minutes."""
+    asked = []
+    monkeypatch.setitem(
+        tightening.__wrapped__.__globals__, "_tightened", lambda *given: asked.append(given[2]) or iter(())
+    )
+    for curve in (HOPF, BESIDE):
+        for vertices in (None, 300):
+            tightening(Task(curve=curve), TightenOptions(vertices=vertices))
+    assert asked == [800, 300, 400, 301]  # arcs are cut once at least
 
 
 def test_of_starts_that_come_to_the_same_shape_one_goes_on(monkeypatch):
