@@ -68,13 +68,16 @@ def projected_conjugate_gradient(
     """Solve ⟨operator w − right, v⟩ = 0 for all tangent v, for tangent w, preconditioned by the metric of ``space``.
 
     The operator is symmetric, (n, m) to (n, m), the right side a covector, shape (n, m), and the tolerance relative to
-    its norm.  By Steihaug's rule the result is a direction of descent of the quadratic model.
+    its norm.  By Steihaug's rule the result is a direction of descent of the quadratic model.  The part of the residual
+    that constraints balance is taken off it every time, as else its rounding hides the rest (Gould, Hribar and Nocedal,
+    On the solution of equality constrained quadratic programming problems arising in optimization, 2001).
     """
     first = 0.0
 
     def precondition(r: FloatArray, decreases: list[float]) -> tuple[FloatArray, FloatArray] | None:
         nonlocal first
-        z = space.gradient(r)[0]
+        z, multipliers = space.gradient(r)
+        r = r - space.constraints.apply_transpose(multipliers)
         square = float(np.sum(r * z))
         first = first if decreases else square
         return (z, r) if square > tolerance**2 * first else None

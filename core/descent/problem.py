@@ -294,8 +294,8 @@ class Point:
 
     @cached_property
     def gradient_norm(self) -> float:
-        """Metric norm of the projected gradient: ⟨u, u⟩ = DE·u, because C u = 0."""
-        return float(np.sqrt(max(0.0, np.sum(self.gradient * self.derivative))))
+        """Metric norm of the projected gradient: ⟨u, u⟩ = (DE − Cᵀ λ)·u = DE·u, of which rounding leaves less."""
+        return float(np.sqrt(max(0.0, np.sum(self.gradient * self.lagrangian_derivative(self.multipliers)))))
 
     def lagrangian_derivative(self, multipliers: FloatArray) -> FloatArray:
         """DE − DΦᵀ λ for given multipliers, shape (n, m): the covector whose zeros are critical points."""
