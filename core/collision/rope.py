@@ -136,8 +136,7 @@ def _near(
         for k in range(0, int(whole.sum()), batch):
             a, b = i[whole][k : k + batch], j[whole][k : k + batch]
             yield points, corners(mesh, a, b), np.stack([a, b]), radius[component[a]] + radius[component[b]]
-        # of others only the parts that are half a circle apart or more count, but for a step: from the distance u on of
-        # i, and from v to w of j, counted as shares of the edges from the ends that are nearer along the curve
+        # of others only the parts that are half a circle apart or more count
         i, j, ways, half = i[~whole], j[~whole], ways[:, ~whole], half[~whole]
         # Edges between the two that turn by φ are within φ/2 of a direction, along which the way from one to the other
         # leads by π r cos φ/2 or more: far enough, and so that a checker sees it that looks at a bit too much
@@ -145,28 +144,18 @@ def _near(
         turn = np.where(ways[1] < ways[0], all_round[component[i]] - turn, turn)
         bent = np.cos(0.5 * np.minimum(turn, np.pi)) < 0.7  # which 2/π would do for
         i, j, ways, half = i[bent], j[bent], ways[:, bent], half[bent]
+        back, rest = ways[1] < ways[0], half - ways.min(axis=0)
         for steps in (4, 16):  # in which that border is followed, more where they do not suffice
-            back, rest, step = ways[1] < ways[0], half - ways.min(axis=0), np.arange(steps)[:, None] / steps
-            u = np.maximum(rest * (1.0 - step - 1.0 / steps), 0.0) / longest[i]
-            v = rest * step / longest[j]
-            w = np.where(step + 1.0 / steps == 1.0, 1.0, np.minimum(rest * (step + 1.0 / steps) / longest[j], 1.0))
-            pair = np.broadcast_to(np.arange(len(i)), u.shape)[there := (u <= 1.0) & (v <= 1.0)]
-            u, v, w, back = u[there], v[there], w[there], back[pair]
-            ends = [(i[pair], np.where(back, u, 1.0 - u)), (i[pair], np.where(back, 1.0, 0.0))]
-            ends += [(j[pair], np.where(back, 1.0 - s, s)) for s in (v, w)]
-            start, end = (
-                np.concatenate([p[:, mesh.tails[edge]] + share * e[:, edge] for edge, share in ends], axis=1)
-                for p, e in zip(points, spans, strict=True)
-            )
+            ends, pair = _beyond(mesh, points, spans, longest, i, j, back, rest, steps)
             vertices: IntArray = np.arange(4 * len(pair)).reshape(4, -1)
             width = 2.0 * radius[component[i[pair]]]
             if steps == 16:
-                yield (start, end), vertices, np.stack([i[pair], j[pair]]), width
+                yield ends, vertices, np.stack([i[pair], j[pair]]), width
                 continue
-            near = np.unique(pair[march(start, end, vertices, np.zeros(len(pair)), 1.0, width) < 1.0])
+            near = np.unique(pair[march(*ends, vertices, np.zeros(len(pair)), 1.0, width) < 1.0])
             if not len(near):
                 break
-            i, j, ways, half = i[near], j[near], ways[:, near], half[near]
+            i, j, back, rest = i[near], j[near], back[near], rest[near]
     if obstacles:
         still = still_triangles(tuple(obstacles), exponent)
         corners_of = np.ldexp(still.vertices.T, -exponent)
@@ -177,6 +166,38 @@ def _near(
                 vertices = np.concatenate([tree.corners[:, edges], mesh.size + still.tree.corners[:, others]])
                 names = np.stack([tree.order[edges], still.tree.order[others]])
                 yield (first, last), vertices, names, radius[component[names[0]]]
+
+
+def _beyond(
+    mesh: Mesh,
+    points: tuple[FloatArray, FloatArray],
+    spans: list[FloatArray],
+    longest: FloatArray,
+    i: IntArray,
+    j: IntArray,
+    back: BoolArray,
+    rest: FloatArray,
+    steps: int,
+) -> tuple[tuple[FloatArray, FloatArray], IntArray]:
+    """The parts of edges i and j that are farther apart along the curve than their nearest ends by ``rest``, but for a
+    step, at both times, as points x₀, x₁, y₀, y₁ one after the other, (m, 4k); and the pair that each is of, (k,).
+
+    The way from i to j leads ``back`` or ahead.
+    """
+    step = np.arange(steps)[:, None] / steps
+    # from the distance u on of i, and from v to w of j, as shares of the edges from the ends that are nearer
+    u = np.maximum(rest * (1.0 - step - 1.0 / steps), 0.0) / longest[i]
+    v = rest * step / longest[j]
+    w = np.where(step + 1.0 / steps == 1.0, 1.0, np.minimum(rest * (step + 1.0 / steps) / longest[j], 1.0))
+    pair = np.broadcast_to(np.arange(len(i)), u.shape)[there := (u <= 1.0) & (v <= 1.0)]
+    u, v, w, back = u[there], v[there], w[there], back[pair]
+    ends = [(i[pair], np.where(back, u, 1.0 - u)), (i[pair], np.where(back, 1.0, 0.0))]
+    ends += [(j[pair], np.where(back, 1.0 - s, s)) for s in (v, w)]
+    start, end = (
+        np.concatenate([p[:, mesh.tails[edge]] + share * e[:, edge] for edge, share in ends], axis=1)
+        for p, e in zip(points, spans, strict=True)
+    )
+    return (start, end), pair
 
 
 def _lost(x: FloatArray, y: FloatArray, difference: FloatArray) -> FloatArray:

@@ -160,6 +160,7 @@ class Point:
         if problem is self.problem:
             return self
         point, own = Point(problem, self.vertices, self.placed), self.problem
+        point.curve = self.curve
         if problem.metric is not own.metric:
             return point
         if (problem.constraints, problem.geometry) == (own.constraints, own.geometry) and "tangent_space" in vars(self):

@@ -79,7 +79,7 @@ class EdgePairs(NamedTuple):
     @classmethod
     def of(cls, mesh: Mesh, p: FloatArray, i: IntArray, j: IntArray) -> "EdgePairs":
         """Pairs (i, j) of edges between vertices, real or complex; ends are subtracted first, as edges may be close."""
-        x0, x1, y0, y1 = p[mesh.tails[i]], p[mesh.heads[i]], p[mesh.tails[j]], p[mesh.heads[j]]
+        x0, x1, y0, y1 = (p.take(end.take(k), axis=0) for k in (i, j) for end in (mesh.tails, mesh.heads))
         return cls(0.5 * ((x0 - y0) + (x1 - y1)), x1 - x0, y1 - y0)
 
     def along_coordinates(self) -> "Iterator[EdgePairs]":
@@ -100,12 +100,14 @@ class EdgePairs(NamedTuple):
 
 def scatter_first(mesh: Mesh, i: IntArray, j: IntArray, first: FloatArray) -> FloatArray:
     """Derivative by the vertices, shape (n, m), from those by (Δ, e, f) of pairs (i, j) of edges, shape (k, 3m)."""
-    by_delta, by_e, by_f = np.split(first, 3, axis=1)
-    by_midpoint, by_edge = (np.zeros((mesh.edges, by_delta.shape[1]), first.dtype) for _ in range(2))
-    np.add.at(by_midpoint, i, by_delta)
-    np.subtract.at(by_midpoint, j, by_delta)
-    np.add.at(by_edge, i, by_e)
-    np.add.at(by_edge, j, by_f)
+    by_delta, by_e, by_f = np.split(np.ascontiguousarray(first).view(np.float64), 3, axis=1)  # of complex steps too
+    edges = np.concatenate([i, j])
+
+    def summed(by_i: FloatArray, by_j: FloatArray) -> FloatArray:
+        columns = np.concatenate([by_i, by_j]).T
+        return np.stack([np.bincount(edges, c, mesh.edges) for c in columns], axis=1).view(first.dtype)
+
+    by_midpoint, by_edge = summed(by_delta, -by_delta), summed(by_e, by_f)
     return mesh.scatter(0.5 * by_midpoint - by_edge, 0.5 * by_midpoint + by_edge)
 
 

@@ -10,19 +10,36 @@ is less, as else straight pieces would feel it, and b = 2r. φ is that of increm
 Trans. Graphics 39, 2020).
 """
 
-from dataclasses import dataclass, field, replace
-from functools import cached_property
-from typing import Any, ClassVar, cast
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from typing import ClassVar, NamedTuple, cast
 
 import numpy as np
 import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
 from ..base.arguments import checked_fields
-from ..base.types import FloatArray, IntArray
+from ..base.types import FloatArray, IntArray, frozen
 from ..curve import Curve
 from ..curve.measures import bending_radii
 from .edge_pairs import E, EdgePairs, F, Jet, change, scatter_first, scatter_second, stepped
+
+
+class Walls(NamedTuple):
+    """Terms weight · φ((x − wall)/(end − wall)) of quantities x of k pairs (i, j) of edges; all of shape (k,)."""
+
+    i: IntArray
+    j: IntArray
+    wall: FloatArray
+    end: FloatArray
+    weight: FloatArray
+
+    def __call__(self, x: Jet) -> Jet:
+        """The terms; infinite at the walls and behind them."""
+        width = self.end - self.wall
+        value, slope, _ = phi((x.value - self.wall) / width)
+        return x.compose(self.weight * value, self.weight * slope / width)
 
 
 @checked_fields
@@ -42,7 +59,6 @@ class Rope:
     reach: float = 2.0  # of strands' distance, over 2r: with 1.5 tangles take a tenth more steps
     share: float = 0.95  # of the way between two strands along the curve, which is the reach if it is less
     bend: float = 2.0  # of bending radii, over r
-    _near: list[Any] = field(default_factory=list, init=False, repr=False)  # a curve, and pairs in reach nearby
 
     scale_exponent: ClassVar[float] = 0.0  # of rope and curve together
     name: ClassVar[str] = "rope"
@@ -67,9 +83,10 @@ class Rope:
         """E; infinite where the curve is no rope."""
         return self.value_and_derivative(curve)[0]
 
+    @lru_cache(maxsize=2)  # noqa: B019 (two: a run asks again for what the step to a point has asked)
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
         value, first = self._sum(curve, curve.vertices)
-        return float(value), first
+        return float(value), frozen(first)
 
     def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
         return change(self._sum(curve, stepped(curve.vertices, v))[1])
@@ -77,51 +94,52 @@ class Rope:
     def sparse_hessian(self, curve: Curve) -> sp.csr_array:
         """D²E as a sparse matrix: it couples near edges, and those that meet at a corner."""
         total = sp.csr_array((curve.vertices.size, curve.vertices.size))
-        rope = self._seeing(curve)
-        for (i, j), barrier in ((rope._strands(curve), rope._apart), (rope._corners(curve), rope._bent)):
-            pairs = EdgePairs.of(curve.mesh, curve.vertices, i, j)
-            second = [change(barrier(curve, i, j, each).first) for each in pairs.along_coordinates()]
-            total = total + scatter_second(curve.mesh, i, j, np.stack(second, axis=2))
+        for walls, quantity in self._barriers(curve):
+            pairs = EdgePairs.of(curve.mesh, curve.vertices, walls.i, walls.j)
+            second = [change(walls(quantity(each)).first) for each in pairs.along_coordinates()]
+            total = total + scatter_second(curve.mesh, walls.i, walls.j, np.stack(second, axis=2))
         return total
 
     def _sum(self, curve: Curve, vertices: FloatArray) -> tuple[FloatArray, FloatArray]:
         """E and its derivative at a curve's vertices, or after a complex step from them."""
         mesh, total, first = curve.mesh, np.zeros((), vertices.dtype), np.zeros_like(vertices)
-        rope = self._seeing(curve)
-        for (i, j), barrier in ((rope._strands(curve), rope._apart), (rope._corners(curve), rope._bent)):
-            if len(i):
-                part = barrier(curve, i, j, EdgePairs.of(mesh, vertices, i, j))
-                total = total + part.value.sum()
-                if not np.isfinite(total):
-                    return total, np.zeros_like(vertices)
-                first = first + scatter_first(mesh, i, j, part.first)
+        for walls, quantity in self._barriers(curve):
+            part = walls(quantity(EdgePairs.of(mesh, vertices, walls.i, walls.j)))
+            total = total + part.value.sum()
+            if not np.isfinite(total):
+                return total, np.zeros_like(vertices)
+            first = first + scatter_first(mesh, walls.i, walls.j, part.first)
         return total, first
 
     def meets(self, curve: Curve) -> bool:
         """Whether strands are no further apart than they must be, so that E is infinite; corners are left aside."""
-        (i, j), r = self._seeing(curve)._strands(curve), self.radius[curve.mesh.edge_component]
-        chord, _, _ = closest(EdgePairs.of(curve.mesh, curve.vertices, i, j))
-        return bool((np.einsum("km,km->k", chord, chord) <= (r[i] + r[j]) ** 2).any())
+        walls = self._seeing(curve)._strands(curve, 1.0)
+        chord, _, _ = closest(EdgePairs.of(curve.mesh, curve.vertices, walls.i, walls.j))
+        return bool((np.einsum("km,km->k", chord, chord) <= walls.wall**2).any())
 
-    def _strands(self, curve: Curve) -> tuple[IntArray, IntArray]:
-        """Unordered pairs of edges that are far enough along the curve, among them all within the barrier's reach.
+    def _barriers(self, curve: Curve) -> Iterator[tuple[Walls, Callable[[EdgePairs], Jet]]]:
+        """The terms of both sums that do not vanish at a curve, with the quantities that they are of."""
+        rope = self._seeing(curve)
+        yield rope._strands(curve, self.reach), distance
+        if len((corners := rope._corners(curve)).i):
+            yield corners, lambda pairs: bends(pairs)[0]
 
-        They are those found for a curve nearby, if there is one.
-        """
-        mesh, r, margin = curve.mesh, self.radius[curve.mesh.edge_component], 0.05 * float(self.radius.max())
-        if self._near:
-            there, i, j = self._near
-            if np.abs(curve.vertices - there.vertices).max() <= margin:
-                return i, j
-        # no distance changes by more than 2 √3 margins nearby
-        cut = 2.0 * self.reach * float(self.radius.max()) + 4.0 * margin
-        i, j = cKDTree(curve.midpoints).query_pairs(cut + float(curve.edge_lengths.max()), output_type="ndarray").T
-        far = self._way(i, j) > np.pi * r[i]
-        i, j = i[far], j[far]
-        chord, _, _ = closest(EdgePairs.of(mesh, curve.vertices, i, j))
-        near = np.einsum("km,km->k", chord, chord) < (self.reach * (r[i] + r[j]) + 4.0 * margin) ** 2
-        self._near[:] = curve, i[near], j[near]
-        return i[near], j[near]
+    @lru_cache(maxsize=2)  # noqa: B019 (products with the second derivative are of one curve)
+    def _strands(self, curve: Curve, reach: float) -> Walls:
+        """Pairs of edges far enough along the curve, among them all whose distances are less than a reach, over 2r."""
+        middle, ell, r = curve.midpoints, curve.edge_lengths, self.radius[curve.mesh.edge_component]
+        cut = 2.0 * reach * float(self.radius.max()) + float(ell.max())
+        i, j = cKDTree(middle).query_pairs(cut, output_type="ndarray").T
+        way = self._way(i, j)
+        far = way > np.pi * r[i]
+        i, j, way = i[far], j[far], way[far]
+        wall = r[i] + r[j]
+        end = np.minimum(reach * wall, self.share * way)
+        chord = middle.take(i, axis=0) - middle.take(j, axis=0)
+        near = np.einsum("km,km->k", chord, chord) < (end + 0.5 * (ell[i] + ell[j])) ** 2
+        i, j, wall, end = i[near], j[near], wall[near], end[near]
+        ell = cast(Curve, self.seen).edge_lengths
+        return Walls(i, j, wall, end, self.weight * ell[i] * ell[j] / (0.5 * wall) ** 2)
 
     def _way(self, i: IntArray, j: IntArray) -> FloatArray:
         """How far pairs of edges are apart along the curve that is seen, shape (k,): infinite between components."""
@@ -144,11 +162,13 @@ class Rope:
         around = np.where(mesh.closed, np.add.reduceat(step, mesh.edge_offsets[:-1]), np.inf)
         return np.stack([np.cumsum(step) - 0.5 * ell, around[mesh.edge_component]])
 
-    def _corners(self, curve: Curve) -> tuple[IntArray, IntArray]:
-        """The edges before and after each corner that bends within the barrier's reach."""
-        mesh = curve.mesh
-        at = mesh.inner[bending_radii(curve)[mesh.inner] < self.bend * self._tightest[mesh.component[mesh.inner]]]
-        return mesh.incoming[at], mesh.outgoing[at]
+    def _corners(self, curve: Curve) -> Walls:
+        """The edges at each corner that bends within the barrier's reach, once for the bending radius by each."""
+        mesh, radius = curve.mesh, self._tightest[curve.mesh.component]
+        at = mesh.inner[(bending_radii(curve) < self.bend * radius)[mesh.inner]]
+        before, after, r = mesh.incoming[at], mesh.outgoing[at], np.tile(radius[at], 2)
+        i, j = np.concatenate([before, after]), np.concatenate([after, before])
+        return Walls(i, j, r, self.bend * r, 0.5 * self.weight * cast(Curve, self.seen).edge_lengths[i] / r)
 
     def _seeing(self, curve: Curve) -> "Rope":
         """The rope with lengths of a curve on the mesh of this one: by default its own."""
@@ -157,20 +177,6 @@ class Rope:
     @property
     def _tightest(self) -> FloatArray:
         return self.radius if self.tightest is None else self.tightest
-
-    def _apart(self, curve: Curve, i: IntArray, j: IntArray, pairs: EdgePairs) -> Jet:
-        """The barrier between strands."""
-        ell, r = cast(Curve, self.seen).edge_lengths, self.radius[curve.mesh.edge_component]
-        width = r[i] + r[j]
-        end = np.minimum(self.reach * width, self.share * self._way(i, j))
-        return _barrier(distance(pairs), width, end, self.weight * ell[i] * ell[j] / (0.5 * width) ** 2)
-
-    def _bent(self, curve: Curve, i: IntArray, j: IntArray, pairs: EdgePairs) -> Jet:
-        """The barrier of corners, for both edges' bending radii."""
-        ell, r = cast(Curve, self.seen).edge_lengths, self._tightest[curve.mesh.edge_component[i]]
-        sides = zip(bends(pairs), (ell[i], ell[j]), strict=True)
-        first, second = (_barrier(radius, r, self.bend * r, 0.5 * self.weight * length / r) for radius, length in sides)
-        return first + second
 
 
 def bends(pairs: EdgePairs) -> tuple[Jet, Jet]:
@@ -214,9 +220,3 @@ def phi(z: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     z = np.where(behind | beyond, 1.0, z)
     k, log = 1.0 - z, np.log(z)
     return np.where(behind, np.inf, -k * k * log), 2.0 * k * log - k * k / z, 4.0 * k / z + (k / z) ** 2 - 2.0 * log
-
-
-def _barrier(x: Jet, wall: FloatArray, end: FloatArray, weight: FloatArray) -> Jet:
-    """Weight · φ((x − wall)/(end − wall)) of k quantities; infinite at the wall and behind it."""
-    value, slope, _ = phi((x.value - wall) / (end - wall))
-    return x.compose(weight * value, weight * slope / (end - wall))

@@ -1,13 +1,12 @@
 """A rope's barrier: its derivatives, where it acts and where not."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from mobius_flow.core import Curve
 from mobius_flow.core.collision import is_rope, thickness
 from mobius_flow.core.curve import subdivide
-from mobius_flow.core.energies.rope import Rope, phi
+from mobius_flow.core.energies.edge_pairs import EdgePairs
+from mobius_flow.core.energies.rope import Rope, distance, phi
 from mobius_flow.core.knots import knot, overhand
 from mobius_flow.core.knots.shapes import smooth_knot
 from shapes import regular_polygon
@@ -109,16 +108,18 @@ def test_split_edges_may_bend_as_they_do():
     assert (allowed.frozen_at(smooth).tightest == rope.radius).all()
 
 
-@pytest.mark.parametrize("step", [1e-3, 0.05, 0.5, 3.0])
-def test_pairs_in_reach_are_found_again(step):
-    """Of curves nearby, which are looked for among those of the first, and further away."""
+@pytest.mark.parametrize("share", [0.5, 0.8, 1.001])
+def test_pairs_in_reach_are_found_by_a_tree_among_all(share):
     curve = knot("7_7", 150)
-    rope, rng = tight(curve, 0.8), np.random.default_rng(3)
-    assert rope.value(curve) > 0.0
-    for _ in range(3):
-        away = rng.uniform(-1.0, 1.0, curve.vertices.shape) * step * rope.radius.max()
-        moved = curve.with_vertices(curve.vertices + away)
-        assert rope.value(moved) == pytest.approx(replace(rope).value(moved), rel=1e-12)
+    rope, r = tight(curve, share), share * thickness(curve)
+    walls, every = rope._strands(curve, rope.reach), np.triu_indices(150, 1)
+    found = walls(distance(EdgePairs.of(curve.mesh, curve.vertices, walls.i, walls.j)))
+    d, way = distance(EdgePairs.of(curve.mesh, curve.vertices, *every)).value, rope._way(*every)
+    end = np.minimum(4.0 * r, rope.share * way)
+    costs = np.where(way > np.pi * r, phi((d - 2.0 * r) / (end - 2.0 * r))[0], 0.0)
+    weight = rope.weight * np.prod([curve.edge_lengths[each] for each in every], axis=0) / r**2
+    assert found.value.sum() == pytest.approx((weight * costs).sum(), rel=1e-9)
+    assert rope.meets(curve) == np.isinf(costs).any() == (share > 1.0)
 
 
 @pytest.mark.parametrize("pieces", [10, 20, 40])
