@@ -70,9 +70,9 @@ def add_tighten(parser: argparse.ArgumentParser) -> None:
     curves.add_input(parser, "polygons, closed or open")
     text = "vertices in the end, or up to twice as many (default: 800, and 400 of open ropes)"
     parser.add_argument("--vertices", metavar="N", type=int, help=text)
-    text = "starts on few vertices, stirred at random but for the first; the best three go on to the end (default: 1)"
+    text = "starts on few vertices, all but the first drawn anew; the best three go on to the end (default: 1)"
     parser.add_argument("--starts", metavar="K", type=int, default=1, help=text)
-    parser.add_argument("--seed", metavar="S", type=int, default=0, help="seed of the random motions (default: 0)")
+    parser.add_argument("--seed", metavar="S", type=int, default=0, help="seed of the drawings (default: 0)")
     text = "write a map of where strands press on each other: SVG, PDF or TikZ"
     parser.add_argument("--contacts", metavar="MAP.svg", help=text)
     _add_the_rest(parser)

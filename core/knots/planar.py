@@ -8,7 +8,7 @@ rectangles: in these it is enough that all lines have length 1 or more.
 """
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import islice, pairwise
 
 import numpy as np
@@ -19,7 +19,8 @@ from ..collision import check_embedded
 from ..curve import MAKERS, Curve, refine
 from .diagrams import Diagram, PlanarCrossing, diagram_of
 from .diagrams.codes import diagram_from_code
-from .diagrams.rerouting import without_nugatory
+from .diagrams.projection import views
+from .diagrams.rerouting import rearranged, without_nugatory
 from .inscribed import MAX_VERTICES
 
 
@@ -42,13 +43,37 @@ def coded_knot(text: str, vertices: int | None = None, kind: str | None = None) 
     return refined(drawn(diagram_from_code(text, kind)), vertices)
 
 
-def drawn(diagram: Diagram) -> Curve:
-    """A polygon that looks like a diagram from above, nugatory crossings left out; its parts lie side by side."""
+def redrawn(curve: Curve, count: int, seed: int) -> Iterator[Curve]:
+    """Closed curves of the same type, ``count`` at most, drawn from other diagrams with other faces outside.
+
+    Each is four steps from the last: a random view is brought to few crossings and drawn, and that is seen from another
+    side.  There are none for what no view shows as one piece with crossings.
+    """
+    rng, seen = np.random.default_rng(seed), set[float]()
+    for step in range(1, 8 * count + 1):
+        *_, view = views(curve, 2, int(rng.integers(2**32)))
+        diagram = without_nugatory(rearranged(view, rng))
+        if not diagram.crossings or len(diagram.pieces()) > 1:
+            return
+        curve = drawn(diagram, int(rng.integers(len(diagram.faces))))
+        size = round(float(np.linalg.norm(curve.vertices)), 6)  # the same of one diagram, wherever it begins
+        if step % 4 == 0 and size not in seen:
+            seen.add(size)
+            yield curve
+        if len(seen) == count:
+            return
+
+
+def drawn(diagram: Diagram, outer: int | None = None) -> Curve:
+    """A polygon that looks like a diagram from above, nugatory crossings left out; its parts lie side by side.
+
+    Their largest faces are outside, or ``outer`` is, by its number, of a diagram in one piece without such crossings.
+    """
     parts: list[FloatArray] = []
     right = 0.0
     for piece in without_nugatory(diagram).pieces():
         if piece.crossings:
-            strands, places = [], grid_drawing(piece)
+            strands, places = [], grid_drawing(piece, outer)
             for (_, over), path, after in zip(piece.sequence, places, piece.next, strict=True):
                 # corners at bends are cut off, at 0.3 of a line of the grid on both sides
                 steps = 0.3 * np.sign(np.diff(path, axis=0, append=places[after][:1]))
@@ -99,8 +124,8 @@ def refined(curve: Curve, vertices: int | None) -> Curve:
     return refine(curve, vertices)
 
 
-def grid_drawing(piece: Diagram) -> list[FloatArray]:
-    """Draw a connected diagram in the plane that has crossings, none of them nugatory.
+def grid_drawing(piece: Diagram, outer: int | None = None) -> list[FloatArray]:
+    """Draw a connected diagram in the plane that has crossings, none of them nugatory, its largest face outside.
 
     Returns for each pass its place and those of the bends of the edge after it, shape (1 + bends, 2).
     """
@@ -115,7 +140,8 @@ def grid_drawing(piece: Diagram) -> list[FloatArray]:
         weights.append(weight)
         return len(tails) - 2
 
-    outer = max(range(len(piece.faces)), key=lambda k: len(piece.faces[k]))
+    if outer is None:
+        outer = max(range(len(piece.faces)), key=lambda k: len(piece.faces[k]))
     nodes, paths, lines = piece.crossings, [], []
     for edge, bends in enumerate(fewest_bends(piece, outer)):
         begin, end = (piece.sequence[i][0] for i in (edge, piece.next[edge]))

@@ -13,16 +13,12 @@ import numpy as np
 
 from ..base.types import FloatArray
 from ..collision import is_rope, thickness
-from ..collision.motion import walk
 from ..curve import Curve
 from ..curve.refine import onto_chords, subdivide
 from ..descent.task import check_refined
 from ..driver import Relaxation
-from ..driver.moves.hops import Field, random_flow
-from ..driver.moves.hops import radius as radius_of_gyration
 from ..io.trajectory import Iterate
 from ..solve.saddle.tangent_space import factorised
-from .contacts import Contacts
 from .interior_point import FALL, InteriorPoint, outward
 from .splines import cubic_splines
 
@@ -46,10 +42,12 @@ class PulledRope:
     def curve(self) -> Curve:
         return self.last.curve
 
-    def touching(self, margin: float) -> float:
-        """The share of edges that are up to a margin, in radii, as near to others as any are."""
-        near = Contacts.near(self.curve.with_vertices(self.curve.vertices / thickness(self.curve)), margin)
-        return len(np.unique([near.i[: near.strands], near.j[: near.strands]])) / self.curve.mesh.edges
+    @property
+    def is_tight(self) -> bool:
+        """Whether Newton's first step promises little: loose ropes shrink by a third or more, wherever they touch."""
+        curve = self.curve.with_vertices(1.001 / thickness(self.curve) * (self.curve.vertices - self.center))
+        mu = 0.03 * (curve.length / len(curve)) ** 2
+        return InteriorPoint(curve, mu, lambda _: True, 0.1).step()[1] < 0.1 * curve.length
 
     @property
     def promise(self) -> float:
@@ -105,19 +103,6 @@ class PulledRope:
                 return
             yield from self.follow([moved.vertices])
             yield from self.remeshed(Curve.from_components(rest, self.curve.mesh.closed))
-
-    def stirred(self, rng: np.random.Generator) -> Iterator[Iterate]:
-        """The rope after random motions."""
-        for _ in range(15):
-            velocity = random_flow(self.curve.vertices, rng, 4, 2.0)
-
-            def moved(_: float, stride: float, velocity: Field = velocity) -> FloatArray | None:
-                x = self.curve.vertices
-                there = np.asarray(x + stride * radius_of_gyration(x) * velocity(x))
-                return there if self.proves(there) else None
-
-            for _, vertices in walk(moved, 0.5, 0.02, 0.005):
-                yield from self.follow([vertices])
 
     def shrunk(self) -> Iterator[Iterate]:
         """The curve as small as its thickness allows, and a little larger than its rope needs."""

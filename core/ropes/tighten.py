@@ -5,7 +5,7 @@ Few vertices find the shape, more of them the length: the error of a polygon fal
 
 import math
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import chain
 from typing import NamedTuple
@@ -28,6 +28,7 @@ from ..driver.run import Run
 from ..energies.rope import Rope
 from ..io.trajectory import Iterate
 from ..knots import knot_type
+from ..knots.planar import redrawn
 from .pulled_rope import COARSE, GAP, PER_CONTROL, PulledRope
 
 
@@ -63,7 +64,7 @@ class Strut(NamedTuple):
 class Tightened(Outcome):
     """How tightening ended.
 
-    - ``ropelength``: length over thickness.
+    - ``ropelength``: length over thickness; 0 of straight ropes, which have none.
     - ``gap``: Σ force × clearance, relative to the length: by about that part the rope could still be shorter.
     - ``residual``: what forces lack to be in equilibrium, relative to the tension.
     - ``struts``: where strands press on each other.
@@ -87,8 +88,10 @@ def tighten(
     """Pull a knot or link tight: as short as a rope of its radius can be, nine tenths of the curve's thickness.
 
     In the end there are ``vertices`` or up to twice as many, by default 800, and 400 of open ropes.  What is tight is
-    only refined.  Of several ``starts`` all but the first are stirred at random; the three that are shortest on few
-    vertices are compared on twice as many, and the best of them goes on.
+    only refined.  Of several ``starts`` all but the first are drawn anew from other diagrams (`redrawn`), in the same
+    place, with handedness and components as they are, but no motion leads there.  The three that are shortest on few
+    vertices are compared on twice as many, and the best of them is the result, whose way begins at its start.  Open
+    ropes, unknots and links that come apart have one start.
     ``energy`` of iterates is length over radius, ``gradient_norm`` the residual.  The result's outcome is a
     `Tightened`, unless it was cut short.
 
@@ -103,11 +106,8 @@ def tighten(
 
 
 @BLAS.bounded()
-def tightening(task: Task, options: TightenOptions, others: Sequence[Curve] = ()) -> Relaxation:
-    """Yield the curve and all steps on its way; return how it ended, a `Tightened`.  Raises as `tighten` does.
-
-    ``others`` are closed curves of the same type, where the way may begin as well; what is no rope is left out.
-    """
+def tightening(task: Task, options: TightenOptions) -> Relaxation:
+    """Yield the curve and all steps on its way; return how it ended, a `Tightened`.  Raises as `tighten` does."""
     began = time.perf_counter()
     if task.pins or task.obstacles:
         raise OptionError("a knot is pulled tight in free space; leave pins and obstacles out")
@@ -119,15 +119,11 @@ def tightening(task: Task, options: TightenOptions, others: Sequence[Curve] = ()
     coarse = vertices >> max(0, int(math.log2(vertices / few)))
     if not task.curve.mesh.all_closed:
         vertices = max(vertices, coarse + 1)
-    starts = list[tuple[Task, float]]()
-    for given in (task, *map(Task.of, others)):
-        start = given.refined(max(len(given.curve), coarse))
-        thick = rope_radius(start, RelaxOptions(radius="keep"))
-        if thick is not None:
-            starts.append((start, float(thick.min())))
-        elif given is task:
-            raise CurveError("the curve is no rope: a corner is too sharp, or strands are too near; smooth or relax it")
-    start, unit = starts[0]
+    start = task.refined(max(len(task.curve), coarse))
+    thick = rope_radius(start, RelaxOptions(radius="keep"))
+    if thick is None:
+        raise CurveError("the curve is no rope: a corner is too sharp, or strands are too near; smooth or relax it")
+    unit = float(thick.min())
     away = float(np.abs(start.curve.vertices.mean(axis=0)).max())
     if away > 1e3 * unit:  # of such coordinates too few digits are left for strands that touch
         size = float(np.ptp(start.curve.vertices, axis=0).max())
@@ -137,11 +133,10 @@ def tightening(task: Task, options: TightenOptions, others: Sequence[Curve] = ()
             f"the curve is {away:.3g} from the origin, too far for ropes of radius {unit:.3g}; move it there"
         )
     if unknot := knot_type(start.curve).names == ("0_1",):  # the flow that undoes it needs its own mesh
-        start = task.refined()
-        starts = [(start, 0.9 * thickness(start.curve))]
-    if not start.curve.mesh.all_closed:  # which are not scaled until they fit
-        starts[0] = start, min(unit, 0.9 * thickness(start.curve))
-    work = BLAS.bounding(_tightened(starts, coarse, vertices, unknot, options))
+        start, unit = task.refined(), math.inf
+    if unknot or not start.curve.mesh.all_closed:  # which are not scaled until they fit
+        unit = min(unit, 0.9 * thickness(start.curve))
+    work = BLAS.bounding(_tightened(start, unit, coarse, vertices, unknot, options))
     if options.time_limit is None:
         return work
     return within(TimeLimit(options.time_limit, used=time.perf_counter() - began), work)
@@ -164,33 +159,40 @@ def _spread(start: Task, unit: float, unknot: bool) -> tuple[PulledRope, Iterabl
     flow = iterates(Run(problem, start.curve, options), ())
     rope = PulledRope(next(flow), unit)
     # over ends strands could slip
-    return rope, rope.spread(flow) if start.curve.mesh.all_closed and rope.touching(0.1) < 0.5 else ()
+    return rope, () if not start.curve.mesh.all_closed or rope.is_tight else rope.spread(flow)
 
 
 def _tightened(
-    starts: Sequence[tuple[Task, float]], coarse: int, vertices: int, unknot: bool, wanted: TightenOptions
+    start: Task, unit: float, coarse: int, vertices: int, unknot: bool, wanted: TightenOptions
 ) -> Relaxation:
-    rng, count = np.random.default_rng(wanted.seed), max(wanted.starts, len(starts))
+    alone = wanted.starts == 1 or unknot or not start.curve.mesh.all_closed
     trials, fine = list[tuple[PulledRope, list[Iterate]]](), vertices // PER_CONTROL
+
+    def starts() -> Iterator[Task]:
+        yield start
+        for other in () if alone else redrawn(start.curve, wanted.starts - 1, wanted.seed):
+            task = Task.of(other).refined(max(len(other), coarse))
+            thick, x = rope_radius(task, RelaxOptions(radius="keep")), task.curve.vertices
+            if thick is not None:  # they are ropes of the same radius in the same place
+                x = start.curve.vertices.mean(axis=0) + (1.0 + 1e-6) * unit / thick.min() * (x - x.mean(axis=0))
+                yield Task.of(task.curve.with_vertices(x))
 
     def rank(trial: tuple[PulledRope, list[Iterate]]) -> tuple[int, float]:
         """Those of about as many vertices are compared, the others are last."""
         return round(len(trial[0].curve) / coarse), trial[0].promise
 
     try:
-        for k in range(count):
-            rope, spread = _spread(*starts[k % len(starts)], unknot)
-            stirred = rope.stirred(rng) if k >= len(starts) else ()
-            if count == 1 and min(fine, len(rope.curve)) >= 2 * COARSE and rope.touching(0.003) > 0.9:
+        for each in starts():
+            rope, spread = _spread(each, unit, unknot)
+            if alone and min(fine, len(rope.curve)) >= 2 * COARSE and each.curve.mesh.all_closed and spread == ():
                 steps = chain(rope.thinned(fine), rope.shrunk())  # it is tight: it is refined only
             else:
-                steps = chain(spread, rope.thinned(coarse), stirred, rope.shrunk(), rope.pulled(vertices))
-            if k == 0 and len(starts) == 1:
+                steps = chain(spread, rope.thinned(coarse), rope.shrunk(), rope.pulled(vertices))
+            if alone:
                 yield rope.last
-            if count == 1:
                 yield from steps
             else:
-                trials.append((rope, way := [] if len(starts) == 1 else [rope.last]))
+                trials.append((rope, way := [rope.last]))
                 way += steps
         several = list[tuple[PulledRope, list[Iterate]]]()  # shapes, as starts often come to the same one
         for trial in sorted(trials, key=rank):
@@ -221,6 +223,9 @@ def _tightened(
     ropelength, gap, residual = rope.curve.length / thickness(rope.curve), point.gap, point.residual
     template = "ropelength {ropelength:.7g}, gap {gap:.1g}, residual {residual:.1g}"
     told = Message(template, ropelength=ropelength, gap=gap, residual=residual)
+    if not rope.curve.mesh.all_closed and point.excess < 1e-3:
+        straight = Message("the rope is straight, as no knot was in it")
+        return Tightened(Status.CONVERGED, (straight,), gap=gap, residual=residual)
     if gap <= GAP and residual <= 10.0 * GAP:
         status, said = Status.CONVERGED, Message("converged: {told}", told=told)
     else:
@@ -228,8 +233,6 @@ def _tightened(
     pressing = tuple(Strut(*each) for each in struts if each[2] > 1e-4)
     outcome = Tightened(status, (said,), ropelength=ropelength, gap=gap, residual=residual, struts=pressing)
     if not rope.curve.mesh.all_closed:
-        if point.excess < 1e-3:
-            return outcome.adding("the rope is straight, as no knot was in it")
         return outcome.adding("{excess:.5g} radii of rope are in the knot", excess=point.excess)
     if (point.curve.component_lengths < 2.01 * math.pi).all():
         return outcome.adding("circles of the rope's radius are left, as of unknots")

@@ -1,7 +1,7 @@
 """One run of a batch, from its start to its folder of results."""
 
 import time
-from contextlib import nullcontext, suppress
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -12,7 +12,6 @@ from ...cli.main import explained
 from ...cli.options import provenance
 from ...cli.terminal import one_line
 from ...core import (
-    Curve,
     CurveError,
     MobiusFlowError,
     RelaxOptions,
@@ -65,7 +64,11 @@ def _relaxed(job: Job) -> Row:
     with nullcontext() if file is None else curves.refusals(file):
         kind, task = _task(job, file)
         trajectory = Trajectory(origin, task.obstacles)
-        result = _tightened(job, task, options, trajectory) if job.tight else minimize(task, options, trajectory.add)
+        if job.tight:
+            few = {name: getattr(options, name) for name in ("vertices", "seed", "time_limit")}
+            result = finish(tightening(task, TightenOptions(starts=job.tight, **few)), task, trajectory.add)
+        else:
+            result = minimize(task, options, trajectory.add)
     smooth = _smooth(job, options, result)
     curve, after = result.curve, knot_type(result.curve)
     few = len(curve) <= PAIRS_UP_TO
@@ -127,18 +130,6 @@ def _task(job: Job, file: CurveFile | None) -> tuple[str, Task]:
         kind, curve = scrambled(curve, job.seed)
     obstacles = tuple(map(read_obstacle, still["avoid"]))
     return kind, Task(curve=curve, obstacles=obstacles, pins=pins, pin_tangents=still["pin_tangents"])
-
-
-def _tightened(job: Job, task: Task, options: RelaxOptions, trajectory: Trajectory) -> Result:
-    """The shortest rope from all starts: those of a name, or stirred ones."""
-    others = list[Curve]()
-    for number in range(2, job.tight + 1) if job.file is None else ():
-        with suppress(CurveError):  # the fourth is drawn anew by every seed; hopped curves are far too thin for ropes
-            others.append(start(job.name, min(number, 4), options.seed + number)[1])
-    wanted = TightenOptions(
-        vertices=options.vertices, starts=job.tight, seed=options.seed, time_limit=options.time_limit
-    )
-    return finish(tightening(task, wanted, others), task, trajectory.add)
 
 
 def _smooth(job: Job, options: RelaxOptions, result: Result) -> RestingCurve | Extrapolation | None:

@@ -157,6 +157,24 @@ def shuffled_down(diagram: Diagram, enough: Callable[[Diagram], bool]) -> Diagra
     return diagram
 
 
+def rearranged(diagram: Diagram, rng: np.random.Generator, moves: int = 10) -> Diagram:
+    """Another diagram of few crossings: all strands that can cross fewer edges are moved, in random order.
+
+    Then moves across as many edges follow, and of all that are seen the last one of fewest crossings is taken.
+    """
+    least = diagram = reduced(diagram)
+    for _ in range(moves if diagram.crossings else 0):
+        while shorter := next(shortenings(diagram, rng), None):
+            diagram = reduced(shorter.after)
+        if diagram.crossings <= least.crossings:
+            least = diagram
+        if not diagram.crossings:
+            break
+        other = shuffled(diagram, rng)
+        diagram = diagram if other is None else reduced(other.after)
+    return least
+
+
 def is_least(diagram: Diagram) -> bool:
     """Whether no diagram has fewer crossings than a simplified one: there are none, or over and under alternate.
 

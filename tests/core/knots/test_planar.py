@@ -8,11 +8,11 @@ from knot_diagrams import diagram
 from knot_type import UNKNOT, knot_invariants
 from mobius_flow.core import Curve, CurveError
 from mobius_flow.core.collision import check_embedded, minimal_gap
-from mobius_flow.core.knots import HARD_UNKNOTS, diagram_knot, knot
+from mobius_flow.core.knots import HARD_UNKNOTS, diagram_knot, knot, knot_type
 from mobius_flow.core.knots.braids import braid_diagram
-from mobius_flow.core.knots.diagrams import diagram_of, quick_invariants, views
+from mobius_flow.core.knots.diagrams import diagram_of, linking_numbers, quick_invariants, views
 from mobius_flow.core.knots.diagrams.rerouting import without_nugatory
-from mobius_flow.core.knots.planar import grid_drawing
+from mobius_flow.core.knots.planar import grid_drawing, redrawn
 
 RIGHT_TREFOIL = [(1, 5, 2, 4), (3, 1, 4, 6), (5, 3, 6, 2)]
 CODES = {
@@ -26,6 +26,24 @@ CODES = {
 @pytest.mark.parametrize("name", CODES)
 def test_small_codes_and_codes_read_off_other_polygons(name):
     assert knot_invariants(diagram_knot(CODES[name]).vertices) == knot_invariants(knot(name).vertices)
+
+
+@pytest.mark.parametrize("name", ["m8_20", "L6n1"])
+def test_drawings_of_other_diagrams_keep_the_type_and_a_seed_tells_which(name):
+    given = knot(name)
+    curves, again = (list(redrawn(given, 3, 5)) for _ in range(2))
+    assert [each.vertices.tolist() for each in curves] == [each.vertices.tolist() for each in again]
+    assert len({round(each.length, 6) for each in curves}) == 3
+    for each in curves:
+        assert knot_type(each).names == (name,)
+        assert linking_numbers(each) == linking_numbers(given)
+        assert len(each) < 8 * int(name[1])  # of few crossings
+
+
+def test_nothing_is_drawn_of_what_comes_apart():
+    circle = diagram_knot([(1, 1, 2, 2)], 30)
+    for curve in (circle, Curve.from_components([circle.vertices, circle.vertices + 5.0])):
+        assert not list(redrawn(curve, 3, 5))
 
 
 LONG = ("ochiai-4", "haken", "ochiai-2", "ochiai-3")

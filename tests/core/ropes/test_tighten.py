@@ -176,6 +176,12 @@ def test_what_is_tight_is_only_refined_and_ends_on_splines(monkeypatch):
     assert len(last.curve) == 200
 
 
+def test_strands_that_touch_everywhere_are_not_tight_yet():
+    """As those of a closed braid, whose two strands have the same distance all along."""
+    first = next(tightening(Task(curve=knot("7_1", 400)), TightenOptions(vertices=100)))
+    assert not PulledRope(first, first.radius[0]).is_tight
+
+
 def test_an_unknot_becomes_the_circle_of_its_rope():
     iterates, outcome = run(Curve(CIRCLE * [1.0, 2.0, 1.0] + 0.1 * CIRCLE[:, [2, 2, 0]]), vertices=100)
     last = iterates[-1].curve
@@ -217,7 +223,7 @@ def test_open_ropes_end_on_fewer_vertices(monkeypatch):
     """Unless a number is given: they stay polygons, for which twice as many take minutes."""
     asked = []
     monkeypatch.setitem(
-        tightening.__wrapped__.__globals__, "_tightened", lambda *given: asked.append(given[2]) or iter(())
+        tightening.__wrapped__.__globals__, "_tightened", lambda *given: asked.append(given[3]) or iter(())
     )
     for curve in (HOPF, BESIDE):
         for vertices in (None, 300):
@@ -233,7 +239,8 @@ def test_of_starts_that_come_to_the_same_shape_one_goes_on(monkeypatch):
         return refined(rope, vertices)
 
     monkeypatch.setattr(PulledRope, "refined", noted)
-    *_, last = tightening(Task(curve=HOPF), TightenOptions(vertices=200), [HOPF, HOPF])
+    monkeypatch.setitem(tightening.__wrapped__.__globals__, "redrawn", lambda *_: [HOPF, HOPF])
+    *_, last = tightening(Task(curve=HOPF), TightenOptions(vertices=200, starts=3))
     assert len(last.curve) == 200
     assert len(set(map(id, done))) == 1
 
@@ -330,7 +337,7 @@ def test_a_rope_without_a_knot_becomes_straight():
     wave = Curve(np.stack([t, np.sin(3 * t), 0.3 * np.cos(2 * t)], axis=1), Mesh((21,), (False,)))
     iterates, outcome = run(wave, vertices=100)
     assert outcome.converged
-    assert "no knot" in outcome.message
+    assert outcome.message == "the rope is straight, as no knot was in it"
     last = iterates[-1].curve
     assert np.linalg.norm(last.vertices[-1] - last.vertices[0]) == pytest.approx(last.length, rel=1e-6)
 
