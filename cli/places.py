@@ -15,7 +15,6 @@ from pathlib import Path
 from ..addon.pictures import export
 from ..core import Curve, MobiusFlowError
 from ..core.base import OptionError, OutputError, files, status_of, wrong_suffix
-from ..core.curve import check_closed
 from ..core.io import FORMATS, written_formats
 from ..core.keys.motion import check_dimension
 from . import curves
@@ -156,7 +155,6 @@ def check_holds(path: str, form: str | None, curve: Curve) -> None:
     try:
         if is_scene(path):
             check_dimension(curve)
-            check_closed(curve, "scenes, films and pictures")
         else:
             curves.format_for(path, form).text(curve)
     except MobiusFlowError as error:

@@ -73,6 +73,7 @@ sphinx_gallery_conf = {
     "show_memory": False,
     "write_computation_times": False,
     "min_reported_time": 1e9,
+    "matplotlib_animations": True,
     "abort_on_example_error": True,
 }
 

@@ -14,7 +14,7 @@ from ...core.collision import check_embedded, is_free
 from ...core.curve import Mesh, interpolated
 from ...core.driver.words import in_blenders_words, named, spline_names
 from ...core.keys.markers import along
-from ...core.keys.placement import Frame, Link, Measure, Similarity
+from ...core.keys.placement import Frame, Link, Measure, Similarity, in_view
 from ...core.keys.planes import Turn, orthonormal
 from . import bake, pins
 from .keyframes import fcurves_of, keyed_points
@@ -87,9 +87,9 @@ def world_motion(
 ) -> tuple[FloatArray, list[FloatArray], FloatArray]:
     """Sample curve objects at all their keys; where something moves them, at all frames of the scene too.
 
-    Returns ascending scene frames, (frames,), the points of all objects at each of them, (n, 3), and the radius of the
-    thickest tube there. In between, points move straight, or nearly so if something moves the objects. Modifiers are
-    ignored. Raises CurveError if splines cannot be read.
+    Returns ascending scene frames, (frames,), the points of all objects that are `in_view` at each of them, (n, 3), and
+    the radius of the thickest tube there. In between, points move straight, or nearly so if something moves the
+    objects. Modifiers are ignored. Raises CurveError if splines cannot be read.
     """
     recorded = [Recorded.of(obj) for obj in objects]
     moving = any(what_moves(obj) for obj in objects)
@@ -106,10 +106,11 @@ def world_motion(
         if (scene.frame_current, scene.frame_subframe) != frame_shown:
             scene.frame_set(frame_shown[0], subframe=frame_shown[1])
     shown = [each.at(np.interp(frames, each.frames, np.arange(len(each.frames)))) for each in recorded]
-    points = [
-        np.concatenate([place.to_world(each.points[k]) for place, each in zip(places, shown, strict=True)])
-        for k, places in enumerate(placements)
-    ]
+    mesh = Mesh(*(sum((getattr(each.mesh, part) for each in recorded), ()) for part in ("component_sizes", "closed")))
+    points = []
+    for k, places in enumerate(placements):
+        placed = [place.to_world(each.points[k]) for place, each in zip(places, shown, strict=True)]
+        points.append(in_view(Curve(np.concatenate(placed), mesh)))
     radii = [drawn_radius(obj) * each.radii.max(axis=1) for obj, each in zip(objects, shown, strict=True)]
     return frames, points, np.max(radii, axis=0)
 

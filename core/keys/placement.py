@@ -234,3 +234,27 @@ def at(points: FloatArray, wanted: FloatArray) -> FloatArray:
     """Which points, (n, 3), are nearest to one of those wanted, (k, 3), or coincide with such a point; shape (n,)."""
     distances = np.linalg.norm(points[:, None] - wanted[None], axis=2)
     return np.asarray((distances <= distances.min(axis=0)).any(axis=1))
+
+
+def in_view(curve: Curve, straight: float = 0.9, curled: float = 1.8) -> FloatArray:
+    """The points that a picture is made around, (n, 3): straight ends of a rope with a knot in it are drawn in.
+
+    An end is straight as far as the cosine of edges' angles with the outermost one is above ``straight``.  What is
+    between both ends is a knot if it is longer than its box's diagonal by the factor ``curled``, as half circles are
+    not; ends may reach from it as far as that diagonal.
+    """
+    points = curve.vertices.copy()
+    for piece, edges, closed in zip(curve.mesh.slices, curve.mesh.edge_slices, curve.mesh.closed, strict=True):
+        own, lengths = points[piece], curve.edge_lengths[edges]
+        directions = curve.edge_vectors[edges] / np.maximum(lengths, np.finfo(float).tiny)[:, None]
+        bent = np.flatnonzero((directions @ directions[[0, -1]].T < straight).all(axis=1))
+        if closed or not len(bent):
+            continue
+        first, last = bent[0], bent[-1] + 1
+        size = float(np.linalg.norm(np.ptp(own[first : last + 1], axis=0)))
+        if lengths[first:last].sum() > curled * size:
+            for end, knot in ((own[:first], own[first]), (own[last + 1 :], own[last])):
+                away = end - knot
+                far = np.linalg.norm(away, axis=1, keepdims=True)
+                end[:] = knot + away * np.minimum(1.0, size / np.maximum(far, size))
+    return points

@@ -11,6 +11,7 @@ from blender_scenes import evaluated, in_world
 from mobius_flow.addon.pictures import export, movie, rendering
 from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, relax
 from mobius_flow.core.keys.key_options import Playing
+from mobius_flow.core.knots import knot
 from processes import finished
 from shapes import hopf_link, regular_polygon, torus_trefoil
 
@@ -54,6 +55,20 @@ scene.render.resolution_x, scene.render.resolution_y, scene.cycles.samples = 32,
 scene.render.filepath = sys.argv[1] + "/a.png"
 bpy.ops.render.render(write_still=True)
 """
+
+
+def test_a_film_of_a_rope_looks_at_its_knot_and_shows_its_ends_to_the_end():
+    rope = knot("bowline", 100)
+    ends = rope.vertices[[0, -1]] + 60.0 * (rope.vertices[[0, -1]] - rope.vertices[[1, -2]])
+    parts = [np.concatenate([ends[:1], rope.vertices, ends[1:]])]
+    iterates = iterates_of(Curve.from_components(parts, [False]), max_iterations=0, mesh="fixed")
+    scene, certified = export._played(iterates, lambda scene: None, export.ONCE)
+    assert certified
+    (spline,) = bpy.data.objects["Curve"].data.splines
+    assert not spline.use_cyclic_u
+    size = np.linalg.norm(np.ptp([point.co[:3] for point in spline.points], axis=0))
+    away = scene.camera.matrix_world.translation - bpy.data.objects["Focus"].matrix_world.translation
+    assert away.length < 1.2 * size
 
 
 def test_a_scene_needs_no_add_on(tmp_path, iterates):

@@ -8,9 +8,10 @@ from mobius_flow.core.collision import is_rope
 from mobius_flow.core.curve import refine
 from mobius_flow.core.keys.key_options import Timing
 from mobius_flow.core.keys.motion import Recording
-from mobius_flow.core.keys.placement import Link, Measure, Placement, Similarity, at, spots
+from mobius_flow.core.keys.placement import Link, Measure, Placement, Similarity, at, in_view, spots
 from mobius_flow.core.keys.planes import DrawingPlane, Turn
 from mobius_flow.core.keys.recording import Kind
+from mobius_flow.core.knots import knot
 from recorded_motions import around, assert_proved, at_rest, followed, iterate
 from shapes import hopf_link, lattice_knot, regular_polygon, torus_trefoil
 
@@ -192,3 +193,18 @@ def test_sizes_change_evenly_between_curves_that_have_their_own(sizes, pins, nat
     motion.natural = natural
     seen = [np.linalg.norm(key.size.of(key.points.astype(float))[5]) for key in motion.keys(is_rope).keys]
     np.testing.assert_allclose(seen, shown, rtol=1e-6)
+
+
+def test_pictures_are_made_around_the_knot_of_a_rope_and_not_around_its_ends():
+    def arc(vertices):
+        return Curve.from_components([vertices], [False])
+
+    rope = knot("overhand", 60)
+    ends = rope.vertices[[0, -1]] + 30.0 * (rope.vertices[[0, -1]] - rope.vertices[[1, -2]])
+    longer = arc(np.concatenate([ends[:1], rope.vertices, ends[1:]]))
+    seen, size = in_view(longer), np.linalg.norm(np.ptp(rope.vertices, axis=0))
+    assert np.linalg.norm(np.ptp(longer.vertices, axis=0)) > 2.5 * size > 2.0 * np.linalg.norm(np.ptp(seen, axis=0))
+    np.testing.assert_array_equal(seen[20:40], longer.vertices[20:40])
+    bent = np.array([[-9.0, 0, 0], [0, 0, 0], [0, 1, 0], [9, 1, 0]])
+    for whole in (arc(bent), arc(bent[[0, 1, 3]] * [1, 0, 0]), torus_trefoil(60)):
+        np.testing.assert_array_equal(in_view(whole), whole.vertices)
