@@ -191,11 +191,10 @@ def _beyond(
     w = np.where(step + 1.0 / steps == 1.0, 1.0, np.minimum(rest * (step + 1.0 / steps) / longest[j], 1.0))
     pair = np.broadcast_to(np.arange(len(i)), u.shape)[there := (u <= 1.0) & (v <= 1.0)]
     u, v, w, back = u[there], v[there], w[there], back[pair]
-    ends = [(i[pair], np.where(back, u, 1.0 - u)), (i[pair], np.where(back, 1.0, 0.0))]
-    ends += [(j[pair], np.where(back, 1.0 - s, s)) for s in (v, w)]
+    edge, whole = np.stack([i, i, j, j])[:, pair], np.ones_like(u)
+    share = np.where(back, [u, whole, 1.0 - v, 1.0 - w], [1.0 - u, 0.0 * whole, v, w])
     start, end = (
-        np.concatenate([p[:, mesh.tails[edge]] + share * e[:, edge] for edge, share in ends], axis=1)
-        for p, e in zip(points, spans, strict=True)
+        (p[:, mesh.tails[edge]] + share * e[:, edge]).reshape(len(p), -1) for p, e in zip(points, spans, strict=True)
     )
     return (start, end), pair
 
