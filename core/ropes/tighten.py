@@ -232,6 +232,8 @@ def _tightened(
         status, said = Status.STALLED, Message("stalled: forces are not in equilibrium: {told}", told=told)
     pressing = tuple(Strut(*each) for each in struts if each[2] > 1e-4)
     outcome = Tightened(status, (said,), ropelength=ropelength, gap=gap, residual=residual, struts=pressing)
+    if trials and rope is not trials[0][0]:
+        outcome = outcome.adding("it begins at another diagram of the knot, to which no motion leads")
     if not rope.curve.mesh.all_closed:
         return outcome.adding("{excess:.5g} radii of rope are in the knot", excess=point.excess)
     if (point.curve.component_lengths < 2.01 * math.pi).all():

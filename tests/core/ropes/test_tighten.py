@@ -253,6 +253,12 @@ def test_of_several_starts_the_shortest_goes_on_and_a_seed_tells_which():
     check(several)
 
 
+def test_that_the_shortest_begins_elsewhere_is_told(monkeypatch):
+    monkeypatch.setitem(tightening.__wrapped__.__globals__, "redrawn", lambda *_: [Curve(CIRCLE)])
+    _, outcome = run(HOPF, vertices=100, starts=2)
+    assert "no motion leads" in str(outcome.clauses[-2])
+
+
 def test_an_overhand_knot_is_pulled_by_its_ends():
     loose = overhand(100)
     iterates = list(islice(tightening(Task(curve=loose), TightenOptions(vertices=200)), 25))
