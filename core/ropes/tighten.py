@@ -231,7 +231,7 @@ def _tightened(
     else:
         status, said = Status.STALLED, Message("stalled: forces are not in equilibrium: {told}", told=told)
     pressing = tuple(Strut(*each) for each in struts if each[2] > 1e-4)
-    outcome = Tightened(status, (said,), ropelength=ropelength, gap=gap, residual=residual, struts=pressing)
+    outcome: Outcome = Tightened(status, (said,), ropelength=ropelength, gap=gap, residual=residual, struts=pressing)
     if trials and rope is not trials[0][0]:
         outcome = outcome.adding("it begins at another diagram of the knot, to which no motion leads")
     if not rope.curve.mesh.all_closed:

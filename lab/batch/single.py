@@ -65,8 +65,8 @@ def _relaxed(job: Job) -> Row:
         kind, task = _task(job, file)
         trajectory = Trajectory(origin, task.obstacles)
         if job.tight:
-            few = {name: getattr(options, name) for name in ("vertices", "seed", "time_limit")}
-            result = finish(tightening(task, TightenOptions(starts=job.tight, **few)), task, trajectory.add)
+            wanted = {name: getattr(options, name) for name in ("vertices", "seed", "time_limit")}
+            result = finish(tightening(task, TightenOptions(starts=job.tight, **wanted)), task, trajectory.add)
         else:
             result = minimize(task, options, trajectory.add)
     smooth = _smooth(job, options, result)
