@@ -66,9 +66,7 @@ def thickness(curve: Curve, most: float = np.inf) -> float:
     bend, (points, unit) = float(bending_radii(curve).min()), scaled_points(curve)
     best = min(float(np.ldexp(2.0 * min(bend, most), -unit)) ** 2, 4.0 * len(points))  # for coordinates within ±1
     mesh, ell, tree = curve.mesh, curve.edge_lengths, BoxTree.build(curve.mesh, points)
-    alone = len(mesh.component_sizes) == 1
-    # of straight arcs no two points are far enough along the curve
-    near = () if alone and np.pi * bend > curve.length else tree.pairs(nearer_than(lambda: best))
+    near = tree.pairs(nearer_than(lambda: best))
     for a, b in near:
         # Points just half a circle apart are two radii apart or more (Schur's theorem).  So where the closest points of
         # two edges are nearer along the curve, none of the others can count for less than the bending radius.
