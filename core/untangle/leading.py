@@ -40,6 +40,8 @@ class Lead:
         for _ in range(4):
             new[1:-1] = 0.25 * new[:-2] + 0.5 * new[1:-1] + 0.25 * new[2:]
         self.far = np.linalg.norm(new - old[:, :2], axis=1)
+        # springs are stiffer on ways shorter than a face, as they must be gone to their ends, too
+        self.firm = np.clip(rope.face / (self.far.max() + 1e-300), 1.0, 7.0) ** 2
         # the area that is swept for each crossing, for which many at once count less
         self.cost = float(self.far.mean() * max(was[-1], now[-1])) / max(move.saved, 0.5) ** 0.7
         both = np.vstack([old[:, :2], new])
@@ -72,7 +74,8 @@ class Lead:
         t = np.gradient(places, axis=0)
         t /= np.linalg.norm(t, axis=1)[:, None] + 1e-300
         # weaker along the strand, and at its ends
-        stiffness = (hold * (0.1 + 0.9 * self.bump))[:, None, None] * (np.eye(3) - 0.9 * t[:, :, None] * t[:, None])
+        firm = hold * self.firm * (0.1 + 0.9 * self.bump)
+        stiffness = firm[:, None, None] * (np.eye(3) - 0.9 * t[:, :, None] * t[:, None])
         if landed:
             stiffness[:, 2] = stiffness[:, :, 2] = 0.0
         return Springs(self._wrapped(self.first + np.arange(self.count)), places, stiffness, landed)

@@ -189,7 +189,7 @@ class ElasticRope:
         unit, along, eye = float(ell.mean()) / face**2, here.edge_vectors / ell[:, None], np.eye(3)
         if springs is None:  # what is not led is to stay where ways have been planned
             slack = ell.sum() / (face * _needed(crossings)) - 1.0
-            self._pull = 0.06 * float(np.clip(slack / 0.15, -0.2, 1.0))
+            self._pull = float(np.clip(0.4 * slack, -0.012, 0.02))  # more draws hooked loops tight
         goal = (1.0 - self._pull) * means
         both = along[:, :, None] * along[:, None, :]
         stiffness = both + np.maximum(0.0, 1.0 - goal / ell)[:, None, None] * (eye - both)

@@ -20,7 +20,7 @@ from mobius_flow.core.untangle.drawing import PlaneDrawing
 from mobius_flow.core.untangle.leading import Lead, lead
 from mobius_flow.core.untangle.model import ElasticModel
 from mobius_flow.core.untangle.rope import ElasticRope, Springs
-from mobius_flow.core.untangle.ways import Plane
+from mobius_flow.core.untangle.ways import Plane, Way
 from taylor import taylor_slope
 
 
@@ -172,6 +172,25 @@ def test_springs_lead_vertices_and_no_further_than_the_rest_allows():
     for _ in range(12):
         rope.step(Springs(k, through, np.tile(np.eye(3), (20, 1, 1)), landed=False))
     assert jones(simplified(drawing(rope).diagram)) == jones(simplified(drawing(laid("3_1")).diagram))
+
+
+def test_strands_go_short_ways_to_their_ends():
+    rope = laid("3_1")
+    seen, bump = drawing(rope), np.sin(np.linspace(0.0, np.pi, 21))[:, None]
+    out = rope.seen[40:61, :2] - rope.seen[:, :2].mean(axis=0)
+    corners = rope.seen[40:61, :2] + 0.1 * rope.face * bump * out / np.linalg.norm(out, axis=1)[:, None]
+    each = Lead(rope, seen, StrandMove(seen.diagram, next(strands(seen.diagram)), []), Way((40.0, 60.0), corners, []))
+    lead(rope, [each])
+    way, gone = each.new - each.old[:, :2], rope.seen[each.vertices, :2] - each.old[:, :2]
+    assert (np.sum(gone * way, axis=1) > 0.35 * np.sum(way**2, axis=1))[6:-6].all()
+
+
+def test_what_is_too_long_is_drawn_in_gently():
+    """Tension that shortens all edges at once would draw loops tight that hook each other."""
+    rope = laid("5_2")
+    rope.face *= 0.1
+    assert rope.step()
+    assert rope._pull == 0.02
 
 
 def test_a_rope_stays_one_of_its_radius():
