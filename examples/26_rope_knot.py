@@ -11,7 +11,7 @@ from drawing import view
 from matplotlib.animation import FuncAnimation
 from matplotlib.collections import LineCollection
 from mobius_flow.core import Curve, tighten
-from mobius_flow.core.keys.placement import in_view
+from mobius_flow.core.keys.placement import framed
 from mobius_flow.core.knots import knot
 from scipy.ndimage import uniform_filter1d
 
@@ -22,9 +22,9 @@ assert result.certified
 assert result.outcome.converged
 
 # right, up and near, from where the tight knot is seen best; the camera comes nearer as the knot gets smaller
-axes = view(Curve(in_view(path[-1].curve), path[-1].curve.mesh))
+axes = view(Curve(framed(path[-1].curve), path[-1].curve.mesh))
 shapes = [(each.curve.vertices - each.curve.vertices.mean(axis=0)) @ axes for each in path]
-widths = [1.2 * np.ptp(in_view(each.curve) @ axes[:, 0]) for each in path]
+widths = [1.2 * np.ptp(framed(each.curve) @ axes[:, 0]) for each in path]
 widths = uniform_filter1d(np.maximum.accumulate(widths[::-1])[::-1], 15, mode="nearest")
 # moments between which the camera comes evenly nearer
 way = np.append(0.0, np.cumsum(1e-3 - np.diff(np.log(widths))))

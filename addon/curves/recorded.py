@@ -14,7 +14,7 @@ from ...core.collision import check_embedded, is_free
 from ...core.curve import Mesh, interpolated
 from ...core.driver.words import in_blenders_words, named, spline_names
 from ...core.keys.markers import along
-from ...core.keys.placement import Frame, Link, Measure, Similarity, in_view
+from ...core.keys.placement import Frame, Link, Measure, Similarity, framed
 from ...core.keys.planes import Turn, orthonormal
 from . import bake, pins
 from .keyframes import fcurves_of, keyed_points
@@ -84,12 +84,12 @@ def _radii(data: bpy.types.Curve, mesh: Mesh) -> FloatArray:
 
 def world_motion(
     scene: bpy.types.Scene, objects: Sequence[bpy.types.Object]
-) -> tuple[FloatArray, list[FloatArray], FloatArray]:
+) -> tuple[FloatArray, list[FloatArray], list[FloatArray], FloatArray]:
     """Sample curve objects at all their keys; where something moves them, at all frames of the scene too.
 
-    Returns ascending scene frames, (frames,), the points of all objects that are `in_view` at each of them, (n, 3), and
-    the radius of the thickest tube there. In between, points move straight, or nearly so if something moves the
-    objects. Modifiers are ignored. Raises CurveError if splines cannot be read.
+    Returns ascending scene frames, (frames,), the points of all objects at each of them, (n, 3), first as they are
+    `framed`, and the radius of the thickest tube there. In between, points move straight, or nearly so if something
+    moves the objects. Modifiers are ignored. Raises CurveError if splines cannot be read.
     """
     recorded = [Recorded.of(obj) for obj in objects]
     moving = any(what_moves(obj) for obj in objects)
@@ -110,9 +110,10 @@ def world_motion(
     points = []
     for k, places in enumerate(placements):
         placed = [place.to_world(each.points[k]) for place, each in zip(places, shown, strict=True)]
-        points.append(in_view(Curve(np.concatenate(placed), mesh)))
+        points.append(np.concatenate(placed))
+    seen = [framed(Curve(each, mesh)) for each in points]
     radii = [drawn_radius(obj) * each.radii.max(axis=1) for obj, each in zip(objects, shown, strict=True)]
-    return frames, points, np.max(radii, axis=0)
+    return frames, seen, points, np.max(radii, axis=0)
 
 
 def drawn_radius(obj: bpy.types.Object) -> float:

@@ -18,7 +18,7 @@ from ...core.base import FloatArray, OutputError, atomic_write, termination_rais
 from ...core.collision import is_rope
 from ...core.keys.key_options import Playing
 from ...core.keys.motion import check_dimension, recorded
-from ...core.keys.placement import Measure, Origin, in_view
+from ...core.keys.placement import Measure, Origin, framed
 from ...core.keys.recording import Key, Keys
 from ...core.keys.tube import rope_radii, rounded, tube_radii
 from .looks import DEFAULT, LOOKS
@@ -157,14 +157,14 @@ def compose(
         passed = np.cumsum((lengths / lengths.sum(axis=1, keepdims=True)).mean(axis=0))
         along = np.concatenate([[0.0], passed / passed[-1]])
     colour_components(data, look=look, along=along)
-    views = [in_view(Curve(each.astype(np.float64), mesh)) for each in points]
+    views = [framed(Curve(each.astype(np.float64), mesh)) for each in points]
     # up is where the last shape extends least, rather up than down
     least = np.linalg.svd(views[-1] - views[-1].mean(axis=0), full_matrices=False)[2][2]
     ground = stage.Ground.around(views, None if cut_out else least * np.sign(least[np.abs(least).argmax()]))
     size = scene.render.resolution_x, scene.render.resolution_y
     floor = stage.build(scene.collection, ground, LOOKS[look])
     floor.is_shadow_catcher = scene.render.film_transparent = cut_out
-    seen = views, radii.max(axis=1), frames
+    seen = views, points, radii.max(axis=1), frames
     scene.camera = stage.follow(scene.collection, size, ground, floor, *seen, playing.timing)
     scene.world = bundled("worlds", LOOKS[look].label)
     scene.world.name = "World"

@@ -109,23 +109,24 @@ def follow(
     size: tuple[float, float],
     stage: Ground,
     floor: bpy.types.Object,
+    seen: Sequence[FloatArray],
     points: "Sequence[Frame | FloatArray]",
     radii: FloatArray,
     frames: FloatArray,
     timing: Timing = ONCE,
 ) -> bpy.types.Object:
-    """Add a camera that sees the whole tube in every frame, and keep the floor just below it.
+    """Add a camera that sees what is to be seen of a tube in every frame, and keep the floor just below the whole tube.
 
     It swings around the stage, looks at an empty and is focused there. ``size`` is that of its pictures, in any unit;
-    the floor is at the height of the stage's middle; points are the vertices, (n, 3), of every key; ``timing`` tells
-    whether keys are passed again on the way back.
+    the floor is at the height of the stage's middle; points are the vertices, (n, 3), of every key, and ``seen`` those
+    as they are `framed`; ``timing`` tells whether keys are passed again on the way back.
     """
     data, calm = bpy.data.cameras.new("Camera"), 25  # frames over which its way is smoothed
     data.lens, data.sensor_width = 60.0, 36.0  # mm
     camera, focus = add(collection, "Camera", data), add(collection, "Focus", None)
     every = np.arange(np.floor(frames[0]), np.ceil(frames[-1]) + 1)
     slopes = 0.5 * data.sensor_width / data.lens * np.array(size) / max(size)  # tangents of half the angles of view
-    stacked, places = np.stack(points).astype(np.float64), np.interp(every, frames, np.arange(len(frames)))
+    stacked, places = np.stack(seen), np.interp(every, frames, np.arange(len(frames)))
     shapes = [(interpolated(stacked, at[None])[0] - stage.middle) @ stage.axes.T for at in places]
     views = []  # right, up and backward, in the stage's axes, rows; once to either side in a film
     for turn in np.radians(24.0) * np.sin(np.linspace(0.0, 2.0 * np.pi, len(every))):
@@ -136,9 +137,9 @@ def follow(
     # centre c, and then the distance that a calmly moving c needs; all in the stage's axes
     slopes, thick = slopes / stage.margin, np.interp(every, frames, radii)
     reaches = thick[:, None] * np.sqrt(1 + slopes**2)
-    seen = [shape @ view.T for shape, view in zip(shapes, views, strict=True)]
-    high = [(p[:, :2] + p[:, 2:] * slopes + r).max(axis=0) for p, r in zip(seen, reaches, strict=True)]
-    low = [(p[:, :2] - p[:, 2:] * slopes - r).min(axis=0) for p, r in zip(seen, reaches, strict=True)]
+    turned = [shape @ view.T for shape, view in zip(shapes, views, strict=True)]
+    high = [(p[:, :2] + p[:, 2:] * slopes + r).max(axis=0) for p, r in zip(turned, reaches, strict=True)]
+    low = [(p[:, :2] - p[:, 2:] * slopes - r).min(axis=0) for p, r in zip(turned, reaches, strict=True)]
     centres = [0.5 * (a + b) @ view[:2] for a, b, view in zip(high, low, views, strict=True)]
     targets = uniform_filter1d(np.array(centres), calm, axis=0, mode="nearest")
     looked = np.array([view @ target for view, target in zip(views, targets, strict=True)])

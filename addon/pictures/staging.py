@@ -43,8 +43,8 @@ def set_up(
     it is none of `LOOKS`. All that lasts until the stage is struck. Raises CurveError if splines cannot be read, or are
     a single point; nothing has changed then.
     """
-    frames, points, radii = world_motion(scene, objects)
-    ground = stage.Ground.around(points, np.array([0.0, 0.0, 1.0]))
+    frames, seen, points, radii = world_motion(scene, objects)
+    ground = stage.Ground.around(seen, np.array([0.0, 0.0, 1.0]))
     if not ground.size:
         raise CurveError("All points of the curves are the same; move them apart")
     strike(scene)
@@ -67,7 +67,7 @@ def set_up(
             collection[f"{HIDDEN}{k}"], obj.hide_render = obj, True
     floor = stage.build(collection, ground, style)
     floor.hide_select = True  # it is in the way of every click
-    eye = stage.follow(collection, (_aspect(scene), 1.0), ground, floor, points, radii, frames)
+    eye = stage.follow(collection, (_aspect(scene), 1.0), ground, floor, seen, points, radii, frames)
     for obj in collection.objects:
         obj[STAGE] = True
     _paint(objects, look)

@@ -236,25 +236,36 @@ def at(points: FloatArray, wanted: FloatArray) -> FloatArray:
     return np.asarray((distances <= distances.min(axis=0)).any(axis=1))
 
 
-def in_view(curve: Curve, straight: float = 0.9, curled: float = 1.8) -> FloatArray:
-    """The points that a picture is made around, (n, 3): straight ends of a rope with a knot in it are drawn in.
+def framed(curve: Curve, curled: float = 2.0, across: float = 0.9, most: int = 600) -> FloatArray:
+    """The points that a picture is made around, (n, 3): ends of ropes with a knot in them are drawn in.
 
-    An end is straight as far as the cosine of edges' angles with the outermost one is above ``straight``.  What is
-    between both ends is a knot if it is longer than its box's diagonal by the factor ``curled``, as half circles are
-    not; ends may reach from it as far as that diagonal.
+    The knot is between the first and the last point of a rope that is nearer to another one than all beside both, where
+    strands cross, at an angle whose cosine is less than ``across``, and nearer by the factor ``curled`` than along the
+    rope; ends may reach from it as far as its box's diagonal.  About ``most`` points are looked at.
     """
-    points = curve.vertices.copy()
-    for piece, edges, closed in zip(curve.mesh.slices, curve.mesh.edge_slices, curve.mesh.closed, strict=True):
-        own, lengths = points[piece], curve.edge_lengths[edges]
-        directions = curve.edge_vectors[edges] / np.maximum(lengths, np.finfo(float).tiny)[:, None]
-        bent = np.flatnonzero((directions @ directions[[0, -1]].T < straight).all(axis=1))
-        if closed or not len(bent):
+    points, mesh = curve.vertices.copy(), curve.mesh
+    if mesh.all_closed:
+        return points
+    some = np.unique(np.concatenate([mesh.ends.ravel(), np.arange(0, len(points), 1 + len(points) // most)]))
+    at, own, inner = points[some], mesh.component[some], ~np.isin(some, mesh.ends)
+    along = np.roll(at, -1, axis=0) - np.roll(at, 1, axis=0)
+    along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), np.finfo(float).tiny)
+    way = np.cumsum(np.linalg.norm(at - np.roll(at, 1, axis=0), axis=1))
+    apart = np.linalg.norm(at[:, None] - at, axis=2)
+    least = (abs(along @ along.T) < across) & inner[:, None] & inner
+    least &= (abs(way - way[:, None]) > curled * apart) | (own != own[:, None])
+    for axis in (0, 1):
+        for step in (-1, 1):
+            least &= apart <= np.roll(apart, step, axis)
+    crossing = least.any(axis=1)
+    for k, (piece, closed) in enumerate(zip(mesh.slices, mesh.closed, strict=True)):
+        knot = some[crossing & (own == k)] - piece.start
+        if closed or not len(knot):
             continue
-        first, last = bent[0], bent[-1] + 1
-        size = float(np.linalg.norm(np.ptp(own[first : last + 1], axis=0)))
-        if lengths[first:last].sum() > curled * size:
-            for end, knot in ((own[:first], own[first]), (own[last + 1 :], own[last])):
-                away = end - knot
-                far = np.linalg.norm(away, axis=1, keepdims=True)
-                end[:] = knot + away * np.minimum(1.0, size / np.maximum(far, size))
+        part, first, last = points[piece], knot[0], knot[-1]
+        size = float(np.linalg.norm(np.ptp(part[first : last + 1], axis=0)))
+        for end, tied in ((part[:first], part[first]), (part[last + 1 :], part[last])):
+            away = end - tied
+            far = np.linalg.norm(away, axis=1, keepdims=True)
+            end[:] = tied + away * np.minimum(1.0, size / np.maximum(far, size))
     return points

@@ -19,7 +19,7 @@ from ..curve import Curve, Mesh
 from ..curve.distances import nearest_strands, strand_gaps
 from ..curve.obstacle import Obstacle
 from ..curve.refine import interpolated
-from .placement import Frame
+from .placement import Frame, framed
 from .recording import Keys, Proof
 
 AIR = 0.94  # of half the gap, so that strands do not seem to touch
@@ -147,7 +147,8 @@ def tube_radii(mesh: Mesh, points: Sequence[FloatArray], frames: FloatArray) -> 
 def rope_radii(mesh: Mesh, keys: Keys) -> FloatArray | None:
     """Radii of the tube that is the rope itself, at all vertices, (keys, n), as shown; None if none is, or is seen."""
     radii = np.array([key.radius for key in keys.keys])
-    sizes = np.array([key.size.factor * np.ptp(key.points, axis=0).max() for key in keys.keys])
+    seen = [framed(Curve(key.points.astype(np.float64), mesh)) for key in keys.keys]
+    sizes = np.array([key.size.factor * np.ptp(each, axis=0).max() for key, each in zip(keys.keys, seen, strict=True)])
     return None if (radii < _LEAST * sizes).any() else np.repeat(radii[:, None], mesh.size, axis=1)
 
 

@@ -31,6 +31,8 @@ from ..knots import knot_type
 from ..knots.planar import redrawn
 from .pulled_rope import COARSE, GAP, PER_CONTROL, PulledRope
 
+ELSEWHERE = "it begins at another drawing of the same type; no motion from the given curve is recorded"
+
 
 @dataclass(frozen=True, kw_only=True)
 class TightenOptions:
@@ -89,8 +91,8 @@ def tighten(
 
     In the end there are ``vertices`` or up to twice as many, by default 800, and 400 of open ropes.  What is tight is
     only refined.  Of several ``starts`` all but the first are drawn anew from other diagrams (`redrawn`), in the same
-    place, with handedness and components as they are, but no motion leads there.  The three that are shortest on few
-    vertices are compared on twice as many, and the best of them is the result, whose way begins at its start.  Open
+    place, with handedness and components as they are, but no motion there is recorded.  The three that are shortest on
+    few vertices are compared on twice as many, and the best of them is the result, whose way begins at its start.  Open
     ropes, unknots and links that come apart have one start.
     ``energy`` of iterates is length over radius, ``gradient_norm`` the residual.  The result's outcome is a
     `Tightened`, unless it was cut short.
@@ -198,14 +200,19 @@ def _tightened(
         for trial in sorted(trials, key=rank):
             if not several or abs(trial[0].promise / several[-1][0].promise - 1.0) > 2e-4:
                 several.append(trial)
+            elif trial is trials[0]:  # of the same shapes that to which a motion leads
+                several[-1] = trial
         del several[3:]  # which on few vertices are not told apart
         for rope, way in several if coarse < vertices and len(several) > 1 else ():
             way += chain(rope.refined(vertices), rope.pulled(vertices))
         if several:
             rope, way = min(several, key=rank)
-    except TimeIsUp:
+    except TimeIsUp as up:
         if trials:  # the shortest so far
-            yield from min(trials, key=rank)[1]
+            rope, way = min(trials, key=rank)
+            yield from way
+            if rope is not trials[0][0]:
+                up.add_note(Message(ELSEWHERE))
         raise
     if trials:
         yield from way
@@ -233,7 +240,7 @@ def _tightened(
     pressing = tuple(Strut(*each) for each in struts if each[2] > 1e-4)
     outcome: Outcome = Tightened(status, (said,), ropelength=ropelength, gap=gap, residual=residual, struts=pressing)
     if trials and rope is not trials[0][0]:
-        outcome = outcome.adding("it begins at another diagram of the knot, to which no motion leads")
+        outcome = outcome.adding(ELSEWHERE)
     if not rope.curve.mesh.all_closed:
         return outcome.adding("{excess:.5g} radii of rope are in the knot", excess=point.excess)
     if (point.curve.component_lengths < 2.01 * math.pi).all():

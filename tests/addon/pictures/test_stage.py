@@ -10,13 +10,15 @@ from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
 from mobius_flow.addon.curves import surroundings
 from mobius_flow.addon.curves.recorded import world_motion
+from mobius_flow.addon.curves.splines import new_curve_data, write_points
 from mobius_flow.addon.pictures import export, rendering, stage, staging
 from mobius_flow.addon.pictures.looks import LOOKS
-from mobius_flow.core import CurveError
+from mobius_flow.core import Curve, CurveError
 from mobius_flow.core.curve import Mesh
 from mobius_flow.core.keys.key_options import Playing
 from mobius_flow.core.keys.placement import Origin
 from mobius_flow.core.keys.recording import Key, Keys
+from mobius_flow.core.knots import knot
 from shapes import lattice_knot
 
 SIZES = [(640, 360), (360, 640)]
@@ -198,6 +200,21 @@ def test_another_shape_of_the_picture_is_noticed(scene):
     assert staging.fits(scene)
     scene.render.resolution_x *= 2
     assert not staging.fits(scene)
+
+
+def test_a_stage_looks_at_the_knot_of_a_rope_and_is_below_its_ends(scene):
+    rope = knot("bowline", 100)
+    ends = rope.vertices[[0, -1]] + 60.0 * (rope.vertices[[0, -1]] - rope.vertices[[1, -2]]) - [0.0, 0.0, 30.0]
+    longer = Curve.from_components([np.concatenate([ends[:1], rope.vertices, ends[1:]])], [False])
+    data = new_curve_data("Rope", longer.mesh)
+    write_points(data, longer.vertices)
+    obj = bpy.data.objects.new("Rope", data)
+    scene.collection.objects.link(obj)
+    collection = staging.set_up(scene, [obj])
+    bpy.context.view_layer.update()
+    place = {each.name.partition(".")[0]: each.matrix_world.translation for each in collection.objects}
+    assert place["Floor"].z < longer.vertices[:, 2].min() + 1e-3
+    assert (place["Camera"] - place["Focus"]).length < 1.2 * np.linalg.norm(np.ptp(longer.vertices, axis=0))
 
 
 def test_workbench_has_its_light_from_where_the_key_light_is(scene):

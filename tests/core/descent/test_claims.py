@@ -8,7 +8,7 @@ import pytest
 from descent_contracts import with_geometry
 from mobius_flow.core import METHODS, Curve, OptionError, RelaxOptions, Status, minimize, relax
 from mobius_flow.core.descent.geometry import Geometry
-from mobius_flow.core.descent.hessian import lagrangian_hessian
+from mobius_flow.core.descent.hessian import lagrangian_hessian, projected_conjugate_gradient
 from mobius_flow.core.driver.moves.rest import stability
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.energies import ENERGIES, MoebiusEnergy
@@ -87,6 +87,18 @@ def test_trust_region_ends_superlinearly(minimum):
     assert ratios[1] < 0.1
     assert ratios[1] < ratios[0] or ratios.max() < 1e-2
     assert minimum.status is Status.CONVERGED
+
+
+def test_newtons_direction_does_not_see_what_constraints_balance(minimum):
+    """However much of that there is: its rounding would end the iteration at once."""
+    point = point_at(minimum.curve.with_vertices(minimum.curve.vertices + 1e-3 * np.sin(minimum.curve.vertices)))
+    hessian, space, rng = lagrangian_hessian(point), point.tangent_space, np.random.default_rng(1)
+    balanced = space.constraints.apply_transpose(1e3 * rng.normal(size=len(point.multipliers)))
+    one, other = (
+        projected_conjugate_gradient(hessian, right, space, 1e-8, 200)
+        for right in (-point.lagrangian_derivative(point.multipliers), balanced - point.derivative)
+    )
+    assert space.norm(one - other) < 1e-4 * space.norm(one)
 
 
 def test_the_gradients_norm_is_that_of_the_gradient_at_a_minimum_too(minimum):

@@ -8,7 +8,7 @@ from mobius_flow.core.collision import is_rope
 from mobius_flow.core.curve import refine
 from mobius_flow.core.keys.key_options import Timing
 from mobius_flow.core.keys.motion import Recording
-from mobius_flow.core.keys.placement import Link, Measure, Placement, Similarity, at, in_view, spots
+from mobius_flow.core.keys.placement import Link, Measure, Placement, Similarity, at, framed, spots
 from mobius_flow.core.keys.planes import DrawingPlane, Turn
 from mobius_flow.core.keys.recording import Kind
 from mobius_flow.core.knots import knot
@@ -202,9 +202,9 @@ def test_pictures_are_made_around_the_knot_of_a_rope_and_not_around_its_ends():
     rope = knot("overhand", 60)
     ends = rope.vertices[[0, -1]] + 30.0 * (rope.vertices[[0, -1]] - rope.vertices[[1, -2]])
     longer = arc(np.concatenate([ends[:1], rope.vertices, ends[1:]]))
-    seen, size = in_view(longer), np.linalg.norm(np.ptp(rope.vertices, axis=0))
+    seen, size = framed(longer), np.linalg.norm(np.ptp(rope.vertices, axis=0))
     assert np.linalg.norm(np.ptp(longer.vertices, axis=0)) > 2.5 * size > 2.0 * np.linalg.norm(np.ptp(seen, axis=0))
     np.testing.assert_array_equal(seen[20:40], longer.vertices[20:40])
     bent = np.array([[-9.0, 0, 0], [0, 0, 0], [0, 1, 0], [9, 1, 0]])
     for whole in (arc(bent), arc(bent[[0, 1, 3]] * [1, 0, 0]), torus_trefoil(60)):
-        np.testing.assert_array_equal(in_view(whole), whole.vertices)
+        np.testing.assert_array_equal(framed(whole), whole.vertices)
