@@ -223,6 +223,11 @@ def _tightened(
             yield from rope.pulled(before if blocked else vertices)
         if blocked:
             break
+    return _ended(rope, elsewhere=bool(trials) and rope is not trials[0][0])
+
+
+def _ended(rope: PulledRope, elsewhere: bool) -> Outcome:
+    """How tightening ended; ``elsewhere`` than at the given curve its way may have begun."""
     point = rope.point
     assert point is not None, "it has been pulled"
     contacts, strands = point.contacts, slice(point.contacts.strands)
@@ -239,7 +244,7 @@ def _tightened(
         status, said = Status.STALLED, Message("stalled: forces are not in equilibrium: {told}", told=told)
     pressing = tuple(Strut(*each) for each in struts if each[2] > 1e-4)
     outcome: Outcome = Tightened(status, (said,), ropelength=ropelength, gap=gap, residual=residual, struts=pressing)
-    if trials and rope is not trials[0][0]:
+    if elsewhere:
         outcome = outcome.adding(ELSEWHERE)
     if not rope.curve.mesh.all_closed:
         return outcome.adding("{excess:.5g} radii of rope are in the knot", excess=point.excess)
