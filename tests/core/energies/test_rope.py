@@ -104,8 +104,9 @@ def test_split_edges_may_bend_as_they_do():
     assert rope.value(finer) == np.inf
     allowed = rope.frozen_at(finer)
     assert np.isfinite(allowed.value(finer))
-    smooth = regular_polygon(24)
-    assert (allowed.frozen_at(smooth).tightest == rope.radius).all()
+    smooth = allowed.frozen_at(regular_polygon(24))
+    assert (smooth.tightest == rope.radius).all()
+    assert smooth.frozen_at(finer) is smooth, "what has become smooth stays so"
 
 
 @pytest.mark.parametrize("share", [0.5, 0.8, 1.001])
