@@ -236,12 +236,13 @@ def at(points: FloatArray, wanted: FloatArray) -> FloatArray:
     return np.asarray((distances <= distances.min(axis=0)).any(axis=1))
 
 
-def framed(curve: Curve, curled: float = 2.0, across: float = 0.9, most: int = 600) -> FloatArray:
+def framed(curve: Curve, across: float = 0.9, curled: float = 1.2, most: int = 600) -> FloatArray:
     """The points that a picture is made around, (n, 3): ends of ropes with a knot in them are drawn in.
 
     The knot is between the first and the last point of a rope that is nearer to another one than all beside both, where
-    strands cross, at an angle whose cosine is less than ``across``, and nearer by the factor ``curled`` than along the
-    rope; ends may reach from it as far as its box's diagonal.  About ``most`` points are looked at.
+    strands cross, at an angle whose cosine is less than ``across``, if the rope is longer there than that part's box is
+    across, by the factor ``curled``, as cables that pass each other are not; ends may reach from it as far as the box.
+    About ``most`` points are looked at.
     """
     points, mesh = curve.vertices.copy(), curve.mesh
     if mesh.all_closed:
@@ -250,10 +251,8 @@ def framed(curve: Curve, curled: float = 2.0, across: float = 0.9, most: int = 6
     at, own, inner = points[some], mesh.component[some], ~np.isin(some, mesh.ends)
     along = np.roll(at, -1, axis=0) - np.roll(at, 1, axis=0)
     along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), np.finfo(float).tiny)
-    way = np.cumsum(np.linalg.norm(at - np.roll(at, 1, axis=0), axis=1))
     apart = np.linalg.norm(at[:, None] - at, axis=2)
-    least = (abs(along @ along.T) < across) & inner[:, None] & inner
-    least &= (abs(way - way[:, None]) > curled * apart) | (own != own[:, None])
+    least = (abs(along @ along.T) < across) & inner[:, None] & inner & (apart > 0.0)
     for axis in (0, 1):
         for step in (-1, 1):
             least &= apart <= np.roll(apart, step, axis)
@@ -264,6 +263,8 @@ def framed(curve: Curve, curled: float = 2.0, across: float = 0.9, most: int = 6
             continue
         part, first, last = points[piece], knot[0], knot[-1]
         size = float(np.linalg.norm(np.ptp(part[first : last + 1], axis=0)))
+        if np.linalg.norm(np.diff(part[first : last + 1], axis=0), axis=1).sum() <= curled * size:
+            continue
         for end, tied in ((part[:first], part[first]), (part[last + 1 :], part[last])):
             away = end - tied
             far = np.linalg.norm(away, axis=1, keepdims=True)

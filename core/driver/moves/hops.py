@@ -112,18 +112,14 @@ class Stir(RandomMotion):
     frequency: float = 2.0
 
     def field(self, point: Point, rng: np.random.Generator) -> Field:
-        return random_flow(point.vertices, rng, self.waves, self.frequency)
-
-
-def random_flow(vertices: FloatArray, rng: np.random.Generator, number: int, frequency: float) -> Field:
-    """A sum of plane waves, each without divergence, most of them shorter than the curve is wide."""
-    center = vertices.mean(axis=0)
-    waves, amplitudes = rng.normal(size=(2, number, vertices.shape[1]))
-    along = np.sum(waves * amplitudes, axis=1) / np.square(waves).sum(axis=1)
-    amplitudes -= along[:, None] * waves
-    waves *= frequency / radius(vertices)
-    phases = rng.uniform(0.0, 2.0 * np.pi, number)
-    return lambda x: np.asarray(np.sin((x - center) @ waves.T + phases) @ amplitudes)
+        """A sum of plane waves, each without divergence, most of them shorter than the curve is wide."""
+        center = point.vertices.mean(axis=0)
+        waves, amplitudes = rng.normal(size=(2, self.waves, point.vertices.shape[1]))
+        along = np.sum(waves * amplitudes, axis=1) / np.square(waves).sum(axis=1)
+        amplitudes -= along[:, None] * waves
+        waves *= self.frequency / radius(point.vertices)
+        phases = rng.uniform(0.0, 2.0 * np.pi, self.waves)
+        return lambda x: np.asarray(np.sin((x - center) @ waves.T + phases) @ amplitudes)
 
 
 def radius(vertices: FloatArray) -> float:

@@ -97,7 +97,6 @@ def test_what_is_frozen_stays_until_lengths_change():
 def test_split_edges_may_bend_as_they_do():
     """A polygon whose edges have been split looks twice as sharp at its old corners: no wall, until it gets smooth."""
     curve = regular_polygon(12)
-    finer = Curve(np.repeat(curve.vertices, 2, axis=0) * 1.0)
     middle = 0.5 * (curve.vertices + np.roll(curve.vertices, -1, axis=0))
     finer = Curve(np.stack([curve.vertices, middle], axis=1).reshape(-1, 3))
     rope = Rope(np.array([0.9 * thickness(curve)]))

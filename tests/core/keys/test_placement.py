@@ -206,5 +206,11 @@ def test_pictures_are_made_around_the_knot_of_a_rope_and_not_around_its_ends():
     assert np.linalg.norm(np.ptp(longer.vertices, axis=0)) > 2.5 * size > 2.0 * np.linalg.norm(np.ptp(seen, axis=0))
     np.testing.assert_array_equal(seen[20:40], longer.vertices[20:40])
     bent = np.array([[-9.0, 0, 0], [0, 0, 0], [0, 1, 0], [9, 1, 0]])
-    for whole in (arc(bent), arc(bent[[0, 1, 3]] * [1, 0, 0]), torus_trefoil(60)):
+    corner = np.concatenate([np.linspace([0.0, 9, 0], [0.0, 0.5, 0.0], 20), np.linspace([0.0, 0, 0], [9, 0, 0], 20)])
+    x = np.arange(-60.0, 11.0)
+    needle = np.stack(
+        [np.append(x, x[::-1]), np.append(-1.0 - 0.01 * x**2, 1.0 + 0.01 * x[::-1] ** 2), 0 * np.append(x, x)], axis=1
+    )
+    cables = Curve.from_components([np.stack([x, 0 * x, 0 * x], 1), np.stack([0 * x, x, 1 + 0 * x], 1)], [False, False])
+    for whole in (cables, *map(arc, (bent, bent[[0, 1, 3]] * [1, 0, 0], corner, needle)), torus_trefoil(60)):
         np.testing.assert_array_equal(framed(whole), whole.vertices)

@@ -235,3 +235,12 @@ def test_points_that_are_no_corners_are_left_out_but_not_a_whole_arc_of_them():
     assert mesh.size == pytest.approx(n / 8, rel=0.1)
     np.testing.assert_array_equal(2.0 * start, end)
     assert np.linalg.norm(Curve(start).midpoints, axis=1).min() > 1.0 - 1e-6
+
+
+def test_a_rope_with_long_ends_is_drawn_as_it_is():
+    """It is thin for its length, but not for what is seen of it."""
+    tied = knot("bowline", 100).vertices
+    out = tied[[0, -1]] - tied[[1, -2]]
+    points = np.concatenate([tied[:1] + 300.0 * out[:1], tied, tied[-1:] + 300.0 * out[1:]]).astype(np.float32)
+    radii = rope_radii(Mesh((102,), (False,)), Keys((Key(0.0, points, radius=0.2),), 0))
+    np.testing.assert_array_equal(radii, np.full((1, 102), 0.2))

@@ -191,6 +191,9 @@ def test_what_is_too_long_is_drawn_in_gently():
     rope.face *= 0.1
     assert rope.step()
     assert rope._pull == 0.02
+    rope.face *= 30.0
+    rope.step()
+    assert rope._pull == -0.012, "and what is too short swells as gently"
 
 
 def test_a_rope_stays_one_of_its_radius():
