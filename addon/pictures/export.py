@@ -158,8 +158,10 @@ def compose(
         along = np.concatenate([[0.0], passed / passed[-1]])
     colour_components(data, look=look, along=along)
     views = [framed(Curve(each.astype(np.float64), mesh)) for each in points]
-    # up is where the last shape extends least, rather up than down
-    least = np.linalg.svd(views[-1] - views[-1].mean(axis=0), full_matrices=False)[2][2]
+    # up is where the last shape extends least, along the third axis if no other is better, and rather up than down
+    spread = np.cov(views[-1].T)
+    spread[2, 2] *= 1.0 - 1e-3
+    least = np.linalg.eigh(spread)[1][:, 0]
     ground = stage.Ground.around(views, None if cut_out else least * np.sign(least[np.abs(least).argmax()]))
     size = scene.render.resolution_x, scene.render.resolution_y
     floor = stage.build(scene.collection, ground, LOOKS[look])

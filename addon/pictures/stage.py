@@ -65,7 +65,7 @@ def facing(shapes: Sequence[Frame | FloatArray], up: FloatArray) -> tuple[FloatA
         (a, b, c), axes = np.linalg.eigh(covariance / max(np.trace(covariance), 1e-300))
         areas = np.sqrt((views @ axes) ** 2 @ np.array([b * c, a * c, a * b]).clip(0.0))
         seen += weight * (areas + 0.2 * np.sqrt((rights @ axes) ** 2 @ np.array([a, b, c]).clip(0.0)))
-    best = int(seen.argmax())
+    best = int((seen - np.linspace(0.0, 1e-3, len(seen))).argmax())  # of those that symmetry makes equal the first
     return np.array([rights[best], np.cross(up, rights[best]), up]), float(heights[best])
 
 

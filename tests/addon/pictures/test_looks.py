@@ -7,7 +7,7 @@ from blender_scenes import add_hopf_link, add_trefoil, contents
 from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
 from mobius_flow.addon.pictures import export, rendering, staging
-from mobius_flow.addon.pictures.looks import LOOKS
+from mobius_flow.addon.pictures.looks import DEFAULT, LOOKS
 from mobius_flow.core.keys.key_options import Playing
 from mobius_flow.core.keys.recording import Key, Keys
 from shapes import hopf_link, regular_polygon, torus_trefoil
@@ -43,6 +43,17 @@ def test_components_and_the_ground_are_told_apart_and_nothing_is_burnt(look, tmp
     for a, b in ((one, other), (one, ground), (other, ground)):
         assert np.abs(a - b).max() > 0.15
     assert (picture.min(axis=2) > 0.97).mean() < 0.005
+
+
+def test_what_is_symmetric_is_seen_from_one_side_whatever_rounding_says():
+    """A Hopf link extends as much in two directions, and is seen as well from two sides."""
+    curve, rng = hopf_link(120), np.random.default_rng(1)
+    seen = []
+    for size in (0.0, 1e-6, 1e-6, 1e-6, 1e-6):
+        noise = size * rng.normal(size=curve.vertices.shape)
+        scene, _ = composed(curve.with_vertices(curve.vertices + noise), DEFAULT)
+        seen.append(np.array(scene.camera.matrix_world))
+    assert np.ptp(seen, axis=0).max() < 0.01
 
 
 @pytest.mark.parametrize("look", LOOKS)
