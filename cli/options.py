@@ -3,6 +3,7 @@
 import argparse
 import platform
 from collections.abc import Collection, Mapping
+from dataclasses import MISSING
 from typing import Any
 
 import numpy
@@ -39,33 +40,42 @@ def add_to(parser: argparse.ArgumentParser, *, without: Collection[str] = ()) ->
     parser.set_defaults(offered=list(offered))
 
 
+def add_all(parser: argparse.ArgumentParser, owner: type) -> None:
+    """Add all options of a dataclass to a parser."""
+    for option in declared(owner):
+        add_option(parser, option)
+    parser.set_defaults(offered=[option.name for option in declared(owner)])
+
+
 def add_option(group: argparse._ActionsContainer, option: Option) -> None:
     """Add an option as it is declared."""
-    declared_as: dict[str, Any] = {"dest": option.name, "default": option.default}
+    needed, metavar = option.default is MISSING, option.metavar or {int: "N", float: "X"}.get(option.kind, "NAME")
+    declared_as: dict[str, Any] = {"dest": option.name, "default": None if needed else option.default}
     text = option.phrase
     if option.kind is bool:
         declared_as["action"] = "store_true"
     elif option.repeated:
         text += "; may be given several times"
-        declared_as |= {"metavar": option.metavar, "action": "append", "default": []}
+        declared_as |= {"metavar": metavar, "action": "append", "default": []}
     else:
         text += f"; one of {', '.join(option.choices)}" if option.choices else ""
-        text += f" (default: {option.automatic or '%(default)s'})"
-        declared_as |= {"metavar": option.metavar, "type": option.kind}
+        text += "" if needed else f" (default: {option.automatic or '%(default)s'})"
+        kind = option.kind if option.read is str else str
+        declared_as |= {"metavar": metavar, "type": kind, "required": needed}
     group.add_argument(flag(option), help=text, **declared_as)
 
 
-def from_arguments(arguments: argparse.Namespace) -> RelaxOptions:
-    """The options; raises OptionError if one is out of range."""
+def from_arguments(arguments: argparse.Namespace, owner: type = RelaxOptions) -> Any:
+    """The options, of a dataclass that declares them; raises OptionError if one is out of range."""
     wanted: dict[str, Any] = {}
-    for option in declared(RelaxOptions):
+    for option in declared(owner):
         if option.name in arguments.offered:
             value = getattr(arguments, option.name)
             words = (item for word in value for item in option.read(word)) if option.repeated else ()
             wanted[option.name] = (
                 tuple(words) if option.repeated else option.read(value) if isinstance(value, str) else value
             )
-    return RelaxOptions(**wanted)
+    return owner(**wanted)
 
 
 def flags(values: Mapping[str, object]) -> list[str]:

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ..core import CurveError, MobiusFlowError, OptionError
-from ..core.base import declared, write_file
+from ..core.base import write_file
 from ..core.io import FORMATS
 from ..core.io.codes import code_diagram
 from ..core.io.source import Source
@@ -20,7 +20,7 @@ from ..core.knots.drawings import Drawing
 from ..core.knots.layout import laid_out
 from ..core.knots.names import named_diagram, table_range
 from . import curves
-from .options import add_option
+from .options import add_all, from_arguments
 from .places import VIEWED, check_places, suffix_of
 from .terminal import say_written
 
@@ -99,8 +99,7 @@ def add_draw(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--layout", action="store_true", help=text)
     text = "frames of a trajectory, about as far apart, 2 to 1000 (default: 6)"
     parser.add_argument("--frames", type=int, default=6, metavar="N", help=text)
-    for each in declared(Pen):
-        add_option(parser, each)
+    add_all(parser, Pen)
     text = "captions, between commas, or none (default: names, or numbers of frames, if there are several)"
     parser.add_argument("--labels", metavar="A,B,…", help=text)
     parser.set_defaults(run=_draw)
@@ -108,7 +107,7 @@ def add_draw(parser: argparse.ArgumentParser) -> None:
 
 def _draw(options: argparse.Namespace) -> int:
     suffix = suffix_of(options.output, PAPERS, "drawings")
-    pen = Pen(**{name: getattr(options, name) for name in Pen.__dataclass_fields__})
+    pen = from_arguments(options, Pen)
     check_places({path: path for path in options.inputs if os.path.exists(path)}, {"OUT": options.output})
     drawings: list[Drawing] = []
     captions: list[str] = []

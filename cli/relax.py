@@ -3,9 +3,8 @@
 import argparse
 import json
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from types import MappingProxyType
 
 from ..core import Curve, Iterate, MobiusFlowError, RelaxOptions, Result, Status, Task, Trajectory, relax
 from ..core.base import counted, write_file
@@ -14,7 +13,10 @@ from ..core.driver import Relaxation, finish
 from ..core.driver.run import gradient_bound
 from ..core.energies.hierarchy import moebius_energy
 from ..core.io import CurveFile, written_formats
+from ..core.keys.figure import contact_map
 from ..core.keys.key_options import Playing
+from ..core.keys.paper import PAPERS
+from ..core.ropes import Tightened
 from . import curves, signals
 from . import options as relax_options
 from .options import DEFAULT, LOOKS
@@ -69,7 +71,8 @@ def add_relax(parser: argparse.ArgumentParser) -> None:
 
 
 def add_outputs(parser: argparse.ArgumentParser) -> None:
-    """Add the outputs: see `write_results`."""
+    """Add the outputs: see `write_results`; contacts are those of ropes that were pulled tight."""
+    parser.set_defaults(contacts=None)
     text = f"what to write, by suffix: {', '.join(OUTPUTS)}, or - for standard output"
     parser.add_argument("output", metavar="OUT", help=text)
     as_device = {curves.STREAM: curves.DEVICE}  # standard output, for reports and trajectories
@@ -93,26 +96,34 @@ def add_outputs(parser: argparse.ArgumentParser) -> None:
 
 def _run(options: argparse.Namespace) -> int:
     wanted = relax_options.from_arguments(options)
-    file, task = read_task(options)
-    with curves.refusals(file):
-        result, iterates = run_to_end(relax(task, wanted), task, options, wanted)
-    return write_results(options, result, iterates, provenance(vars(wanted.resolved), task, file))
+    return carry_out(options, vars(wanted.resolved), lambda task: relax(task, wanted), wanted)
 
 
-def read_task(options: argparse.Namespace, **more: str | None) -> tuple[CurveFile, Task]:
-    """Read the input with its pins and obstacles, once the outputs, and ``more`` of them, can be written."""
+def carry_out(
+    options: argparse.Namespace,
+    settings: Mapping[str, object],
+    begin: Callable[[Task], Relaxation],
+    wanted: RelaxOptions | None = None,
+) -> int:
+    """Do something to the input with its pins and obstacles, and write the results, once it is known that they can be.
+
+    ``settings``: as reports have them; ``wanted``: as for `run_to_end`.  Returns the exit status.
+    """
     check_output(options.output, options.format, options.look, options.loop or options.constant_radius)
-    check_places(relax_options.inputs(options), places(options) | more)
+    check_places(relax_options.inputs(options), places(options))
     file = curves.read(options.input, options.format)
     with curves.refusals(file):
         task = relax_options.task(options, file)
     check_holds(options.output, options.format, file.curve)
-    return file, task
+    with curves.refusals(file):
+        result, iterates = run_to_end(begin(task), task, options, wanted)
+    return write_results(options, result, iterates, provenance(settings, task, file))
 
 
 def places(options: argparse.Namespace) -> dict[str, str | None]:
     """The files that are written, by their names on the command line."""
-    return {"OUT": options.output, "--report": options.report, "--trajectory": options.trajectory}
+    named = {f"--{name}": getattr(options, name) for name in ("report", "trajectory", "contacts")}
+    return {"OUT": options.output, **named}
 
 
 def provenance(settings: Mapping[str, object], task: Task, file: CurveFile) -> dict[str, object]:
@@ -141,20 +152,17 @@ def run_to_end(
 
 
 def write_results(
-    options: argparse.Namespace,
-    result: Result,
-    iterates: list[Iterate],
-    origin: Mapping[str, object],
-    more: Mapping[str, Write] = MappingProxyType({}),
+    options: argparse.Namespace, result: Result, iterates: list[Iterate], origin: Mapping[str, object]
 ) -> int:
     """Write every requested output, report on standard error how the run ended, unless quiet, and return the status.
 
     If one cannot be written, the others still are. Files come first: a film takes a minute, and a stream may never
-    end, so that these can be interrupted; they are not begun after an interrupt.  ``more``: further files.
+    end, so that these can be interrupted; they are not begun after an interrupt.
     """
+    origin = {**origin, **result.outcome.facts}
 
     def report_as_json(path: str) -> None:
-        text = json.dumps(result.report() | dict(origin), indent=1) + "\n"
+        text = json.dumps(result.report() | origin, indent=1) + "\n"
         write_file(path, text.encode())
 
     def trajectory(path: str) -> None:
@@ -162,6 +170,11 @@ def write_results(
         for iterate in iterates:
             made.add(iterate)
         made.save(path)
+
+    def contacts(path: str) -> None:
+        if isinstance(result.outcome, Tightened):
+            drawn = contact_map(result.curve, result.outcome.struts)
+            write_file(path, PAPERS[Path(path).suffix.lower()](drawn))
 
     def output(path: str) -> None:
         playing, suffix = Playing(options.look, options.loop, options.constant_radius), Path(path).suffix.lower()
@@ -188,7 +201,8 @@ def write_results(
     scene, name = is_scene(options.output), None
     if scene or options.output == curves.STREAM:  # of what is kept
         name = f"{Path(options.output).stem}.obj" if scene else f"curve.{options.format or 'txt'}"
-    extras = (options.report, report_as_json), (options.trajectory, trajectory), *more.items()
+    pressed = options.contacts if isinstance(result.outcome, Tightened) else None  # or else nothing is known of it
+    extras = (options.report, report_as_json), (options.trajectory, trajectory), (pressed, contacts)
     jobs: list[tuple[str, Write, str | None]]
     jobs = [(path, write, None) for path, write in extras if path is not None]
     jobs.append((options.output, output, name))  # of a film that is not written the curve is kept, by the name's suffix

@@ -165,7 +165,7 @@ class Option:
     objects: tuple[str, Callable[[object], bool]] | None = field(default=None, repr=False)
     # the items of a tuple that a word of the command line gives, where it may be repeated
     read: Callable[[str], Iterable[object]] = field(default=str, repr=False)
-    metavar: str = "NAME"  # placeholder of its value in the command line's help
+    metavar: str = ""  # placeholder of its value in the command line's help, if not N, X or NAME
     row: bool = False  # whether Blender's panel shows it, as what artists might set; scripts can set them all
     repeated: bool = False  # whether its value is a tuple, whose items are checked; Blender has no settings for those
     flag: str = ""  # what it is called on the command line, if not by its name
@@ -224,6 +224,12 @@ def declared(owner: type) -> list[Option]:
         kind, repeated = (get_args(hint) or (hint,))[0], get_origin(hint) is tuple
         found.append(Option(name=each.name, default=each.default, kind=kind, repeated=repeated, **each.metadata))
     return found
+
+
+def check_options(owner: Any) -> None:
+    """Let a frozen dataclass's options be as `Option.checked` gives them, when it is made."""
+    for each in declared(type(owner)):
+        object.__setattr__(owner, each.name, each.checked(getattr(owner, each.name)))
 
 
 def documented(owner: _Class) -> _Class:

@@ -1,5 +1,6 @@
 """Options of a relaxation: frozen and checked when they are made."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from numbers import Real
@@ -8,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..base.arguments import declared, documented, is_list, option
+from ..base.arguments import check_options, declared, documented, is_list, option
 from ..base.errors import OptionError
 from ..curve.symmetry import IS_NAME
 from ..descent import METHODS
@@ -32,7 +33,7 @@ def _are_lengths(value: object) -> bool:
     return lengths.ndim == 1 and bool(np.isfinite(lengths).all() and (lengths > 0.0).all())
 
 
-def _are_radii(value: object) -> bool:
+def are_radii(value: object) -> bool:
     numbers = [value] if isinstance(value, Real) and not isinstance(value, bool) else value
     return _are_lengths(numbers) and bool(np.asarray(numbers).size)
 
@@ -41,17 +42,25 @@ def _is_a(protocol: type, value: object) -> bool:
     return isinstance(value, protocol) and not isinstance(value, type)
 
 
-def _radius(text: str) -> str | float | tuple[float, ...]:
-    """A word, or numbers with commas between."""
-    if text in RADII:
-        return text
+def radii(text: str, words: Sequence[str] = ()) -> str | tuple[float, ...]:
+    """Numbers with commas between, or one of some words."""
     try:
-        radii = tuple(map(float, text.split(",")))
-        return radii if len(radii) > 1 else radii[0]
+        return text if text in words else tuple(map(float, text.split(",")))
     except ValueError:
-        raise OptionError(
-            f"radius is {text!r:.40}; give keep, none, or a number such as 0.1, or several: 0.1,0.2"
-        ) from None
+        allowed = ", ".join([*words, "a number such as 0.1, or several: 0.1,0.2"])
+        raise OptionError(f"radius is {text!r:.40}; give {allowed}") from None
+
+
+def time_limit() -> Any:
+    """A field for the seconds that a run may take."""
+    return option(
+        None,
+        "Time Limit",
+        "stop after this many seconds of computing, even in the middle of a step; what was reached so far is kept",
+        automatic="no limit",
+        low=0,
+        metavar="SECONDS",
+    )
 
 
 @documented
@@ -72,21 +81,13 @@ class RelaxOptions:
     tolerance: float = option(
         1e-4, "Tolerance", "stop when the projected gradient's metric norm is at most this times √E", low=0, metavar="T"
     )
-    time_limit: float | None = option(
-        None,
-        "Time Limit",
-        "stop after this many seconds of computing, even in the middle of a step; the curve reached so far is kept",
-        automatic="no limit",
-        low=0,
-        metavar="SECONDS",
-    )
+    time_limit: float | None = time_limit()
     vertices: int | None = option(
         None,
         "Vertices",
         "number of vertices to refine to, over all components",
         automatic="enough for edges to be shorter than the gaps between strands",  # Section 6.1.3 of [RS21]
         low=3,
-        metavar="N",
     )
     energy: str | Energy = option(  # noqa: RUF009 (a field, made for this class)
         "moebius",
@@ -109,8 +110,8 @@ class RelaxOptions:
         "radius of the rope that the curve stays, one or one for each component; keep: nine tenths of the thickness at "
         "the start, less only where that leads to a lower minimum; none for what grows, penalty methods and paper",
         choices=RADII,
-        objects=("a number above 0, or one for each component", _are_radii),
-        read=_radius,
+        objects=("a number above 0, or one for each component", are_radii),
+        read=partial(radii, words=RADII),
         metavar="R",
     )
     metric: str | Metric | None = option(  # noqa: RUF009 (a field, made for this class)
@@ -245,8 +246,7 @@ class RelaxOptions:
     )
 
     def __post_init__(self) -> None:
-        for each in declared(type(self)):
-            object.__setattr__(self, each.name, each.checked(getattr(self, each.name)))
+        check_options(self)
         object.__setattr__(self, "terms", tuple((term, float(weight)) for term, weight in self.terms))
         if not isinstance(self.edge_lengths, str):
             object.__setattr__(self, "edge_lengths", tuple(map(float, self.edge_lengths)))

@@ -53,6 +53,11 @@ class Outcome:
         return self.status is Status.CONVERGED
 
     @property
+    def facts(self) -> dict[str, object]:
+        """What only outcomes of its kind tell, as plain values for reports."""
+        return {name: value for name, value in asdict(self).items() if name not in Outcome.__dataclass_fields__}
+
+    @property
     def message(self) -> Message:
         """All clauses in one sentence."""
         return joined(self.clauses, "; ")

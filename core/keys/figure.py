@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..base import CurveError, FloatArray, declared
-from ..base.arguments import documented, option
+from ..base import CurveError, FloatArray
+from ..base.arguments import check_options, documented, option
 from ..curve import Curve, arc_lengths
 from ..knots.drawings import Drawing
 from .arcs import Arc, widest
@@ -49,8 +49,7 @@ class Pen:
     )
 
     def __post_init__(self) -> None:
-        for each in declared(Pen):
-            object.__setattr__(self, each.name, each.checked(getattr(self, each.name)))
+        check_options(self)
 
 
 class Stroke(NamedTuple):

@@ -5,47 +5,55 @@ radii that is kept then follows the room that steps make.
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import MISSING, dataclass
 from typing import Any
 
 import numpy as np
 
-from ..base import BLAS, COMPONENT, CurveError, Message, OptionError, TimeLimit, check_known, checked
-from ..base.arguments import check_number
+from ..base import BLAS, COMPONENT, CurveError, Message, OptionError, TimeLimit, checked
+from ..base.arguments import check_options, option
 from ..collision import check_clear, check_embedded, is_free, written
 from ..curve import Curve, Pins, at_edges, bending_radii, holds, subdivide
 from ..descent.task import Task, check_units
 from ..driver import Outcome, Relaxation, Result, Status, finish
+from ..driver.options import are_radii, radii, time_limit
 from ..driver.outcome import stalled
 from ..driver.relax import within
 from ..io.trajectory import Iterate
 from .crossings import AXES, Crossing, lead_apart
 from .displacement import Ropes
 
+LENGTHS = ("free", "keep")
 KEPT = 1e-3  # part by which kept lengths may differ at the end; ten times as much while ropes grow
 
 
 @dataclass(frozen=True, kw_only=True)
 class SeparateOptions:
-    """How curves become ropes: their ``radius``, one or one for each component, who goes ``over``, and ``lengths``."""
+    """How curves become ropes."""
 
-    radius: float | Sequence[float]
-    over: str | None = None
-    lengths: str = "free"
-    free_ends: bool = False
-    time_limit: float | None = None
+    radius: Sequence[float] | float = option(
+        MISSING,
+        "Radius",
+        "radius of the ropes, one or one for each component with commas between",
+        objects=("a number above 0, or one for each component", are_radii),
+        read=radii,
+        metavar="R,R,…",
+    )
+    over: str | None = option(
+        None,
+        "Over",
+        "axis on whose side the later of two curves that meet goes over",
+        automatic="the direction in which they extend least there",
+        choices=tuple(AXES),
+        metavar="AXIS",
+    )
+    lengths: str = option("free", "Lengths", "whether edges may change their lengths", choices=LENGTHS, metavar="L")
+    free_ends: bool = option(False, "Free Ends", "hold the ends of open curves only where they are pins")
+    time_limit: float | None = time_limit()
 
     def __post_init__(self) -> None:
-        radii = np.ravel(self.radius)
-        if radii.dtype.kind not in "iuf" or not (len(radii) and np.isfinite(radii).all() and (radii > 0.0).all()):
-            told = ", ".join(map(str, radii))
-            raise OptionError(f"radius is {told:.60}; it must be a number above 0, or one for each component")
-        object.__setattr__(self, "radius", tuple(map(float, radii)))
-        if self.over is not None:
-            check_known("over", self.over, tuple(AXES))
-        check_known("lengths", self.lengths, ("free", "keep"))
-        if self.time_limit is not None:
-            check_number("time_limit", self.time_limit, 0.0, np.inf)
+        check_options(self)
+        object.__setattr__(self, "radius", tuple(map(float, np.ravel(self.radius))))
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..base.arguments import check_number, checked
+from ..base.arguments import check_options, checked, option
 from ..base.deadline import TimeIsUp, TimeLimit
 from ..base.errors import CurveError, OptionError
 from ..base.messages import Message
@@ -22,6 +22,7 @@ from ..curve import Curve
 from ..descent.task import Task
 from ..driver import Outcome, Relaxation, RelaxOptions, Result, Status, finish, relax
 from ..driver.move import iterates
+from ..driver.options import time_limit
 from ..driver.prepare import rope_radius, start_problem
 from ..driver.relax import within
 from ..driver.run import Run
@@ -36,22 +37,29 @@ ELSEWHERE = "it begins at another drawing of the same type; no motion from the g
 
 @dataclass(frozen=True, kw_only=True)
 class TightenOptions:
-    """How a knot is pulled tight: ``vertices`` in the end, or up to twice as many, and ``starts``, drawn by a seed.
+    """How a knot is pulled tight; open components stay polygons."""
 
-    By default there are 800 vertices, and 400 where components are open, which stay polygons.
-    """
-
-    vertices: int | None = None
-    starts: int = 1
-    seed: int = 0
-    time_limit: float | None = None
+    vertices: int | None = option(
+        None,
+        "Vertices",
+        "vertices in the end, or up to twice as many",
+        automatic="800, and 400 of open ropes",
+        low=COARSE,
+        high=20_000,
+    )
+    starts: int = option(
+        1,
+        "Starts",
+        "starts on few vertices, all but the first drawn anew; the best three go on to the end",
+        low=1,
+        high=20_000,
+        metavar="K",
+    )
+    seed: int = option(0, "Seed", "seed of the drawings", low=0, high=20_000, metavar="S")
+    time_limit: float | None = time_limit()
 
     def __post_init__(self) -> None:
-        for name, low in (("vertices", COARSE), ("starts", 1), ("seed", 0)):
-            if getattr(self, name) is not None:
-                check_number(name, getattr(self, name), low - 1, 20_000)
-        if self.time_limit is not None:
-            check_number("time_limit", self.time_limit, 0.0, math.inf)
+        check_options(self)
 
 
 class Strut(NamedTuple):
