@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ..core import Curve, CurveError, CurveFileError, write_curve
-from ..core.base.errors import wrong_suffix
+from ..core.base import wrong_suffix
 from ..core.io import FORMATS, CurveFile, Format, load_curve
 from .terminal import emit
 

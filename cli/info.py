@@ -6,8 +6,7 @@ import sys
 from collections.abc import Iterator, Mapping
 from importlib.util import find_spec
 
-from ..core import CurveError
-from ..core.base import check_known, counted
+from ..core.base import CurveError, check_known, counted
 from ..core.driver.info import Info, info, measure
 from ..core.energies import ENERGIES
 from ..core.knots.closures import closed_far_away, closures

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from ..core import CurveError, MobiusFlowError, OptionError, knot_list
-from ..core.base.errors import counted
+from ..core.base import counted
 from ..core.io import written_formats
 from ..core.knots import UnknownKnotError, knot, knot_names, smooth_knot
 from . import curves

@@ -4,7 +4,7 @@ import argparse
 import sys
 
 from ..core import CurveError, Iterate, RelaxOptions, Status, Task, read_obstacle
-from ..core.base.errors import counted
+from ..core.base import counted
 from ..core.driver import finish
 from ..core.driver.morph import DifferentError, NoMotionError, compare, morphing, moving
 from ..core.io import FORMATS, CurveFile

@@ -5,8 +5,7 @@ import os
 from dataclasses import replace
 from pathlib import Path
 
-from ..core import CurveError, MobiusFlowError, OptionError
-from ..core.base import write_file
+from ..core.base import CurveError, MobiusFlowError, OptionError, write_file
 from ..core.io import FORMATS
 from ..core.io.codes import code_diagram
 from ..core.io.source import Source

@@ -9,8 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from dataclasses import asdict
 
-from ..core import MobiusFlowError
-from ..core.base.errors import reason_of
+from ..core.base import MobiusFlowError, reason_of
 from ..core.proof import verify
 from .curves import INPUT, STREAM
 from .places import is_file

@@ -5,8 +5,7 @@ from typing import Any
 
 import bpy
 
-from ...core import MobiusFlowError
-from ...core.base import Message
+from ...core.base import Message, MobiusFlowError
 from ..live.modal import redraw_views
 from ..live.requirements import Refusal, Requirement, first, require
 from ..translations import iface_, rpt_, tip_

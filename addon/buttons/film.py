@@ -6,8 +6,7 @@ from typing import Any
 import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 
-from ...core import MobiusFlowError
-from ...core.base.messages import Message
+from ...core.base import Message, MobiusFlowError
 from ...core.driver.words import named, time_left
 from ..curves.recorded import drawn_radius
 from ..live.modal import clear_status

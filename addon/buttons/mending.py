@@ -8,7 +8,7 @@ from bpy.app.translations import pgettext_tip
 from bpy.props import EnumProperty
 
 from ...core import Curve, MobiusFlowError
-from ...core.base.messages import Message
+from ...core.base import Message
 from ..curves import bake
 from ..curves.doors import show_instead
 from ..curves.moving import deforms

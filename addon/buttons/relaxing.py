@@ -5,7 +5,7 @@ from typing import Any
 import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 
-from ...core.base.messages import Message
+from ...core.base import Message
 from ..curves import bake, pins
 from ..curves.session import Session
 from ..curves.splines import questions

@@ -5,8 +5,7 @@ import time
 import bpy
 import numpy as np
 
-from ...core import MobiusFlowError
-from ...core.base.messages import Message
+from ...core.base import Message, MobiusFlowError
 from ...core.keys.placement import at
 from ..curves.splines import control_points
 from ..live import registry

@@ -5,8 +5,7 @@ from pathlib import Path
 import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 
-from ...core import MobiusFlowError
-from ...core.base import Message, write_file
+from ...core.base import Message, MobiusFlowError, write_file
 from ...core.driver.words import named
 from ...core.keys.arcs import seen
 from ...core.keys.figure import Pen, figure

@@ -7,13 +7,11 @@ from dataclasses import replace
 import bpy
 import numpy as np
 
-from ...core import MobiusFlowError
-from ...core.base import FloatArray, Message
+from ...core.base import FloatArray, Message, MobiusFlowError
 from ...core.keys.key_options import Course, KeyOptions, Output, Timing
 from ...core.keys.placement import Similarity
 from . import keyframes
-from .fcurves import draw_line
-from .keyframes import animated, count_own, fcurves_of, there_and_back
+from .keyframes import animated, count_own, draw_line, fcurves_of, there_and_back
 from .sizes import drive
 from .splines import Splines, key_points, read, shape
 

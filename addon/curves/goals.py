@@ -6,11 +6,10 @@ import bpy
 import numpy as np
 
 from ...core import Curve, Iterate
-from ...core.base.types import FloatArray
+from ...core.base import FloatArray
 from ...core.keys.key_options import Timing
 from ...core.keys.recording import Keys
-from .fcurves import CONSTANT
-from .keyframes import add_keys, there_and_back
+from .keyframes import CONSTANT, add_keys, there_and_back
 from .splines import Reference
 from .strands import read_link
 

@@ -1,8 +1,10 @@
 """Motion written into curve data: absolute shape keys, and one F-curve that runs through them.
 
-Data that already has such keys gets the new ones after the last.
+Data that already has such keys gets the new ones after the last.  Since Blender 4.4 actions keep F-curves in layers,
+for one or more slots; nothing else knows.
 """
 
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import bpy
@@ -12,10 +14,10 @@ from ...core.base import FloatArray
 from ...core.keys.key_options import Timing
 from ...core.keys.placement import Frame
 from ...core.keys.recording import Keys
-from .fcurves import LINEAR, new_action, own_fcurves
 from .splines import key_points, read
 from .splines import radii as spline_radii
 
+CONSTANT, LINEAR = 0, 1  # among the interpolations of a keyframe, as arrays of them are written in one call
 ONCE = Timing()
 _MARK = "mobius_flow"  # custom property of the actions made here
 
@@ -139,13 +141,69 @@ def add_keys(
         new_action(name, block.id_type, block.name, block.animation_data_create())[_MARK] = True
     fcurves = fcurves_of(block)
     curve = fcurves.find(path, index=axis) or fcurves.new(path, index=axis)
+    later = frames > curve.keyframe_points[-1].co[0] if len(curve.keyframe_points) else slice(None)
+    _append(curve, frames[later], values[later], kind)
+
+
+def draw_line(curve: bpy.types.FCurve, frames: FloatArray, values: FloatArray, kind: int = LINEAR) -> None:
+    """Let an F-curve, or the one of a driver, be piecewise linear, or constant, with keys at these frames alone."""
+    for modifier in list(curve.modifiers):  # which a driver in Blender 4.2 has instead of keys
+        curve.modifiers.remove(modifier)
+    curve.keyframe_points.clear()
+    _append(curve, frames, values, kind)
+
+
+def _append(curve: bpy.types.FCurve, frames: FloatArray, values: FloatArray, kind: int) -> None:
     points, first = curve.keyframe_points, len(curve.keyframe_points)
-    if first:
-        later = frames > points[-1].co[0]
-        frames, values = frames[later], values[later]
     points.add(len(frames))
     places, kinds = read(points, "co", 2), read(points, "interpolation", dtype=np.int32)
     places[first:], kinds[first:] = np.column_stack([frames, values]), kind
     points.foreach_set("co", places.ravel())
     points.foreach_set("interpolation", kinds)
     curve.update()
+
+
+def new_action(name: str, id_type: str, slot: str, user: Any) -> bpy.types.Action:
+    """Make an action with a slot, of a name, for datablocks of a type, and give both to an animation or constraint."""
+    action = bpy.data.actions.new(name)
+    if not hasattr(action, "slots"):
+        action.id_root = id_type
+        user.action = action
+        return action
+    strip, slots = action.layers.new("Layer").strips.new(type="KEYFRAME"), action.slots
+    strip.channelbag(slots.new(id_type=id_type, name=slot), ensure=True)
+    user.action, user.action_slot = action, slots[0]
+    return action
+
+
+def _collections(action: bpy.types.Action, slots: Iterable[Any]) -> list[Any]:
+    """The collections of F-curves of an action, for some of its slots, if it has slots."""
+    if not hasattr(action, "slots"):
+        return [action.fcurves]
+    strips = [strip for layer in action.layers for strip in layer.strips]
+    return [bag.fcurves for strip in strips for slot in slots if (bag := strip.channelbag(slot))]
+
+
+def all_fcurves() -> Iterator[bpy.types.FCurve]:
+    """Yield the F-curves of all actions in the file."""
+    for action in bpy.data.actions:
+        for fcurves in _collections(action, getattr(action, "slots", ())):
+            yield from fcurves
+
+
+def own_fcurves(user: Any) -> Any:
+    """The F-curves of an animation or a constraint that has an action: those of its slot."""
+    slot = getattr(user, "action_slot", None)
+    found = _collections(user.action, [slot] if slot else [])
+    return found[0] if found else ()
+
+
+def copy_action(user: Any) -> None:
+    """Give an animation that shares its action, such as that of a copy, an action of its own."""
+    slot = getattr(user, "action_slot", None)
+    handle = slot and slot.identifier
+    user.action = action = user.action.copy()
+    for other in [each for each in action.slots if each.identifier != handle] if handle else ():
+        action.slots.remove(other)
+    if handle:
+        user.action_slot = action.slots[0]

@@ -14,7 +14,6 @@ from ...core.keys.key_options import Course, KeyOptions
 from ...core.keys.placement import Frame
 from ...core.keys.recording import Keys
 from . import bake, bevel, doors, keyframes, sizes
-from .fcurves import copy_action
 from .moving import what_deforms
 from .sizes import placement
 from .splines import SOURCE, Reference, Splines, read, shape, write_points
@@ -127,7 +126,7 @@ class Member:
             preview = self.data
             _name_original(preview)
             data = self._original.get().copy()
-            copy_action(data.shape_keys.animation_data)
+            keyframes.copy_action(data.shape_keys.animation_data)
             self._show(data)
             keyframes.remove(preview)
         relative = np.array([1.0 / key.size.factor for key in keys.keys])  # what is drawn is not to be scaled

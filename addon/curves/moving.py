@@ -10,7 +10,7 @@ from typing import Any
 
 import bpy
 
-from ...core.base.messages import Message
+from ...core.base import Message
 from . import sizes
 from .keyframes import fcurves_of
 

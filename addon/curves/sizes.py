@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 
 from ...core.keys.placement import Placement, Similarity
-from .fcurves import draw_line, new_action, own_fcurves
+from .keyframes import draw_line, new_action, own_fcurves
 
 _NAME = "Keep Size"
 _MARK = "mobius_flow_sizes"  # custom property of the actions made here

@@ -7,7 +7,7 @@ import numpy as np
 from bpy_extras.view3d_utils import region_2d_to_location_3d
 
 from ...core import Curve
-from ...core.base.types import FloatArray
+from ...core.base import FloatArray
 from ...core.curve.distances import points_along
 
 

@@ -6,7 +6,7 @@ from typing import Any
 import bpy
 from bpy.app.handlers import persistent
 
-from ...core.base.messages import Message
+from ...core.base import Message
 from ..curves.member import show_originals
 from . import registry
 from .modal import clear_status

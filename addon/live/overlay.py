@@ -12,7 +12,7 @@ import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from gpu_extras.batch import batch_for_shader
 
-from ...core.base.types import FloatArray
+from ...core.base import FloatArray
 from ...core.keys.colours import Colour, legible
 from ..curves import pins
 from ..engine.rest import plot

@@ -8,8 +8,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from ...core import MobiusFlowError
-from ...core.base.messages import Message
+from ...core.base import Message, MobiusFlowError
 from ..curves import bake, bevel, splines
 from ..curves.keyframes import count_own, fcurves_of
 from ..curves.moving import what_deforms, what_moves

@@ -3,10 +3,9 @@
 The objects show what has been reached; their originals come back unless the run is kept.
 """
 
-import contextlib
-import threading
 import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from enum import Enum
 from functools import cached_property
 from typing import Any
@@ -28,37 +27,25 @@ from .drag import Drag
 from .refresh import Refresh, looks_back
 
 
-class _AbandonedError(Exception):
-    """The keys are no longer wanted."""
-
-
 class KeyChoice:
     """Chooses and proves the keys of a session in a thread, while Blender stays usable."""
 
     def __init__(self, session: Session) -> None:
         self.abandoned = False  # which ends the thread at its next proof
-        self._prepared: Prepared | None = None
 
-        def prove(*motion: Any) -> bool:
+        def proved(*motion: Any) -> bool:
             if self.abandoned:
-                raise _AbandonedError
+                raise MobiusFlowError("The keys are no longer wanted")
             return session.proved(*motion)
 
-        def prepare() -> None:
-            with contextlib.suppress(_AbandonedError):
-                self._prepared = session.prepare(prove)
-
-        self._thread = threading.Thread(target=prepare, name="Möbius Flow keys", daemon=True)
-        self._thread.start()
+        thread = ThreadPoolExecutor(1, "Möbius Flow keys")
+        self._prepared = thread.submit(session.prepare, proved)
+        thread.shutdown(wait=False)
 
     @property
     def made(self) -> Prepared | None:
-        """What is to be written, once that is known; raises MobiusFlowError if it never will be."""
-        if self._thread.is_alive():
-            return None
-        if self._prepared is None:
-            raise MobiusFlowError("The keys could not be prepared; all is as it was")
-        return self._prepared
+        """What is to be written, once that is known; raises what has gone wrong in the thread."""
+        return self._prepared.result() if self._prepared.done() else None
 
 
 class RunState(Enum):

@@ -2,8 +2,7 @@
 
 import bpy
 
-from ...core import MobiusFlowError
-from ...core.base.messages import Message
+from ...core.base import Message, MobiusFlowError
 from ..curves.splines import box
 from ..curves.strands import KINDS, line_edges
 from ..curves.surroundings import CARRIER, TUBE_OF, WITHOUT_SHAPE

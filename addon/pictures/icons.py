@@ -14,7 +14,7 @@ import bpy.utils.previews
 import numpy as np
 import numpy.typing as npt
 
-from ...core.base.types import FloatArray
+from ...core.base import FloatArray
 from ...core.knots import ALIASES, KNOTS
 
 SHEET = Path(__file__).parents[1] / "assets" / "knots.png"

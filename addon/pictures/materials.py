@@ -8,7 +8,7 @@ tube's material the nodes that are set here have names: "tint", the colour of a 
 import bpy
 import numpy as np
 
-from ...core.base.types import FloatArray
+from ...core.base import FloatArray
 from ...core.keys.colours import flatly_lit
 from ..curves.assets import bundled
 from .looks import DEFAULT, LOOKS

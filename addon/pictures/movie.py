@@ -14,9 +14,8 @@ from pathlib import Path
 
 import bpy
 
-from ...core import MobiusFlowError
-from ...core.base import Message, OutputError, choice
-from ..curves.fcurves import all_fcurves
+from ...core.base import Message, MobiusFlowError, OutputError, choice
+from ..curves.keyframes import all_fcurves
 from . import rendering, stage, staging
 from .looks import LOOKS
 from .rendering import is_rendering

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from mathutils import Matrix
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
-from ...core.base.types import FloatArray
+from ...core.base import FloatArray
 from ...core.curve.refine import interpolated
 from ...core.keys.key_options import Timing
 from ...core.keys.placement import Frame

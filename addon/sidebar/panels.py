@@ -9,7 +9,7 @@ from functools import partial
 import bpy
 
 from ...core import METHODS, OptionError
-from ...core.base.messages import Message
+from ...core.base import Message
 from ...core.driver.words import named, time_left
 from ..buttons.presets import VIEW3D_PT_mobius_flow_presets
 from ..curves import bake, pins, surroundings

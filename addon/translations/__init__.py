@@ -19,7 +19,7 @@ import bpy
 from bpy.app import translations
 from bpy.app.translations import pgettext_iface, pgettext_rpt, pgettext_tip
 
-from ...core.base.messages import Message
+from ...core.base import Message
 
 CONTEXT = "Möbius Flow"  # of all but tooltips, which Blender looks up without a context
 ANY = "*"  # what Blender calls the context of entries that have none

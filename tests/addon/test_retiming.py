@@ -8,8 +8,7 @@ import pytest
 from blender_scenes import add_trefoil, evaluated, relax
 from mobius_flow.addon.buttons import button, relaxing
 from mobius_flow.addon.curves import bake
-from mobius_flow.addon.curves.fcurves import all_fcurves
-from mobius_flow.addon.curves.keyframes import frames_of
+from mobius_flow.addon.curves.keyframes import all_fcurves, frames_of
 
 pytestmark = pytest.mark.usefixtures("defaults")
 EVEN = {"radius": "none", "timing": "EVEN", "length": 40, "max_iterations": 8}
