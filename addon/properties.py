@@ -247,9 +247,3 @@ QUALITIES: Mapping[str, Quality] = {
     "EXACT": Quality("Exact", _EXACT, _options("trust-region", 1e-8, 2000)),
 }
 """The levels by their identifiers, which are in files."""
-
-
-def quality_of(settings: Any) -> str | None:
-    """The level that settings match, or None if they are the user's own."""
-    levels = ((name, each.values.items()) for name, each in QUALITIES.items())
-    return next((name for name, wanted in levels if all(getattr(settings, k) == v for k, v in wanted)), None)

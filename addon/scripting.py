@@ -26,7 +26,8 @@ from .curves import bake, bevel, doors, sizes
 from .curves.recorded import BakedKeys
 from .curves.report import Report
 from .curves.session import Session
-from .curves.splines import SOURCE, Reference, depth, radii, stretch
+from .curves.sizes import placement
+from .curves.splines import SOURCE, Reference, depth, radii
 from .curves.strands import KINDS
 from .curves.surroundings import Surroundings
 from .live.requirements import BAKED, CLEARABLE, ENTERABLE, POLYGONS, READABLE, TUBED, UNEDITED, idle, require
@@ -226,7 +227,7 @@ def begin(
         if ropes is not None:  # sizes are what is asked for: nothing is scaled, and no tube fitted
             options = replace(options, keep_size=Measure.LENGTH, fit_bevel=False)
             splines = [(obj, each) for obj in carriers for each in obj.data.splines]
-            widths = [stretch(obj) * depth(obj.data) * float(radii(each).max()) for obj, each in splines]
+            widths = [placement(obj).stretch * depth(obj.data) * float(radii(each).max()) for obj, each in splines]
             job = SeparateOptions(radius=widths, **ropes)
         elif starts:  # the rope gets shorter, not thicker
             options = replace(options, keep_size=options.keep_size or Measure.LENGTH, constant_radius=True)

@@ -17,7 +17,7 @@ from .pictures import icons, staging
 from .pictures.icons import GROUPS, group, labels
 from .pictures.looks import LOOKS
 from .pictures.movie import CHOICES
-from .properties import FURTHER, QUALITIES, Further, quality_of, settings, timing
+from .properties import FURTHER, QUALITIES, Further, settings, timing
 
 # since 5.0 Blender marks relative paths as wrong unless a property declares that it supports them
 _RELATIVE = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (5, 0) else set()
@@ -31,10 +31,12 @@ _knot_items: dict[str, list[tuple[str, str, str, int, int]]] = {}  # Blender nee
 
 def _quality(panel: Any) -> int:
     """The level follows from the options: whatever sets them, it is never out of date."""
-    try:
-        return _LEVELS.index(quality_of(panel.id_data.mobius_flow) or "CUSTOM")
-    except OptionError:  # what is written among the further options is wrong
-        return _LEVELS.index("CUSTOM")
+    options = panel.id_data.mobius_flow
+    with suppress(OptionError):  # what is written among the further options is wrong
+        for number, each in enumerate(QUALITIES.values()):
+            if all(getattr(options, name) == value for name, value in each.values.items()):
+                return number
+    return _LEVELS.index("CUSTOM")
 
 
 def _set_quality(panel: Any, number: int) -> None:

@@ -78,16 +78,6 @@ def from_arguments(arguments: argparse.Namespace, owner: type = RelaxOptions) ->
     return owner(**wanted)
 
 
-def flags(values: Mapping[str, object]) -> list[str]:
-    """The command-line words for options without terms, given by name in plain values."""
-    words: list[str] = []
-    for option in declared(RelaxOptions):
-        if value := values.get(option.name):
-            text = ",".join(map(str, value)) if isinstance(value, list | tuple) else str(value)
-            words += [flag(option)] if option.kind is bool else [flag(option), text]
-    return words
-
-
 def add_task(parser: argparse.ArgumentParser) -> None:
     """Add the constraints on a curve: pins and obstacles."""
     group = parser.add_argument_group("pins and obstacles")

@@ -17,21 +17,12 @@ from ..live.requirements import Remedy, idle, needing
 from ..live.selection import convertible, selected_curves
 from .button import Button
 
-_MENDED: dict[Remedy, Callable[[bpy.types.Object], object]] = {}
 
-
-def _mends(remedy: Remedy) -> Callable[[Callable[[bpy.types.Object], object]], object]:
-    """Let a function be what mends an object, its docstring the tooltip; it may raise a MobiusFlowError."""
-    return lambda mend: _MENDED.setdefault(remedy, mend)
-
-
-@_mends(Remedy.OBJECT_MODE)
 def _leave_edit_mode(_obj: bpy.types.Object) -> None:
     """Leave Edit Mode; what was edited is kept"""
     bpy.ops.object.mode_set(mode="OBJECT")  # for all objects that are edited together
 
 
-@_mends(Remedy.MAKE_LOCAL)
 def _make_local(obj: bpy.types.Object) -> None:
     """Make the selected curves of other files this file's own; their materials stay linked"""
 
@@ -45,19 +36,16 @@ def _make_local(obj: bpy.types.Object) -> None:
         show_instead(obj, local)
 
 
-@_mends(Remedy.SINGLE_USER)
 def _make_single_user(obj: bpy.types.Object) -> None:
     """Give each of the selected objects curve data of its own; other objects keep what they share"""
     obj.data = obj.data.copy()
 
 
-@_mends(Remedy.MAKE_3D)
 def _make_3d(obj: bpy.types.Object) -> None:
     """Let the points of the selected curves leave the plane"""
     obj.data.dimensions = "3D"
 
 
-@_mends(Remedy.TO_POLY)
 def _to_poly(obj: bpy.types.Object) -> None:
     """Replace Bézier and NURBS splines of the selected curves by the polygons drawn for them"""
     frames = sampled(obj)
@@ -67,7 +55,6 @@ def _to_poly(obj: bpy.types.Object) -> None:
     write_points(obj.data, np.concatenate(frames))
 
 
-@_mends(Remedy.COPY)
 def _still_copy(obj: bpy.types.Object) -> None:
     """Copy curves as they are shown now, without keys, modifiers that move points, and all else that moves them"""
     # what geometry nodes and a parent do to points is left out; the copy is selected in place of the original
@@ -99,7 +86,6 @@ def _still_copy(obj: bpy.types.Object) -> None:
         copy.data.transform(copy.matrix_world.inverted_safe() @ world)  # shear, which no object has by itself
 
 
-@_mends(Remedy.TO_CURVE)
 def _to_curve(obj: bpy.types.Object) -> None:
     """Make curves of the selected texts, and of meshes that are edges without faces; these stay as they are"""
     bpy.ops.object.select_all(action="DESELECT")
@@ -110,6 +96,18 @@ def _to_curve(obj: bpy.types.Object) -> None:
     curve.data.materials.clear()  # for meshes Blender leaves them out
     for slot in obj.material_slots:
         curve.data.materials.append(slot.material)
+
+
+# what mends an object, with the tooltip as docstring; it may raise a MobiusFlowError
+_MENDED: dict[Remedy, Callable[[bpy.types.Object], object]] = {
+    Remedy.OBJECT_MODE: _leave_edit_mode,
+    Remedy.MAKE_LOCAL: _make_local,
+    Remedy.SINGLE_USER: _make_single_user,
+    Remedy.MAKE_3D: _make_3d,
+    Remedy.TO_POLY: _to_poly,
+    Remedy.COPY: _still_copy,
+    Remedy.TO_CURVE: _to_curve,
+}
 
 
 class CURVE_OT_mobius_flow_mend(Button, bpy.types.Operator):

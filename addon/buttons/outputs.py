@@ -15,11 +15,11 @@ from ...core.keys.colours import COLOURINGS, COMPONENT, DISTANCE, ENERGY, vertex
 from ...core.keys.smooth_fit import FEWEST, SmoothFit, bezier_points, fitted
 from ..curves import bake, bevel
 from ..curves.assets import add_nodes
-from ..curves.doors import object_like
+from ..curves.doors import object_like, show_instead
 from ..curves.keyframes import add_keys
 from ..curves.recorded import Recorded, in_world
 from ..curves.sizes import placement
-from ..curves.splines import depth, length, read, stretch
+from ..curves.splines import depth, length, read
 from ..curves.surroundings import TUBE_OF
 from ..live.requirements import READABLE
 from ..live.selection import selected_curves
@@ -51,13 +51,7 @@ class _Output(Button):
         recorded = [self.read(obj) for obj in objects]
         link = in_world(objects, recorded, [each.points[-1] for each in recorded])
         for made, obj in zip(self.make(objects, recorded, link), objects, strict=True):
-            for collection in obj.users_collection:
-                collection.objects.link(made)
-            made.select_set(True)
-            obj.select_set(False)
-            layer = context.view_layer.objects
-            if layer.active is None or not layer.active.select_get():
-                layer.active = made
+            show_instead(obj, made)
             if self.hide_curve:
                 obj.hide_set(True)
                 obj.hide_render = True
@@ -121,7 +115,7 @@ FBX does with NLA Strips and All Actions off, one frame later"""
         colours = None if self.color == _PLAIN else COLOURINGS[self.color](values[self.color])
         for obj, each in zip(objects, recorded, strict=True):
             thick = 0.0 if self.radius else depth(obj.data)
-            radii = thick * each.radii if thick else np.full(each.radii.shape, wanted / stretch(obj))
+            radii = thick * each.radii if thick else np.full(each.radii.shape, wanted / placement(obj).stretch)
             tube = tube_object(obj, each, radii, self.sides)
             part = slice(first, first := first + each.mesh.size)
             write_values(tube.data, {name: array[part] for name, array in values.items()})

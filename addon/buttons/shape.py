@@ -54,14 +54,14 @@ class CURVE_OT_mobius_flow_keep_size(Button, bpy.types.Operator):
 @button("Lay Flat", RELAXABLE)
 def lay_flat(operator: Button, context: bpy.types.Context) -> None:
     """Turn the selected curves so that they lie flat: the shape at the end of their animation extends least upwards"""
-    if unproved := recorded.lay_flat(selected_curves(context)):
+    if unproved := recorded.turn(selected_curves(context)):
         _report(operator, Message("The curves were turned"), unproved)
 
 
 @button("Face Camera", RELAXABLE, _CAMERA)
 def face_camera(operator: Button, context: bpy.types.Context) -> None:
     """Turn the selected curves so that the scene's camera sees their widest side"""
-    if unproved := recorded.face_camera(selected_curves(context), context.scene.camera):
+    if unproved := recorded.turn(selected_curves(context), context.scene.camera):
         _report(operator, Message("The curves were turned"), unproved)
 
 

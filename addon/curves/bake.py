@@ -13,7 +13,7 @@ from ...core.keys.placement import Similarity
 from . import keyframes
 from .keyframes import animated, count_own, draw_line, fcurves_of, there_and_back
 from .sizes import drive
-from .splines import Splines, key_points, read, shape
+from .splines import Splines, read, shape
 
 _RECORD = "mobius_flow_bake"  # custom property of curve data
 
@@ -221,5 +221,5 @@ def _digest(data: bpy.types.Curve) -> str:
     """A fingerprint of the positions of the points at all shape keys."""
     hashed = hashlib.blake2b(digest_size=16)
     for block in data.shape_keys.key_blocks if data.shape_keys else ():
-        hashed.update(key_points(block).tobytes())
+        hashed.update(read(block.data, "co", 3).tobytes())
     return hashed.hexdigest()

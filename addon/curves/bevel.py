@@ -15,7 +15,8 @@ from ...core.base import FloatArray
 from ...core.keys.tube import free_radius, radius_beside, thickest_radius
 from . import bake
 from .recorded import Recorded, drawn_radius, in_world
-from .splines import SOURCE, radii, stretch
+from .sizes import placement
+from .splines import SOURCE, radii
 
 _FITTED = "mobius_flow_tube"  # custom property of curve data: depths that were fitted
 _CONSTANT = "mobius_flow_tube_constant"  # another one: whether they were fitted to be as thick at all keys
@@ -62,7 +63,7 @@ def fit(data: bpy.types.Curve, radius: float, constant: bool | None = None) -> N
 
 def rope_radii(objects: Sequence[bpy.types.Object]) -> FloatArray:
     """Radius at each key, in the world, of the rope that objects were baked as together; empty if they are none."""
-    ropes = np.array([bake.rope(obj.data) * stretch(obj) for obj in objects])
+    ropes = np.array([bake.rope(obj.data) * placement(obj).stretch for obj in objects])
     if not (ropes.min() > 0.0 and np.ptp(ropes) <= 1e-6 * ropes.min()):
         return np.empty(0)
     return float(ropes.min()) * np.array([size.factor for size in bake.sizes(objects[0].data)])
@@ -90,7 +91,7 @@ def fit_tubes(objects: Sequence[bpy.types.Object], constant: bool = False) -> No
     fitting = rope[-len(links) :] if len(rope) else np.array([fitting_radius(link) for link in links])
     fitting = np.full_like(fitting, fitting.min()) if constant else fitting
     for obj in objects:
-        data, wanted = obj.data, fitting / stretch(obj)
+        data, wanted = obj.data, fitting / placement(obj).stretch
         wanted = wanted / [size.factor for size in bake.sizes(data)]  # which the tube is shown in too
         fit(data, float(wanted[-1]), constant)
         for k, block in enumerate(data.shape_keys.key_blocks if data.shape_keys else ()):

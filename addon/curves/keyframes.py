@@ -14,8 +14,8 @@ from ...core.base import FloatArray
 from ...core.keys.key_options import Timing
 from ...core.keys.placement import Frame
 from ...core.keys.recording import Keys
-from .splines import key_points, read
 from .splines import radii as spline_radii
+from .splines import read
 
 CONSTANT, LINEAR = 0, 1  # among the interpolations of a keyframe, as arrays of them are written in one call
 ONCE = Timing()
@@ -93,7 +93,7 @@ def blocks(data: bpy.types.Curve) -> dict[str, bpy.types.ID]:
 
 def keyed_points(data: bpy.types.Curve) -> list[Frame]:
     """Points of a curve at each of its keys, (n, 3)."""
-    return [key_points(block) for block in data.shape_keys.key_blocks]
+    return [read(block.data, "co", 3) for block in data.shape_keys.key_blocks]
 
 
 def there_and_back(frames: FloatArray, values: FloatArray, timing: Timing) -> tuple[FloatArray, FloatArray]:

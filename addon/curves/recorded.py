@@ -20,7 +20,7 @@ from . import bake, pins
 from .keyframes import fcurves_of, keyed_points
 from .moving import what_moves
 from .sizes import placement, resume, suspend
-from .splines import depth, key_points, mesh_of, radii, read, stretch
+from .splines import depth, mesh_of, radii, read
 from .strands import Strands, read_link
 
 
@@ -48,7 +48,7 @@ class Recorded:
         if any(point.interpolation != "LINEAR" for point in curve.keyframe_points):
             frames = np.union1d(frames[[0, -1]], np.arange(np.ceil(frames[0]), np.floor(frames[-1]) + 1))
         keyed = list(zip(bake.sizes(data), data.shape_keys.key_blocks, strict=True))
-        points = np.stack([size.of(key_points(block).astype(np.float64)) for size, block in keyed])
+        points = np.stack([size.of(read(block.data, "co", 3).astype(np.float64)) for size, block in keyed])
         thickness = np.stack([size.factor * read(block.data, "radius").astype(np.float64) for size, block in keyed])
         place = np.array([curve.evaluate(frame) for frame in frames]).clip(0, len(points) - 1)
         return cls(mesh, frames, interpolated(points, place), interpolated(thickness, place), points)
@@ -119,7 +119,7 @@ def world_motion(
 def drawn_radius(obj: bpy.types.Object) -> float:
     """How far what is drawn around an object's curve reaches from it where the radius is 1, in the world."""
     data = obj.data
-    return float((depth(data) + data.extrude + abs(data.offset)) * stretch(obj))
+    return float((depth(data) + data.extrude + abs(data.offset)) * placement(obj).stretch)
 
 
 class BakedKeys:
@@ -171,26 +171,22 @@ def keep_size(objects: Sequence[bpy.types.Object], measure: Measure, reference: 
     return keys
 
 
-def lay_flat(objects: Sequence[bpy.types.Object]) -> int:
-    """Turn curves so that they extend least upwards.
+def turn(objects: Sequence[bpy.types.Object], camera: bpy.types.Object | None = None) -> int:
+    """Turn curves, at the end of their animation if they are baked, so that they extend least upwards.
 
-    Returns the number of motions of keys that are not proved any more. Raises MobiusFlowError if something moves one
-    of them, or its parent's scale would shear it, or if all points are the same.
+    With a camera, so that it sees their widest side, the longest axis across the picture.  Returns the number of
+    motions of keys that are not proved any more. Raises MobiusFlowError if something moves one of the objects, or its
+    parent's scale would shear it, or if all points are the same.
     """
-    return _turn(objects, np.eye(3))
-
-
-def face_camera(objects: Sequence[bpy.types.Object], camera: bpy.types.Object) -> int:
-    """Turn curves so that a camera sees their widest side, its longest axis across the picture; as `lay_flat`."""
-    view = np.array(camera.matrix_world, dtype=np.float64)
-    axes = view[:3, :3].T.copy()
-    if camera.data.type != "ORTHO":
-        axes[2] = view[:3, 3] - Turn.onto(_shape(objects), np.eye(3)).center
-    return _turn(objects, orthonormal(axes))
-
-
-def _turn(objects: Sequence[bpy.types.Object], wanted: FloatArray) -> int:
-    turn = Turn.onto(_shape(objects), wanted)
+    baked = all(bake.is_baked(obj.data) for obj in objects)
+    shape = BakedKeys(objects).curves[-1] if baked else read_link(objects)[0]
+    turn = Turn.onto(shape, np.eye(3))
+    if camera is not None:
+        view = np.array(camera.matrix_world, dtype=np.float64)
+        axes = view[:3, :3].T.copy()
+        if camera.data.type != "ORTHO":
+            axes[2] = view[:3, 3] - turn.center
+        turn = Turn.onto(shape, orthonormal(axes))
     for obj in objects:
         if mover := what_moves(obj):
             sentence = "'{name}' is moved by {mover}; remove that first"
@@ -214,12 +210,4 @@ def _turn(objects: Sequence[bpy.types.Object], wanted: FloatArray) -> int:
         resume(obj)
     bpy.context.view_layer.update()
     # a single object may go anywhere; the positions of several relative to each other are rounded anew
-    proved = len(objects) > 1 and all(bake.is_baked(obj.data) for obj in objects)
-    return BakedKeys(objects).unproved if proved else 0
-
-
-def _shape(objects: Sequence[bpy.types.Object]) -> Curve:
-    """The curves in the world, at the end of their animation if they are baked."""
-    if all(bake.is_baked(obj.data) for obj in objects):
-        return BakedKeys(objects).curves[-1]
-    return read_link(objects)[0]
+    return BakedKeys(objects).unproved if baked and len(objects) > 1 else 0

@@ -31,7 +31,7 @@ from .goals import Goals
 from .group import Group
 from .report import Report
 from .sizes import placement
-from .splines import coordinates, stretch
+from .splines import coordinates
 from .surroundings import NOTHING, Surroundings
 
 # what is to be written: the keys, and for each of them its scene frame, how far the relaxation has come there, and the
@@ -278,7 +278,7 @@ class Session(Group):
             self._press(self.outcome)
         self.goals.hide(objects)
         played = bake.scene_range(objects)
-        shown = keys.keys[-1].size.factor * stretch(objects[0])
+        shown = keys.keys[-1].size.factor * placement(objects[0]).stretch
         after = [each for obj in objects for each in obj.modifiers]
         after += [each for obj in objects if (copy := doors.copy_of(obj)) for each in copy.modifiers[1:]]
         return Report(

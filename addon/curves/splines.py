@@ -13,7 +13,6 @@ from ...core import Curve, CurveError, Mesh
 from ...core.base import FloatArray, Message
 from ...core.keys.markers import along, on_refined
 from ...core.keys.placement import Frame
-from .sizes import placement
 
 SOURCE = "mobius_flow_source"  # custom property of curve data that carries the keys of an object of another kind
 _TYPES: dict[str, Any] = {"BOOLEAN": np.int32, "INT": np.int32, "FLOAT": np.float32, "ENUM": np.int32}
@@ -197,11 +196,6 @@ def sampled(obj: bpy.types.Object) -> list[Frame]:
     return loops
 
 
-def stretch(obj: bpy.types.Object) -> float:
-    """The largest factor by which an object's coordinates are stretched on the way to the world."""
-    return placement(obj).stretch
-
-
 def box(obj: bpy.types.Object) -> tuple[FloatArray, FloatArray]:
     """The least and the greatest coordinates of the corners of an object's box in the world."""
     matrix = np.array(obj.matrix_world)
@@ -217,11 +211,6 @@ def length(scene: bpy.types.Scene, value: float) -> str:
         units.system, "LENGTH", value * units.scale_length, precision=4, split_unit=units.use_separate
     )
     return str(text).strip()
-
-
-def key_points(block: bpy.types.ShapeKey) -> Frame:
-    """Coordinates of all points at a shape key; shape (n, 3)."""
-    return read(block.data, "co", 3)
 
 
 def write_points(data: bpy.types.Curve, frame: Frame) -> None:

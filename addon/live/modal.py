@@ -8,7 +8,7 @@ import numpy as np
 from ...core import Status
 from ...core.base import Message
 from ..curves.report import Report
-from ..curves.splines import stretch
+from ..curves.sizes import placement
 from ..translations import iface_, rpt_
 from . import registry
 from .drag import Drag, corner, size
@@ -84,7 +84,7 @@ class Loop:
             if view.show_navigate_ui and (corner(region) + size(region) - mouse < gizmo).all():
                 return False
             near = 15.0 * system.ui_scale  # pixels
-            radius = max(stretch(each) * each.data.bevel_depth for each in run.session.objects)
+            radius = max(placement(each).stretch * each.data.bevel_depth for each in run.session.objects)
             drag = Drag.at(curve, region, mouse - corner(region), near, radius)
             if drag is not None:
                 drag.pins = event.ctrl

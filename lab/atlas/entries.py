@@ -16,11 +16,10 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ... import __version__
-from ...cli.options import flags
+from ...cli.options import flag
 from ...cli.terminal import one_line
-from ...core import CurveError, MobiusFlowError, read_curve
-from ...core.base.errors import counted
-from ...core.base.types import FloatArray
+from ...core import CurveError, MobiusFlowError, RelaxOptions, read_curve
+from ...core.base import FloatArray, counted, declared
 from ...core.collision.gap import thickness
 from ...core.curve import Curve, writhe_and_crossings
 from ...core.curve.symmetry import SymmetryGroup, symmetries
@@ -239,7 +238,13 @@ def _command(row: Row) -> str:
     name, file = row.name, ""
     if row.input_sha256 is not None:
         name, file = "FILE", f"  # SHA-256 of FILE: {one_line(row.input_sha256)}"
-    words = [name, "--starts", str(row.start), *seed, *flags(json.loads(row.options)), "--extrapolate"]
+    given: list[str] = []
+    values = json.loads(row.options)
+    for option in declared(RelaxOptions):
+        if value := values.get(option.name):
+            text = ",".join(map(str, value)) if isinstance(value, list) else str(value)
+            given += [flag(option)] if option.kind is bool else [flag(option), text]
+    words = [name, "--starts", str(row.start), *seed, *given, "--extrapolate"]
     return shlex.join(["mobius-flow", "batch", *words, "-o", "results"]) + file
 
 

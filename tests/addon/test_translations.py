@@ -10,7 +10,7 @@ import bpy
 import pytest
 import shown_texts
 from mobius_flow.addon import registration, translations
-from mobius_flow.addon.curves.recorded import lay_flat
+from mobius_flow.addon.curves.recorded import turn
 from mobius_flow.addon.live.requirements import RELAXABLE
 from mobius_flow.addon.pictures.movie import target
 from mobius_flow.addon.translations import ANY
@@ -114,7 +114,7 @@ def test_what_is_refused_in_german(tmp_path):
     curve.name, curve.data.dimensions = "Knot", "3D"
     curve.constraints.new("LIMIT_LOCATION")
     with pytest.raises(MobiusFlowError) as caught:
-        lay_flat([curve])
+        turn([curve])
     said = str(caught.value).said(german)
     assert said == "'Knot' wird bewegt (Beschränkung); das zuerst entfernen"
     with pytest.raises(MobiusFlowError) as caught:

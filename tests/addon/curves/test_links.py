@@ -10,7 +10,6 @@ from knot_diagrams import linking_number
 from mathutils import Euler, Matrix, Vector
 from mobius_flow import Relaxation
 from mobius_flow.addon.curves import keyframes
-from mobius_flow.addon.curves.splines import key_points
 from mobius_flow.addon.curves.surroundings import Surroundings
 from mobius_flow.core import MobiusFlowError
 from mobius_flow.core.collision import is_free
@@ -48,7 +47,7 @@ def rings(matrix=TURNED):
 
 def world_keys(objects):
     """World positions of the keyed points, (keys, n, 3), with the objects' vertices one after the other."""
-    each = [[in_world(obj, key_points(block)) for block in obj.data.shape_keys.key_blocks] for obj in objects]
+    each = [[in_world(obj, points) for points in keyframes.keyed_points(obj.data)] for obj in objects]
     return np.concatenate(each, axis=1)
 
 
