@@ -121,7 +121,8 @@ def test_the_curve_follows_rests_and_relaxes_on(settings):
     assert np.linalg.norm(reached - wanted) < 0.03 * curve.length
     free, outcome = drag(knot("3_1"), Hand(), moves | {40: lambda hand, _: hand.release()}, **settings)
     assert outcome.converged
-    assert free[-1].energy == pytest.approx(rested[-1].energy, rel=1e-3)  # of a Möbius image, which hands may choose
+    # Möbius images have the same energy, which hands may choose, but not on the same mesh
+    assert free[-1].energy == pytest.approx(rested[-1].energy, rel=2e-3)
     for iterates in (rested, free):
         check(iterates)
 
