@@ -1,6 +1,7 @@
 """Operators that add knots by name, woven or smooth, and the base of all operators that add knots."""
 
 import re
+from collections.abc import Sequence
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
@@ -38,6 +39,9 @@ class AddsKnot(Button, AddObjectHelper):
     """An operator that makes a curve and adds it as an object at the 3D cursor."""
 
     needs = (OBJECT_MODE,)
+    # what the panel shows besides what is its own and the tube: before and behind that
+    common: Sequence[str] = ("size", "color_components")
+    placing: Sequence[str] = ("align", "location", "rotation")
 
     size: FloatProperty(name="Size", description="Half of the knot's width", default=1.0, min=1e-4, unit="LENGTH")
     fit_bevel: BoolProperty(
@@ -107,24 +111,20 @@ class AddsKnot(Button, AddObjectHelper):
         check_length(Message("Size"), self.size)
         check_length(Message("Thickness"), self.thickness)
 
-    def draw_kind(self, layout: bpy.types.UILayout) -> None:
-        raise NotImplementedError
+    def own(self) -> Sequence[str]:
+        """Names of the settings that only knots of its kind have."""
+        return ()
 
     def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout
         layout.use_property_split = True
-        self.draw_kind(layout)
-        for name in ("size", "color_components"):
+        for name in (*self.own(), *self.common, "fit_bevel"):
             layout.prop(self, name)
-        self.draw_tube(layout)
-        for name in ("align", "location", "rotation"):
-            layout.prop(self, name)
-
-    def draw_tube(self, layout: bpy.types.UILayout) -> None:
-        layout.prop(self, "fit_bevel")
         row = layout.row()
         row.enabled = not self.fit_bevel
         row.prop(self, "thickness")
+        for name in self.placing:
+            layout.prop(self, name)
 
 
 def found(_operator: bpy.types.Operator, _context: bpy.types.Context, _text: str) -> list[str]:
@@ -201,11 +201,8 @@ numbers: a torus knot, braid, Lissajous curve, or two strands along a knot"""
         curve = knots.knot(name)  # woven so flat that its tube would be thin
         return name, knots.rounded(curve.with_vertices(curve.vertices * [1.0, 1.0, 2.0]))
 
-    def draw_kind(self, layout: bpy.types.UILayout) -> None:
-        layout.prop(self, "kind")
-        column = layout.column(align=True)
-        for name in _KINDS[self.kind][2]:
-            column.prop(self, name)
+    def own(self) -> Sequence[str]:
+        return "kind", *_KINDS[self.kind][2]
 
 
 class CURVE_OT_mobius_flow_pick_knot(AddsKnot, bpy.types.Operator):
@@ -252,6 +249,5 @@ class CURVE_OT_mobius_flow_pick_knot(AddsKnot, bpy.types.Operator):
         name = ("m" if self.mirror else "") + name_of(self.knot)
         return name, knots.smooth_knot(name, self.vertices or None)
 
-    def draw_kind(self, layout: bpy.types.UILayout) -> None:
-        for name in ("knot", "mirror", "vertices"):
-            layout.prop(self, name)
+    def own(self) -> Sequence[str]:
+        return "knot", "mirror", "vertices"

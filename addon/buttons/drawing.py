@@ -1,8 +1,8 @@
 """Operators that lift drawings into knots."""
 
 import contextlib
-import threading
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 
 import bpy
 import numpy as np
@@ -30,6 +30,9 @@ _SWITCHES = 32  # Blender's longest array of switches
 
 class DrawsKnot(AddsKnot):
     """An operator that lifts a drawing into a knot, and adds it where it was drawn."""
+
+    common = ("color_components",)
+    placing = ()
 
     def add(self, context: bpy.types.Context, plane: DrawingPlane, lifted: Curve, crossings: int) -> FloatArray:
         """Add a knot that was lifted from a plane, report its type, and return where its object is."""
@@ -96,16 +99,16 @@ class CURVE_OT_mobius_flow_draw_knot(DrawsKnot, bpy.types.Operator):
             obj.hide_set(True)
             obj.hide_render = True
 
-    def draw(self, _context: bpy.types.Context) -> None:
+    def own(self) -> Sequence[str]:
+        return "mirror", "height", "number", "hide_drawing"
+
+    def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         layout.label(text=iface_("Change Crossings (1 to {count})", count=min(self.count, _SWITCHES)))
         grid = layout.grid_flow(row_major=True, columns=8, even_columns=True, align=True)
         for k in range(min(self.count, _SWITCHES)):
             grid.prop(self, "change", index=k, text=str(k + 1), toggle=True)
-        layout.use_property_split = True
-        for name in ("mirror", "height", "number", "hide_drawing", "color_components"):
-            layout.prop(self, name)
-        self.draw_tube(layout)
+        AddsKnot.draw(self, context)
 
 
 def described(curve: Curve, crossings: int) -> tuple[str, Message]:
@@ -151,7 +154,8 @@ class CURVE_OT_mobius_flow_stroke(DrawsKnot, bpy.types.Operator):
                 return {"FINISHED"}
         except MobiusFlowError as error:
             return self.fail(error)
-        self._stroke, self._name = [mouse], _Name()
+        self._stroke, self._said, self._naming = [mouse], "", ThreadPoolExecutor(1)
+        self._answer = self._naming.submit(_name, [mouse])
         self._timer = context.window_manager.event_timer_add(0.1, window=context.window)  # to name the stroke
         self._handle = bpy.types.SpaceView3D.draw_handler_add(self._trace, (), "WINDOW", "POST_PIXEL")
         context.window_manager.modal_handler_add(self)
@@ -164,7 +168,8 @@ class CURVE_OT_mobius_flow_stroke(DrawsKnot, bpy.types.Operator):
                 self._stroke.append(mouse)
                 context.area.tag_redraw()
         elif event.type == "TIMER":
-            self._name.look(self._stroke)
+            if self._answer.done():  # what it would be if it ended now; drawing never waits
+                self._said, self._answer = self._answer.result(), self._naming.submit(_name, list(self._stroke))
             context.area.tag_redraw()
         elif event.type == "LEFTMOUSE" and event.value == "RELEASE":
             self.cancel(context)
@@ -180,6 +185,7 @@ class CURVE_OT_mobius_flow_stroke(DrawsKnot, bpy.types.Operator):
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Remove the stroke's trace and name, also when Blender ends the operator."""
+        self._naming.shutdown(wait=False)
         context.window_manager.event_timer_remove(self._timer)
         bpy.types.SpaceView3D.draw_handler_remove(self._handle, "WINDOW")
         if context.area is not None:
@@ -200,34 +206,18 @@ class CURVE_OT_mobius_flow_stroke(DrawsKnot, bpy.types.Operator):
 
     def _trace(self) -> None:
         overlay.line(np.array([*self._stroke, self._stroke[0]]), overlay.GOLD, 2.0)
-        if self._name.said:
-            overlay.label(iface_(self._name.said), self._stroke[-1])
+        if self._said:
+            overlay.label(iface_(self._said), self._stroke[-1])
 
 
-class _Name:
-    """What a stroke would be if it ended now; a thread finds the answer, so drawing never waits."""
-
-    def __init__(self) -> None:
-        self.said = ""
-        self._seen = 0  # points of the stroke that the name is about
-        self._thread: threading.Thread | None = None
-
-    def look(self, stroke: Sequence[FloatArray]) -> None:
-        """Start to name what has been drawn since, if the last search is over."""
-        if self._seen != len(stroke) and not (self._thread is not None and self._thread.is_alive()):
-            self._seen = len(stroke)
-            self._thread = threading.Thread(target=self._find, args=(list(stroke),), daemon=True)
-            self._thread.start()
-
-    def _find(self, stroke: Sequence[FloatArray]) -> None:
-        said = ""
-        if _length(stroke) >= _SHORTEST:
-            with contextlib.suppress(MobiusFlowError):  # it touches itself for a moment
-                drawing = Drawing.of(Curve(_even(stroke)))
-                count = len(drawing.crossings)
-                named = described(drawing.lifted(), count)[1] if count <= 16 else None
-                said = named or Message("{count} crossings", count=count)
-        self.said = said
+def _name(stroke: Sequence[FloatArray]) -> str:
+    """What a stroke would be if it ended now; nothing where it is too short, or touches itself for a moment."""
+    if _length(stroke) >= _SHORTEST:
+        with contextlib.suppress(MobiusFlowError):
+            drawing = Drawing.of(Curve(_even(stroke)))
+            count = len(drawing.crossings)
+            return described(drawing.lifted(), count)[1] if count <= 16 else Message("{count} crossings", count=count)
+    return ""
 
 
 def _crossing(context: bpy.types.Context, mouse: FloatArray) -> tuple[Drawing, DrawingPlane, int] | None:

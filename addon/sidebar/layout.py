@@ -6,7 +6,6 @@ from typing import Any
 import blf
 import bpy
 
-from ..live.requirements import Refusal
 from ..translations import iface_
 
 Draw = Callable[[bpy.types.UILayout, bpy.types.Context], object]
@@ -81,14 +80,6 @@ def value(layout: bpy.types.UILayout, name: str, text: str) -> None:
     left.alignment = "RIGHT"
     left.label(text=iface_(name), translate=False)
     split.label(text=iface_(text), translate=False)
-
-
-def refused(layout: bpy.types.UILayout, context: bpy.types.Context, refusal: Refusal) -> None:
-    """Show why something is refused, and below it the button that mends it."""
-    sentence(layout, context, refusal.sentence)
-    if refusal.remedy is not None:
-        mend = operator(layout, "mend", text=iface_(refusal.remedy.value), icon="TOOL_SETTINGS")
-        mend.remedy = refusal.remedy.name
 
 
 def sentence(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, icon: str = "INFO") -> None:

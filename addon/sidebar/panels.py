@@ -24,7 +24,7 @@ from ..pictures import staging
 from ..pictures.icons import labels
 from ..properties import QUALITIES, shown, timing
 from ..translations import iface_
-from .layout import InSidebar, SubPanel, button, column, operator, refused, row, sentence, settings, value
+from .layout import InSidebar, SubPanel, button, column, operator, row, sentence, settings, value
 from .menus import search
 
 
@@ -58,7 +58,11 @@ def _hints(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         operator(layout, "recover", icon="RECOVER_LAST")
     hindered, chosen = ENTERABLE(context), relaxed_together(context)
     if hindered and (run is None or any(obj not in objects for obj in chosen)):
-        refused(layout.column(align=True), context, hindered)
+        box = layout.column(align=True)
+        sentence(box, context, hindered.sentence)
+        if hindered.remedy is not None:
+            mend = operator(box, "mend", text=iface_(hindered.remedy.value), icon="TOOL_SETTINGS")
+            mend.remedy = hindered.remedy.name
     if run or not hindered:
         # say what cannot be avoided, or else what might be crossed, with the button that helps
         found = avoided(context)

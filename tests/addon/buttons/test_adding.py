@@ -1,15 +1,19 @@
 """Knots that are added: woven ones of the table, families, and smooth ones, picked in the gallery or by search."""
 
+from types import SimpleNamespace
+
 import bpy
 import numpy as np
 import pytest
 from blender_scenes import contents, sentence, stored
 from mobius_flow.addon import settings as gallery
+from mobius_flow.addon.buttons import adding, drawing
 from mobius_flow.addon.pictures import icons
 from mobius_flow.addon.pictures.icons import GROUPS, labels
 from mobius_flow.core import Curve
 from mobius_flow.core.collision import check_embedded, gap
 from mobius_flow.core.knots import KNOTS, knot, rounded, smooth_knot
+from panel_layout import Layout
 
 
 def added(**options):
@@ -140,3 +144,21 @@ def test_the_gallery_has_every_knot_in_one_group_and_files_keep_what_was_picked(
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "a.blend"))
     assert bpy.context.scene.mobius_flow_knots.knot == "9_42"
+
+
+@pytest.mark.parametrize(
+    ("cls", "first"),
+    [
+        (adding.CURVE_OT_mobius_flow_add_knot, ["kind", "knot", "size"]),
+        (adding.CURVE_OT_mobius_flow_pick_knot, ["knot", "mirror", "vertices", "size"]),
+        (drawing.CURVE_OT_mobius_flow_draw_knot, ["mirror", "height", "number", "hide_drawing", "color_components"]),
+        (drawing.CURVE_OT_mobius_flow_stroke, ["color_components", "fit_bevel", "thickness"]),
+    ],
+)
+def test_its_settings_can_be_changed_afterwards(cls, first):
+    declared = getattr(bpy.ops.curve, cls.bl_idname.partition(".")[2]).get_rna_type().properties
+    values = {each.identifier: getattr(each, "default", None) for each in declared}
+    double = SimpleNamespace(layout=Layout(), common=cls.common, placing=cls.placing, **values)
+    double.own = lambda: cls.own(double)
+    cls.draw(double, None)
+    assert double.layout.settings[: len(first)] == first

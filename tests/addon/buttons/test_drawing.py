@@ -47,17 +47,14 @@ def test_a_drawn_trefoil(kind):
 
 
 def test_a_stroke_is_named_as_it_stands():
-    """In a thread; one with many crossings is only counted, and one that touches itself has no name for a moment."""
-    path, name = [120.0 * place[:2] for place in scribble()], drawing._Name()
+    """One with many crossings is only counted, and one that touches itself has no name for a moment."""
+    path = [120.0 * place[:2] for place in scribble()]
     wanted = {len(path): "3 crossings: m3_1, proved", len(path) // 3: "0 crossings: it is not knotted", 2: ""}
     for length, said in wanted.items():
-        name.look(path[:length])
-        name._thread.join()
-        assert name.said == said
+        assert drawing._name(path[:length]) == said
     turns = np.linspace(0.0, 34.0 * np.pi, 2000)
-    name.look([*(100.0 * np.stack([turns / 20 + np.sin(turns), np.cos(turns)], axis=1))])
-    name._thread.join()
-    assert re.fullmatch(r"\d+ crossings", name.said)
+    many = drawing._name([*(100.0 * np.stack([turns / 20 + np.sin(turns), np.cos(turns)], axis=1))])
+    assert re.fullmatch(r"\d+ crossings", many)
 
 
 def sharpest(points):

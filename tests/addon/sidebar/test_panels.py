@@ -24,7 +24,7 @@ from panel_layout import Layout, shown
 def test_every_button_is_an_operator(cls, curve, monkeypatch):
     if curve:
         add_trefoil()
-    monkeypatch.setattr(panels, "refused", lambda *_: None)  # sentences want a window
+    monkeypatch.setattr(panels, "sentence", lambda *_, **__: None)  # sentences want a window
     layout = shown(cls)
     assert layout.buttons or layout.settings
     ours = {name.removeprefix("curve.") for name in layout.buttons} - {"wm.url_open"}
@@ -38,7 +38,7 @@ def test_the_sidebar_has_few_settings_and_one_place_for_each(monkeypatch):
     run = dict.fromkeys(("recoverable", "waits", "failed", "last", "report", "message", "trouble"))
     run |= {"state": over, "session": SimpleNamespace(names=["Knot"]), "energies": [1.0]}
     monkeypatch.setattr(panels.registry, "shown", lambda _obj: SimpleNamespace(**run))
-    monkeypatch.setattr(panels, "refused", lambda *_: None)
+    monkeypatch.setattr(panels, "sentence", lambda *_, **__: None)
     panels_drawn = registration.declared(panels)
     layouts = {cls: shown(cls) for cls in panels_drawn}
     settings = [name for layout in layouts.values() for name in set(layout.settings)]  # qualities are one setting
