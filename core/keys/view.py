@@ -3,6 +3,7 @@
 import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import islice
 from typing import Any
 
@@ -18,6 +19,7 @@ from ..descent.task import centred
 from ..energies.hierarchy import moebius_energy
 from ..proof import stages
 from ..proof.checker import Archive, TrajectoryError
+from .placement import framed
 from .tube import free_radius, thickest_radius
 
 COLOURS = ("#3b6fb6", "#d1663f", "#4b9b6e", "#9b5fb0", "#c9a227", "#5aa7b8", "#b8436d", "#7a7a7a")
@@ -37,7 +39,12 @@ class Motion:
     def radius(self) -> float:
         """Radius of tubes: that of the rope, or as thick as strands leave room; never too thin to be seen."""
         fits = self.rope or min(free_radius(curve, thickest_radius(curve)) for curve in self.curves)
-        return max(fits, 0.002 * max(curve.length for curve in self.curves))
+        return max(fits, 0.002 * max(curve.length for curve in self.framed))
+
+    @cached_property
+    def framed(self) -> list[Curve]:
+        """What pictures are made around: the ends of ropes with a knot in them leave them."""
+        return [curve.with_vertices(framed(curve)) for curve in self.curves]
 
 
 @checked
@@ -195,7 +202,7 @@ def page(shown: Motion, radius: float | None = None, title: str = "") -> str:
 
 def _layout(shown: Motion, radius: float, title: str) -> dict[str, Any]:
     """No axes, and room for every frame; beside it the energies, if any, and what plays frames and slides through."""
-    points = np.concatenate([np.pad(each.vertices, ((0, 0), (0, 3 - each.dimension))) for each in shown.curves])
+    points = np.concatenate([np.pad(each.vertices, ((0, 0), (0, 3 - each.dimension))) for each in shown.framed])
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     half = 0.5 * float(np.ptp(points, axis=0).max()) + 2.0 * radius
     scene: dict[str, Any] = {

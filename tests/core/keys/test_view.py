@@ -100,6 +100,11 @@ def test_figures_have_a_slider_and_the_energy(recorded):
     shown = result.show()
     assert [trace.type for trace in shown.data] == ["mesh3d", "scatter"]
     assert tuple(shown.data[1].y) == result.energies
+    rope = knot("overhand", 60).vertices
+    away = rope[:1] + 99.0 * (rope[:1] - rope[1:2])
+    whole, longer = (figure(still(Curve.from_components([each], [False]))) for each in (rope, np.append(away, rope, 0)))
+    one, other = (np.diff(each.layout.scene.xaxis.range) for each in (whole, longer))
+    assert other < 2.0 * one  # its ends leave the picture
 
 
 def test_what_cannot_be_shown_is_refused(tmp_path):
