@@ -43,6 +43,7 @@ def lead_apart(
     radius: FloatArray,
     stiffness: sp.csr_array,
     held: BoolArray,
+    taut: BoolArray,
     over: str | None = None,
     obstacles: Sequence[Obstacle] = (),
 ) -> tuple[FloatArray, list[Crossing]]:
@@ -52,7 +53,7 @@ def lead_apart(
     are apart, however little, stay on their sides; of others the later one goes over, as seen from that direction: an
     axis such as z or -x, by default the one in which the curve extends least where it meets itself.  The displacement
     is the smoothest one by the quadratic form of ``stiffness``, (n, n), times a factor so small that nothing else is
-    met.  A CurveError names strands that are ``held``, (n,), where they meet.
+    met.  A CurveError names strands that are ``held``, (n,), where they meet, perhaps because they are ``taut``, (n,).
     """
     mesh, p = curve.mesh, curve.vertices
     scale = min(float(radius.min()), float(curve.edge_lengths.max()))
@@ -61,6 +62,8 @@ def lead_apart(
     for k, other in pinned[cKDTree(p[pinned]).query_pairs(meets, output_type="ndarray")][:1]:
         parts = [Message(COMPONENT, number=int(mesh.component[each]) + 1) for each in (k, other)]
         both = "{one} and {other} are both held at {place}; move one of them, or let go of it"
+        if taut[[k, other]].any():
+            both = "{one} and {other} are both held at {place} by the lengths that are kept; leave these free"
         message = Message(both, one=parts[0], other=parts[1], place=written(p[k]))
         raise CurveError(message, at_vertices(curve, int(k), int(other)))
     none = np.zeros(0, dtype=np.intp)

@@ -131,8 +131,9 @@ def _iterates(task: Task, options: SeparateOptions) -> Relaxation:
     if task.pin_tangents:
         pins = np.unique([pins, mesh.heads[mesh.outgoing[pins]], mesh.tails[mesh.incoming[pins]]])
     held = holds(mesh, Pins.of(curve, pins).vertices if keep else pins)  # taut arcs whose lengths are kept cannot move
+    taut = held & ~holds(mesh, pins)
     ropes = Ropes(curve, radius, held, task.obstacles, keep)
-    apart, crossings = lead_apart(curve, radius, ropes.stiffness, held, options.over, task.obstacles)
+    apart, crossings = lead_apart(curve, radius, ropes.stiffness, held, taut, options.over, task.obstacles)
     led = curve.with_vertices(apart)
     check_embedded(led)
     check_clear(led, task.obstacles)

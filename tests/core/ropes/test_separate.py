@@ -179,8 +179,8 @@ def test_where_there_is_no_room_the_best_is_kept_and_the_place_told(curve, radiu
 @pytest.mark.parametrize(
     ("curve", "options", "said"),
     [
-        (arcs(TWICE, TWICE), {}, "component 1 and component 2 are both held at (0, 0, 1)"),
-        (arcs(X, Y), {"lengths": "keep"}, "component 1 and component 2 are both held at (0, 0, 0)"),
+        (arcs(TWICE, TWICE), {}, "component 1 and component 2 are both held at (0, 0, 1); move one of them"),
+        (arcs(X, Y), {"lengths": "keep"}, "component 1 and component 2 are both held at (0, 0, 0) by the lengths"),
         (Curve(np.concatenate([ring(), ring()])), {}, "touch or cross near"),
         (arcs([[0.0, 0, 0], [2, 0, 0], [1, 0, 0], [1, 1, 0]]), {}, "doubles back at vertex 2"),
         (arcs([[0.0, 0, 0], [2, 0, 0], [2, 0, 0], [1, 1, 0]]), {}, "are the same point"),
