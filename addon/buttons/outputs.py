@@ -19,7 +19,7 @@ from ..curves.doors import object_like, show_instead
 from ..curves.keyframes import add_keys
 from ..curves.recorded import Recorded, in_world
 from ..curves.sizes import placement
-from ..curves.splines import depth, length, read
+from ..curves.splines import SOURCE, depth, length, read
 from ..curves.surroundings import TUBE_OF
 from ..live.requirements import READABLE
 from ..live.selection import selected_curves
@@ -30,7 +30,6 @@ from .button import Button
 
 _PLAIN = "NONE"
 COLOUR = "colour"  # attribute of vertices
-_LOOKS = ("bevel_mode", "bevel_depth", "bevel_resolution", "extrude", "offset", "taper_object", "bevel_object")
 _Objects, _Records = Sequence[bpy.types.Object], Sequence[Recorded]
 
 
@@ -256,18 +255,17 @@ def smooth_objects(
     ``kind``: 'BEZIER' or 'NURBS'. Returns the objects, and the splines as they are stored in them, in the world.
     """
     wanted = iter(fitted(link, points).points)
-    made, shown = [], []
+    made, shown = list[bpy.types.Object](), list[FloatArray]()
     for obj in objects:
         place = placement(obj)
         stored = [place.to_local(each).astype(np.float32) for each in islice(wanted, len(obj.data.splines))]
-        data = bpy.data.curves.new(f"{obj.name} Smooth", "CURVE")
-        data.dimensions, data.resolution_u = "3D", 12
-        for name in _LOOKS:
-            setattr(data, name, getattr(obj.data, name))
-        if bevel.is_fitted(obj.data):
-            bevel.fit(data, data.bevel_depth)
-        for material in obj.data.materials:
-            data.materials.append(material)
+        made.append(object_like(obj, data := obj.data.copy()))
+        made[-1].name = data.name = f"{obj.name} Smooth"
+        bake.forget(made[-1])
+        data.animation_data_clear()
+        data.pop(SOURCE, None)
+        data.resolution_u = 12
+        data.splines.clear()
         for control, old in zip(stored, obj.data.splines, strict=True):
             spline = data.splines.new(kind)
             spline.use_cyclic_u = old.use_cyclic_u
@@ -277,20 +275,12 @@ def smooth_objects(
                 spline.points.foreach_set("co", np.pad(control, ((0, 0), (0, 1)), constant_values=1.0).ravel())
                 spline.order_u, spline.use_endpoint_u = 4, not spline.use_cyclic_u
                 continue
-            bezier = bezier_points(control.astype(np.float64), bool(spline.use_cyclic_u))
-            middle, right, left = bezier[:, 0], bezier[:, 1], bezier[:, 2]
-            if spline.use_cyclic_u:
-                left = np.roll(left, 1, axis=0)
-            else:  # the outer handles mirror the inner ones
-                middle = np.concatenate([middle, bezier[-1:, 3]])
-                before, after = 2 * middle[:1] - right[:1], 2 * middle[-1:] - left[-1:]
-                right, left = np.concatenate([right, after]), np.concatenate([before, left])
+            middle, handle = bezier_points(control.astype(np.float64), bool(spline.use_cyclic_u))
             points_of = spline.bezier_points
             points_of.add(len(middle) - 1)
             for point in points_of:  # aligned handles stay in line when somebody moves them
                 point.handle_left_type = point.handle_right_type = "ALIGNED"
-            for name, array in (("co", middle), ("handle_right", right), ("handle_left", left)):
-                points_of.foreach_set(name, array.astype(np.float32).ravel())
-        made.append(object_like(obj, data))
+            for name, side in (("co", 0.0), ("handle_right", 1.0), ("handle_left", -1.0)):
+                points_of.foreach_set(name, (middle + side * handle).astype(np.float32).ravel())
         shown += [place.to_world(each.astype(np.float64)) for each in stored]
     return made, SmoothFit(link, tuple(shown))

@@ -71,16 +71,16 @@ class SmoothFit:
         return Curve(_on_polygon(self.curve, t), mesh), Curve(spline, mesh)
 
 
-def bezier_points(points: FloatArray, closed: bool = True) -> FloatArray:
-    """Bézier points of a spline's segments, from end to end; control points (k, 3) to (segments, 4, 3).
+def bezier_points(points: FloatArray, closed: bool = True) -> tuple[FloatArray, FloatArray]:
+    """Where segments of a spline meet or end, and from there to the handles of Bézier curves; (joints, 3) each.
 
-    A periodic spline has as many segments as control points, a clamped one three less.
+    The other handle is as far away on the other side.  A periodic spline has as many joints as control points, (k, 3),
+    a clamped one two less.
     """
     knots = _knots(len(points), closed)
-    joints = knots[_DEGREE:-_DEGREE]
+    joints = knots[_DEGREE : -_DEGREE - closed]
     spline = BSpline(knots, points[_wrapped(len(points), closed)], _DEGREE)
-    place, handle = spline(joints), spline(joints, 1) / _DEGREE
-    return np.stack([place[:-1], place[:-1] + handle[:-1], place[1:] - handle[1:], place[1:]], axis=1)
+    return spline(joints), spline(joints, 1) / _DEGREE
 
 
 def _knots(count: int, closed: bool) -> FloatArray:
