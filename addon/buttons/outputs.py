@@ -33,15 +33,12 @@ COLOUR = "colour"  # attribute of vertices
 _Objects, _Records = Sequence[bpy.types.Object], Sequence[Recorded]
 
 
-class _Output(Button):
-    __annotations__ = {
-        "hide_curve": BoolProperty(
-            name="Hide Curve",
-            description="Hide the curve, which is in the same place, in views and renders",
-            default=True,
-        )
-    }
+_HIDE_CURVE = BoolProperty(
+    name="Hide Curve", description="Hide the curve, which is in the same place, in views and renders", default=True
+)
 
+
+class _Output(Button):
     needs = (READABLE,)
 
     def act(self, context: bpy.types.Context) -> None:
@@ -65,35 +62,33 @@ glTF, USD and Alembic keep motion and colors (Alembic with Color Attributes on);
 FBX does with NLA Strips and All Actions off, one frame later"""
 
     bl_label = "Tube Mesh"
-    __annotations__ = {
-        "color": EnumProperty(
-            name="Color",
-            description="What the vertices are colored by, as the curves are at the end of their animation",
-            items=[
-                (_PLAIN, "Materials", "The curve's own materials"),
-                (COMPONENT, "Component", "A color for each spline"),
-                (DISTANCE, "Distance", "The distance to the nearest other strand: yellow where it is near"),
-                (ENERGY, "Energy", "The Möbius energy per length: yellow where there is much of it"),
-            ],
-            default=_PLAIN,
-        ),
-        "radius": FloatProperty(
-            name="Radius",
-            description="Radius of the tubes; 0: as they are drawn, or else as the rope, or as thick as fits",
-            default=0.0,
-            min=0.0,
-            unit="LENGTH",
-        ),
-        "sides": IntProperty(
-            name="Sides", description="Number of vertices round the tube", default=16, min=3, soft_max=64, max=256
-        ),
-        "every_frame": BoolProperty(
-            name="Attributes at Every Frame",
-            description="Work out arc_length, curvature and strand_distance at every frame, in a modifier of nodes",
-            default=False,
-        ),
-        **_Output.__annotations__,
-    }
+    color: EnumProperty(
+        name="Color",
+        description="What the vertices are colored by, as the curves are at the end of their animation",
+        items=[
+            (_PLAIN, "Materials", "The curve's own materials"),
+            (COMPONENT, "Component", "A color for each spline"),
+            (DISTANCE, "Distance", "The distance to the nearest other strand: yellow where it is near"),
+            (ENERGY, "Energy", "The Möbius energy per length: yellow where there is much of it"),
+        ],
+        default=_PLAIN,
+    )
+    radius: FloatProperty(
+        name="Radius",
+        description="Radius of the tubes; 0: as they are drawn, or else as the rope, or as thick as fits",
+        default=0.0,
+        min=0.0,
+        unit="LENGTH",
+    )
+    sides: IntProperty(
+        name="Sides", description="Number of vertices round the tube", default=16, min=3, soft_max=64, max=256
+    )
+    every_frame: BoolProperty(
+        name="Attributes at Every Frame",
+        description="Work out arc_length, curvature and strand_distance at every frame, in a modifier of nodes",
+        default=False,
+    )
+    hide_curve: _HIDE_CURVE
 
     def act(self, context: bpy.types.Context) -> None:
         check_length(Message("Radius"), self.radius)
@@ -148,26 +143,24 @@ class CURVE_OT_mobius_flow_smooth_curve(_Output, bpy.types.Operator):
 are. USD and Alembic keep the control points, glTF and FBX what is drawn (glTF nothing without a bevel)"""
 
     bl_label = "Smooth Curve"
-    __annotations__ = {
-        "kind": EnumProperty(
-            name="Type",
-            description="What the splines are; both are the same curve",
-            items=[
-                ("BEZIER", "Bézier", "Points on the curve, with handles"),
-                ("NURBS", "NURBS", "Control points beside the curve"),
-            ],
-            default="BEZIER",
-        ),
-        "points": IntProperty(
-            name="Points",
-            description="Number of points of each spline; 0: as few as the eye needs",
-            default=0,
-            min=0,
-            soft_max=200,
-            max=10_000,
-        ),
-        **_Output.__annotations__,
-    }
+    kind: EnumProperty(
+        name="Type",
+        description="What the splines are; both are the same curve",
+        items=[
+            ("BEZIER", "Bézier", "Points on the curve, with handles"),
+            ("NURBS", "NURBS", "Control points beside the curve"),
+        ],
+        default="BEZIER",
+    )
+    points: IntProperty(
+        name="Points",
+        description="Number of points of each spline; 0: as few as the eye needs",
+        default=0,
+        min=0,
+        soft_max=200,
+        max=10_000,
+    )
+    hide_curve: _HIDE_CURVE
 
     def make(self, objects: _Objects, recorded: _Records, link: Curve) -> list[bpy.types.Object]:
         """Make the splines of all objects together: the strand that one comes near may belong to another."""

@@ -91,24 +91,19 @@ def _nodes_of(tree: bpy.types.NodeTree | None, seen: set[bpy.types.NodeTree]) ->
             yield from _nodes_of(getattr(node, "node_tree", None), seen)
 
 
-def unsteady(avoided: Iterable[bpy.types.Object], relaxed: Sequence[bpy.types.Object]) -> Message | None:
+def unsteady(avoided: Sequence[bpy.types.Object], relaxed: Sequence[bpy.types.Object]) -> Message | None:
     """Say what changes in avoided objects, or in curves that avoid them, or return None if nothing does."""
-    avoided = list(avoided)
-    still = (
-        "'{name}' is moved by {mover}, and what is avoided must stand still; "
-        "remove that, or leave it out of what is avoided"
-    )
-    placed = (
-        "'{name}' is moved by {mover}, and curves that avoid something must keep their places; "
-        "remove that, or avoid nothing"
-    )
-    changing = ((obj, mover) for obj in avoided if (mover := what_changes(obj, relaxed)))
-    moved = ((obj, mover) for obj in relaxed if avoided and (mover := what_moves(obj)))
-    said = chain(
-        (Message(still, name=obj.name, mover=mover) for obj, mover in changing),
-        (Message(placed, name=obj.name, mover=mover) for obj, mover in moved),
-    )
-    return next(said, None)
+    for obj in avoided:
+        if mover := what_changes(obj, relaxed):
+            still = "'{name}' is moved by {mover}, and what is avoided must stand still; remove that, or leave it out \
+of what is avoided"
+            return Message(still, name=obj.name, mover=mover)
+    for obj in relaxed if avoided else ():
+        if mover := what_moves(obj):
+            placed = "'{name}' is moved by {mover}, and curves that avoid something must keep their places; remove \
+that, or avoid nothing"
+            return Message(placed, name=obj.name, mover=mover)
+    return None
 
 
 def what_changes(
