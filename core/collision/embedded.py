@@ -4,8 +4,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ..base import COMPONENT, EDGE, VERTEX, CurveError, FloatArray, Message
-from ..base.tolerances import MIN_GAP, MIN_SPACING, ON_EDGE_UNITS, PLANE_ROUNDING
+from ..base import COMPONENT, EDGE, MIN_GAP, PLANE_ROUNDING, VERTEX, CurveError, FloatArray, Message
+from ..base.tolerances import MIN_SPACING, ON_EDGE_UNITS
 from ..curve import Curve, Mesh, Obstacle, at_edges, at_vertices
 from .boxes import BoxTree, corners, nearer_than, still_triangles
 from .exact import EDGES, crossing, first_contact

@@ -23,7 +23,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..base.types import FloatArray
+from ..base import FloatArray
 
 # Coefficients of a homogeneous polynomial in (1−t, t): Bernstein coefficients times positive binomials.
 Polynomial = Sequence[int]

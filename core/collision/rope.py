@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..base.types import BoolArray, FloatArray, IntArray
+from ..base import BoolArray, FloatArray, IntArray
 from ..curve import Mesh, Obstacle
 from .boxes import BoxTree, Level, Test, contact_window, corners, still_triangles
 from .motion import Contact, FreeMotion, Limit, free_motion, is_free

@@ -12,7 +12,7 @@ from itertools import compress
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from ..base.types import FloatArray
+from ..base import FloatArray
 from .curve import Curve
 from .refine import evenly
 

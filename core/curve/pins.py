@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
-from ..base.types import BoolArray, FloatArray, IntArray, frozen
+from ..base import BoolArray, FloatArray, IntArray, frozen
 from .curve import Curve
 from .mesh import Mesh
 

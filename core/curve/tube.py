@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..base.types import FloatArray, IntArray
+from ..base import FloatArray, IntArray
 from .curve import Curve
 from .mesh import Mesh
 from .refine import interpolated

@@ -6,7 +6,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ..base.types import FloatArray
+from ..base import FloatArray
 from .problem import Point
 
 

@@ -12,7 +12,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..base.types import FloatArray
+from ..base import FloatArray
 from ..collision import is_rope, survives_rounding, walk
 from ..curve import Alignment, Curve, Freedom, Mesh, Obstacle, alignments, bending, refined_alike
 from ..io.trajectory import Iterate

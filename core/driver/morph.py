@@ -11,7 +11,7 @@ from itertools import pairwise, product
 
 from ..base import BLAS, OF_GOAL, CurveError, Message, MobiusFlowError, OptionError, TimeLimit, checked, counted
 from ..curve import Alignment, Curve
-from ..descent.task import Task
+from ..descent import Task
 from ..io.trajectory import Iterate
 from ..knots import knot_type
 from ..knots.diagrams import Diagram, alexander, jones, signature, unsigned_linking

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..curve.refine import Resolution
+from ..curve import Resolution
 from ..descent import Method, NoStep, Point, SearchState, Step
 from ..io.trajectory import Iterate
 from .outcome import Outcome, degenerate, stalled

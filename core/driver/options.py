@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ..base.arguments import check_options, declared, documented, is_list, option
-from ..base.errors import OptionError
+from ..base import OptionError, check_options, declared, is_list
+from ..base.arguments import documented, option
 from ..curve.symmetry import IS_NAME
 from ..descent import METHODS
 from ..energies import ENERGIES, TERMS, Energy, Term, is_weighted, weighted_term

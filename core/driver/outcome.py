@@ -8,7 +8,8 @@ from typing import Any
 
 from ..base import Message, Place, checked_fields, counted, joined
 from ..curve import Curve, halved
-from ..descent.task import Task, centred
+from ..descent import Task
+from ..descent.task import centred
 from ..energies.components import energy_scale
 from ..energies.hierarchy import SampledErrors, moebius_energy
 from ..io.trajectory import Iterate

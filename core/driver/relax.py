@@ -12,7 +12,7 @@ import numpy as np
 from ..base import BLAS, COMPONENT, VERTEX_COUNT, CurveError, Message, OptionError, TimeIsUp, TimeLimit, checked
 from ..collision import thickness
 from ..curve import Curve
-from ..descent.task import Task
+from ..descent import Task
 from ..io.trajectory import Iterate
 from . import moves
 from .hand import Hand

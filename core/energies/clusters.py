@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.types import BoolArray, FloatArray, IntArray, frozen
+from ..base import BoolArray, FloatArray, IntArray, frozen
 
 Cut = Callable[[IntArray, IntArray], IntArray]
 """Where to cut ranges [start, stop); it may sort the order within them first."""

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.types import FloatArray, IntArray
+from ..base import FloatArray, IntArray
 from ..curve import Curve, Mesh
 from .edge_pairs import change, stepped
 

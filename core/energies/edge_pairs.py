@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy.sparse as sp
 
-from ..base.types import BoolArray, FloatArray, IntArray
+from ..base import BoolArray, FloatArray, IntArray
 from ..curve import Curve, Mesh
 
 STEP = 1e-100

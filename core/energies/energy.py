@@ -4,7 +4,7 @@ from typing import Protocol, runtime_checkable
 
 import scipy.sparse as sp
 
-from ..base.types import FloatArray
+from ..base import FloatArray
 from ..curve import Curve
 from .quadrature import Rule
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.sparse as sp
 
-from ..base.types import FloatArray
+from ..base import FloatArray
 from ..curve import Curve, bending, bending_and_derivative, nearest_on_edges, periods, vertex_positions
 
 REACH = 0.5  # r, in the program's units, in which a component is 4 to 8 long

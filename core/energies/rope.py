@@ -19,10 +19,8 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
-from ..base.arguments import checked_fields
-from ..base.types import FloatArray, IntArray, frozen
-from ..curve import Curve
-from ..curve.measures import bending_radii
+from ..base import FloatArray, IntArray, checked_fields, frozen
+from ..curve import Curve, bending_radii
 from .edge_pairs import E, EdgePairs, F, Jet, change, scatter_first, scatter_second, stepped
 
 

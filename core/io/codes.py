@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TextIO
 
 from ..base import CurveError, CurveFileError, checked
-from ..curve.curve import Curve, check_closed
+from ..curve import Curve, check_closed
 from ..knots.diagrams import Diagram, diagram_of, views
 from ..knots.diagrams.codes import CodeError, check_count, diagram_from_code, gauss_text, is_code, joined, planar_text
 from ..knots.planar import drawn

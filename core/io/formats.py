@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import BinaryIO, TextIO
 
 from ..base import CurveError, CurveFileError, MobiusFlowError, Table, atomic_write, checked, wrong_suffix
-from ..curve.curve import Curve
+from ..curve import Curve
 from . import codes, json_lists, obj, pdb, vect, xyz
 from .source import Polygon, Source, assemble
 

@@ -9,7 +9,7 @@ import json
 import re
 from typing import TextIO
 
-from ..curve.curve import Curve
+from ..curve import Curve
 from .source import Polygon, Source
 
 _Path = tuple[str | int, ...]  # keys and indices that lead from the top to a value

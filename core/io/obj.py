@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import NamedTuple, TextIO
 
-from ..base.errors import shown
-from ..curve.curve import Curve
+from ..base import shown
+from ..curve import Curve
 from .source import Polygon, Source
 
 _log = logging.getLogger(__name__)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ..base import CurveError, CurveFileError, checked
-from ..curve.obstacle import Obstacle
+from ..curve import Obstacle
 from . import load_curve
 from .obj import check_known, index_of, parsed
 from .source import Source

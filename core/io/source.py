@@ -10,8 +10,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import BinaryIO, ClassVar
 
-from ..base.errors import CurveError, CurveFileError, reason_of, shown
-from ..curve.curve import Curve
+from ..base import CurveError, CurveFileError, reason_of, shown
+from ..curve import Curve
 
 _INTEGER = re.compile(r"[+-]?[0-9]{1,18}")  # with more digits it is no count or index of anything in memory
 _log = logging.getLogger(__name__)

@@ -9,8 +9,8 @@ Source: the Geomview manual, section "VECT".
 from itertools import islice
 from typing import TextIO
 
-from ..base.errors import shown
-from ..curve.curve import Curve
+from ..base import shown
+from ..curve import Curve
 from .source import Polygon, Source
 
 

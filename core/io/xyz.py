@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable
 from typing import TextIO
 
-from ..curve.curve import Curve
+from ..curve import Curve
 from .source import Polygon, Source
 
 _SEPARATOR = re.compile(r"\s*[,;]\s*|\s+")

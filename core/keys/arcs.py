@@ -12,9 +12,8 @@ from scipy.spatial import cKDTree
 from ..base import CurveError, FloatArray
 from ..collision import check_embedded
 from ..curve import Curve, arc_lengths
+from ..knots import Drawing, rounded
 from ..knots.diagrams.projection import frames, plane_crossings, project
-from ..knots.drawings import Drawing
-from ..knots.inscribed import rounded
 from ..knots.layout import upright
 
 

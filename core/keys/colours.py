@@ -5,9 +5,9 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from scipy.spatial.distance import cdist
 
-from ..base.types import FloatArray
-from ..curve import Curve
-from ..curve.distances import STRAND_RATIO, arc_distance_of_vertices, nearest_on_edges
+from ..base import FloatArray
+from ..curve import STRAND_RATIO, Curve, nearest_on_edges
+from ..curve.distances import arc_distance_of_vertices
 from ..energies.moebius import moebius_by_length
 
 # of components; after the last they begin again

@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 from ..base import CurveError, FloatArray
 from ..base.arguments import check_options, documented, option
 from ..curve import Curve, arc_lengths
-from ..knots.drawings import Drawing
+from ..knots import Drawing
 from .arcs import Arc, widest
 
 INKS = ("#1c1c1c", "#c8402f", "#2f6db3", "#3c8d5a", "#d08c1d", "#8a4f9e")  # of components; then they begin again

@@ -9,9 +9,7 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from ..base.errors import OptionError
-from ..base.messages import Message
-from ..base.types import FloatArray
+from ..base import FloatArray, Message, OptionError
 from .placement import Measure
 
 LAST_FRAME = 1_048_574  # of any scene; up to here, 32-bit numbers resolve a sixteenth of a frame

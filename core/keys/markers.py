@@ -11,9 +11,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..base.types import FloatArray, IntArray
-from ..curve import Mesh
-from ..curve.refine import interpolated
+from ..base import FloatArray, IntArray
+from ..curve import Mesh, interpolated
 
 KEPT = 0.998  # of a rope's radius, once its points are rounded and those on edges left out; half of that is proved
 

@@ -13,10 +13,8 @@ from itertools import pairwise
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from ..base.errors import MobiusFlowError
-from ..base.types import FloatArray
-from ..curve import Curve
-from ..curve.refine import interpolated
+from ..base import FloatArray, MobiusFlowError
+from ..curve import Curve, interpolated
 from ..io.trajectory import Iterate
 from .key_options import Course, Timing
 from .markers import KEPT, corners

@@ -22,8 +22,7 @@ from itertools import accumulate, pairwise
 import numpy as np
 import numpy.typing as npt
 
-from ..base.errors import Place
-from ..base.types import FloatArray
+from ..base import FloatArray, Place
 from ..curve import Curve, Mesh
 
 Frame = npt.NDArray[np.float32]

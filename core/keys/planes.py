@@ -5,9 +5,7 @@ from itertools import product
 
 import numpy as np
 
-from ..base.errors import CurveError
-from ..base.messages import Message
-from ..base.types import FloatArray
+from ..base import CurveError, FloatArray, Message
 from ..curve import Curve
 
 

@@ -8,8 +8,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from ..base.errors import MobiusFlowError
-from ..base.types import FloatArray
+from ..base import FloatArray, MobiusFlowError
 from ..curve import Curve, Mesh
 from ..io.trajectory import Iterate
 from ..proof.checker import RefusedError, kept_vertices

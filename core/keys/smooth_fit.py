@@ -12,10 +12,10 @@ import scipy.sparse as sp
 from scipy.interpolate import BSpline
 from scipy.sparse.linalg import splu
 
-from ..base.types import FloatArray, IntArray
+from ..base import FloatArray, IntArray
 from ..collision import is_free
-from ..curve import Curve, Mesh
-from ..curve.distances import points_along, vertex_positions
+from ..curve import Curve, Mesh, vertex_positions
+from ..curve.distances import points_along
 from .tube import free_radius, strand_gap, thickest_radius
 
 FEWEST = 4  # control points of a cubic spline

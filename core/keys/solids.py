@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..base.arguments import checked
-from ..base.errors import CurveError, MobiusFlowError
-from ..collision.gap import thickness
+from ..base import CurveError, MobiusFlowError, checked
+from ..collision import thickness
 from ..curve import Curve
 from ..curve.tube import Tube, tubes
 from .colours import linear

@@ -13,12 +13,10 @@ import numpy as np
 from scipy.sparse import diags_array
 from scipy.sparse.linalg import spsolve
 
-from ..base.types import FloatArray
+from ..base import FloatArray
 from ..collision.embedded import clears
-from ..curve import Curve, Mesh
-from ..curve.distances import nearest_strands, strand_gaps
-from ..curve.obstacle import Obstacle
-from ..curve.refine import interpolated
+from ..curve import Curve, Mesh, Obstacle, interpolated, nearest_strands
+from ..curve.distances import strand_gaps
 from .placement import Frame, framed
 from .recording import Keys, Proof
 

@@ -9,16 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from ..base.arguments import checked
-from ..base.errors import CurveError, MobiusFlowError, OptionError
+from ..base import CurveError, MobiusFlowError, OptionError, checked
 from ..collision import check_embedded
-from ..curve import Curve, Mesh
-from ..curve.refine import evenly
+from ..curve import Curve, Mesh, evenly
 from ..curve.tube import tubes
 from ..descent.task import centred
 from ..energies.hierarchy import moebius_energy
-from ..proof import stages
-from ..proof.checker import Archive, TrajectoryError
+from ..proof import Archive, stages
+from ..proof.checker import TrajectoryError
 from .placement import framed
 from .tube import free_radius, thickest_radius
 

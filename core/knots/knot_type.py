@@ -14,8 +14,11 @@ from .braids import braid_diagram
 from .diagrams import (
     Diagram,
     Laurent,
+    alexander,
+    doubled_bracket,
     factors,
     is_least,
+    jones,
     normalized_bracket,
     shuffled_down,
     signature,
@@ -24,7 +27,7 @@ from .diagrams import (
     views,
 )
 from .diagrams.homfly import Polynomial, homfly
-from .diagrams.invariants import alexander, doubled_bracket, jones, times
+from .diagrams.invariants import times
 from .exterior import CENSUS, FLOER, Floer, KnotGroup, floer, group, names_by_census, names_by_exterior
 from .names import AMPHICHEIRAL, KNOTS, braid_word
 

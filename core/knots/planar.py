@@ -17,9 +17,8 @@ import scipy.sparse as sp
 from ..base import CurveError, FloatArray, checked
 from ..collision import check_embedded
 from ..curve import MAKERS, Curve, refine
-from .diagrams import Diagram, PlanarCrossing, diagram_of
+from .diagrams import Diagram, PlanarCrossing, diagram_of, views
 from .diagrams.codes import diagram_from_code
-from .diagrams.projection import views
 from .diagrams.rerouting import rearranged, without_nugatory
 from .inscribed import MAX_VERTICES
 

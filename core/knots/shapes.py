@@ -13,8 +13,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from ..base.arguments import checked
-from ..base.types import ComplexArray
+from ..base import ComplexArray, checked
 from ..curve import Curve
 from .inscribed import equal_steps, is_isotopic, shares, too_few
 from .names import table_name

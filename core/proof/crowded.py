@@ -6,7 +6,7 @@ from itertools import repeat
 
 import numpy as np
 
-from ..base.types import FloatArray, IntArray
+from ..base import FloatArray, IntArray
 from .checker import Polygons
 from .planes import doubtful, overlapping
 

@@ -5,8 +5,8 @@ from itertools import chain
 
 import numpy as np
 
+from ..base import FloatArray, IntArray
 from ..base.tolerances import SIEVE_UNDERFLOW
-from ..base.types import FloatArray, IntArray
 from .checker import Points, Polygons
 from .crowded import crowded
 from .planes import doubtful, overlapping, really_overlapping

@@ -5,8 +5,8 @@ from itertools import combinations
 
 import numpy as np
 
+from ..base import FloatArray, IntArray
 from ..base.tolerances import SIEVE_ROUNDING, SIEVE_UNDERFLOW
-from ..base.types import FloatArray, IntArray
 
 Boxes = tuple[FloatArray, FloatArray]  # least and largest coordinates, each (k, m)
 

@@ -18,7 +18,7 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 
-from ..base.types import FloatArray, IntArray
+from ..base import FloatArray, IntArray
 from ..curve import NO_PINS, NOWHERE, Curve, Mesh, Pins, free_edges
 from ..curve.symmetry import NO_SYMMETRY, Symmetry
 

@@ -20,11 +20,11 @@ import scipy.sparse as sp
 
 from ..base import BoolArray, FloatArray, IntArray, OptionError
 from ..curve import Curve, Mesh, arc_distance_of_pairs
-from ..energies.hierarchy.blocks import BlockList
-from ..energies.quadrature import MIDPOINT, Rule
+from ..energies import Rule
+from ..energies.hierarchy import BlockList
+from ..energies.quadrature import MIDPOINT
 from .constraints import ConstraintDerivative
-from .metrics import FractionalMetric, Metric, MoebiusMetric
-from .metrics.inner_product import DenseInnerProduct, InnerProduct, SparseInnerProduct
+from .metrics import DenseInnerProduct, FractionalMetric, InnerProduct, Metric, MoebiusMetric, SparseInnerProduct
 from .metrics.local import lumped_mass, mass, stiffness
 from .metrics.moebius import pair_kernels
 from .saddle import TangentSpace

@@ -6,10 +6,10 @@ from functools import cached_property
 
 import numpy as np
 
-from ..base.messages import Message
-from ..base.types import BoolArray, FloatArray
+from ..base import BoolArray, FloatArray, Message
 from ..curve import Mesh
-from ..knots.diagrams.diagram import ENDS, Diagram
+from ..knots.diagrams import Diagram
+from ..knots.diagrams.diagram import ENDS
 from ..knots.diagrams.projection import PlaneCrossings, plane_crossings, project
 
 

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..base.types import BoolArray, FloatArray, IntArray
-from ..curve.refine import arc_lengths
+from ..base import BoolArray, FloatArray, IntArray
+from ..curve import arc_lengths
 from ..knots.diagrams.rerouting import StrandMove
 from .drawing import PlaneDrawing
 from .rope import ElasticRope, Springs

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import scipy.sparse as sp
 
-from ..base.types import FloatArray, IntArray
+from ..base import FloatArray, IntArray
 from ..solve.saddle.tangent_space import factorised
 
 

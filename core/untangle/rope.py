@@ -13,12 +13,10 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..base.deadline import check_time
-from ..base.types import BoolArray, FloatArray, IntArray
+from ..base import BoolArray, FloatArray, IntArray, check_time
 from ..collision import is_rope, minimal_gap
-from ..curve import Curve
-from ..curve.distances import arc_distance_of_pairs, arc_distance_of_vertices
-from ..curve.obstacle import Obstacle
+from ..curve import Curve, Obstacle, arc_distance_of_pairs
+from ..curve.distances import arc_distance_of_vertices
 from ..energies.edge_pairs import EdgePairs
 from ..energies.rope import closest, phi
 from ..knots.diagrams.projection import plane_crossings

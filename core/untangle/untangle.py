@@ -11,26 +11,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..base.deadline import check_time
-from ..base.messages import Message
-from ..base.types import BoolArray, FloatArray, IntArray
+from ..base import BoolArray, FloatArray, IntArray, Message, check_time
 from ..collision import is_rope, survives_rounding
-from ..curve import Curve, Mesh, refine
-from ..curve.obstacle import Obstacle
-from ..curve.pins import NOWHERE, Pins, holds
-from ..knots.diagrams.diagram import Diagram
+from ..curve import NOWHERE, Curve, Mesh, Obstacle, Pins, holds, refine
+from ..knots.diagrams import Diagram, factors, is_least, simplified
 from ..knots.diagrams.projection import frames, rotation
-from ..knots.diagrams.rerouting import (
-    Strand,
-    StrandMove,
-    factors,
-    is_least,
-    reduced,
-    shortenings,
-    shortest_route,
-    simplified,
-    strands,
-)
+from ..knots.diagrams.rerouting import Strand, StrandMove, reduced, shortenings, shortest_route, strands
 from .drawing import PlaneDrawing, UnclearError
 from .leading import Lead, lead
 from .rope import ElasticRope, Legs

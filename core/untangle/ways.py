@@ -13,8 +13,8 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import Delaunay, cKDTree
 
-from ..base.types import FloatArray
-from ..curve.refine import arc_lengths
+from ..base import FloatArray
+from ..curve import arc_lengths
 from ..knots.diagrams.rerouting import Strand
 from .drawing import PlaneDrawing
 

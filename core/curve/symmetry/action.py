@@ -12,7 +12,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
-from ...base.types import FloatArray, IntArray
+from ...base import FloatArray, IntArray
 from .. import Curve, Mesh
 from ..alignment import SAMPLES, Alignment
 from ..refine import at_shares

@@ -17,9 +17,8 @@ from itertools import product
 
 import numpy as np
 
-from ...base.types import FloatArray
-from ...collision import thickness
-from ...collision.motion import walk
+from ...base import FloatArray
+from ...collision import thickness, walk
 from ...curve import Curve, arc_lengths, bending, bending_and_derivative, cubic_spline, sample_parameters
 from ...descent import Leg, Point, Problem, Step, leg
 from ..move import Change, Move

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...collision.motion import Contact, walk
+from ...collision import Contact, walk
 from ...curve import SPLIT, affordable_pieces, at_edges, graded_spacing, spans
 from ...descent import Leg, NoStep, Point, Step, Units, attempt, leg, on_target
 from ...energies.components import energy_scale

@@ -9,7 +9,7 @@ from itertools import islice
 import numpy as np
 
 from ...base import CurveError, FloatArray, Message
-from ...collision.motion import walk
+from ...collision import walk
 from ...curve import Curve
 from ...descent import Leg, Point, Step, attempt, soft_modes
 from ...energies.components import energy_scale

@@ -7,18 +7,8 @@ import numpy as np
 
 from ...base import BULK, FloatArray, IntArray, Message, MobiusFlowError, joined
 from ...collision import Contact, survives_rounding
-from ...curve import Curve, bending_radii
-from ...curve.refine import (
-    SPLIT,
-    affordable_pieces,
-    collapsed,
-    graded_spacing,
-    halved,
-    normalised,
-    onto_chords,
-    subdivide,
-    superfluous,
-)
+from ...curve import SPLIT, Curve, affordable_pieces, bending_radii, graded_spacing, halved, subdivide
+from ...curve.refine import collapsed, normalised, onto_chords, superfluous
 from ...descent import Leg, NoStep, Point, Problem, Step, check_refined
 from ...energies import is_moebius_invariant
 from ...energies.components import energy_scale

@@ -10,11 +10,11 @@ from functools import cached_property
 
 import numpy as np
 
-from ...base.messages import Message
+from ...base import Message
 from ...curve import Curve, Mesh
 from ...curve.symmetry import NO_SYMMETRY
-from ...descent import METHODS, Method, NoStep, Point, Step, on_target
-from ...descent.hessian import SoftModes, smooth_starts, soft_modes
+from ...descent import METHODS, Method, NoStep, Point, Step, on_target, soft_modes
+from ...descent.hessian import SoftModes, smooth_starts
 from ...descent.second_order import Curvature, Newton, step_off
 from ...energies.barrier import replaced_pairs
 from ...energies.components import energy_scale

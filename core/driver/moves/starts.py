@@ -9,8 +9,8 @@ import numpy as np
 
 from ...base import CurveError, IntArray, Message
 from ...collision import is_free, survives_rounding
-from ...curve import Curve, arcs
-from ...curve.refine import Resolution, apportion, graded_spacing, refined_alike, smoothed, subdivide, superfluous
+from ...curve import Curve, Resolution, arcs, graded_spacing, refined_alike, smoothed, subdivide
+from ...curve.refine import apportion, superfluous
 from ...curve.symmetry import TOLERANCE, Symmetry, SymmetryGroup, symmetries
 from ...descent import Leg, NoStep, Problem, Step, leg
 from ..move import Change, Move

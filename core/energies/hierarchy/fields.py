@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy.sparse as sp
 
-from ...base.types import FloatArray, IntArray
+from ...base import FloatArray, IntArray
 from ..edge_pairs import EdgePairIndices
 from ..moebius import EdgeDerivatives, Edges, Pairs, PartnerSums
 from .blocks import BlockList

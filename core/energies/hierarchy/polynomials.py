@@ -11,7 +11,7 @@ from itertools import combinations_with_replacement, pairwise
 
 import numpy as np
 
-from ...base.types import FloatArray, IntArray
+from ...base import FloatArray, IntArray
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from functools import lru_cache
 import numpy as np
 import scipy.sparse as sp
 
-from ...base.types import BoolArray, FloatArray, IntArray
+from ...base import BoolArray, FloatArray, IntArray
 from ...curve import Curve, Obstacle
 from ..edge_pairs import change, stepped
 from ..quadrature import gauss_legendre

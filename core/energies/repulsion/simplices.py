@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 
-from ...base.types import FloatArray, IntArray, frozen
+from ...base import FloatArray, IntArray, frozen
 from ..barrier import CONTACT
 from ..clusters import ClusterTree, ranges
 from ..edge_pairs import arctan2

@@ -13,7 +13,7 @@ from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from ...base.errors import CurveError
+from ...base import CurveError
 
 Pass = tuple[int, bool]  # a crossing, and whether the curve passes over
 PIN: Pass = (-1, True)

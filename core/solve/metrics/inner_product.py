@@ -13,7 +13,7 @@ from scipy.sparse.linalg import SuperLU
 
 from ...base import FloatArray, IntArray, checked
 from ...curve import NOWHERE, Curve
-from ...energies.quadrature import Rule
+from ...energies import Rule
 from ..constraints import ConstraintDerivative
 from ..saddle import TangentSpace
 from ..saddle.tangent_space import DenseTangentSpace, SparseTangentSpace, cholesky, factorised, symmetric_product

@@ -10,9 +10,9 @@ from typing import Self
 import numpy as np
 import scipy.sparse as sp
 
-from ...base.types import FloatArray, IntArray
+from ...base import FloatArray, IntArray
 from ...curve import Curve
-from ...energies.quadrature import Rule
+from ...energies import Rule
 from .inner_product import InnerProduct, SparseInnerProduct
 
 

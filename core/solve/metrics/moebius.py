@@ -23,8 +23,9 @@ from scipy.spatial.distance import cdist
 
 from ...base import FloatArray, IntArray, checked_fields, number
 from ...curve import Curve, Mesh, arc_distance_of_pairs, arc_distances, points_at
+from ...energies import Rule
 from ...energies.edge_pairs import ROWS_TIMES_COLUMNS
-from ...energies.quadrature import MIDPOINT, Rule
+from ...energies.quadrature import MIDPOINT
 from .inner_product import DenseInnerProduct, InnerProduct
 from .local import WithoutRule, lumped_mass, mass, stiffness
 

@@ -12,7 +12,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.linalg import lapack
 
-from ...base.types import FloatArray
+from ...base import FloatArray
 from ..constraints import ConstraintDerivative
 
 

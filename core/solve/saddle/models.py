@@ -16,7 +16,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.fft import irfft, rfft
 
-from ...base.types import FloatArray
+from ...base import FloatArray
 from ...curve import Mesh
 from .tangent_space import LinearMap, factorised
 

@@ -17,7 +17,7 @@ import scipy.sparse as sp
 from scipy.linalg import blas, lapack
 from scipy.sparse.linalg import SuperLU, splu
 
-from ...base.types import FloatArray
+from ...base import FloatArray
 from ...curve import Curve, free_edges, holds
 from ...energies.edge_pairs import ROWS_TIMES_COLUMNS
 from ..constraints import ConstraintDerivative, Constraints
