@@ -4,7 +4,7 @@ from functools import cache
 
 import numpy as np
 from descent_contracts import point_on, with_geometry
-from mobius_flow.core.collision import Contact, FreeMotion, Limit
+from mobius_flow.core.collision import Contact, FreeMotion
 from mobius_flow.core.descent import Point, Problem
 from mobius_flow.core.descent.directions import ConjugateGradient, LimitedMemoryBFGS, SteepestDescent
 from mobius_flow.core.descent.geometry import Geometry
@@ -41,7 +41,7 @@ class Narrow(Problem):
 
     def free_motion(self, start: np.ndarray, end: np.ndarray, *, as_rope: bool = True) -> FreeMotion:
         way = float(np.abs(end - start).max()) / self.units.scale
-        return FreeMotion(1.0) if way <= self.width else FreeMotion(self.width / way, Contact((0, 2)), Limit.CONTACT)
+        return FreeMotion(1.0) if way <= self.width else FreeMotion(self.width / way, Contact((0, 2)), proved=False)
 
 
 def narrow(point: Point, width: float) -> Point:

@@ -6,7 +6,7 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
-from mobius_flow.core.collision import FreeMotion, Limit
+from mobius_flow.core.collision import FreeMotion
 from mobius_flow.core.proof import checker
 
 Frame = Any  # points, rows of an array whose entries are doubles or dyadic fractions
@@ -68,7 +68,7 @@ class Tally:
             return
         self.hits += 1
         if self.decide(start, start):
-            self.wrong += answer.limit is not Limit.TOUCHING_START or answer.time > 0
+            self.wrong += answer.proved or answer.time > 0
             return
         self.wrong += answer.proved or (answer.time > 0 and until(self.decide, start, end, answer.time))
         self.blunt += not until(self.decide, start, end, min(1.0, answer.time / 0.98))

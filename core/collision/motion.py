@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from enum import Enum
 from typing import TypeVar
 
 import numpy as np
@@ -19,16 +18,6 @@ from .planes import march
 # which the pairs are surely free, shape (pairs,)
 Candidates = tuple[IntArray, IntArray, FloatArray]
 Proved = TypeVar("Proved")
-
-
-class Limit(Enum):
-    """What ends a free motion."""
-
-    NONE = "the whole motion is free of contact"
-    CONTACT = "edges, or an edge and an obstacle, meet, or come too near to each other to be told apart"
-    TOUCHING_START = "edges, or an edge and an obstacle, touch, or cannot be told apart, at the start"
-    NOT_FINITE = "a vertex, or a radius, is not finite"
-    UNTESTED = "in more than three dimensions, where nothing is knotted, contact is not tested"
 
 
 @dataclass(frozen=True)
@@ -54,13 +43,8 @@ class FreeMotion:
     """
 
     time: float  # 1 if the whole motion is free
-    contact: Contact | None = None  # what limits it, None if nothing does
-    limit: Limit = Limit.NONE  # the reason
-
-    @property
-    def proved(self) -> bool:
-        """Whether the whole motion is proved free of contact."""
-        return self.limit is Limit.NONE
+    contact: Contact | None = None  # what limits it, None if nothing does, or a number is not finite
+    proved: bool = True  # whether the whole motion is proved free; not in more than three dimensions: nothing is tested
 
 
 def free_motion(
@@ -77,15 +61,13 @@ def free_motion(
     """
     size = np.maximum(np.abs(start).max(), np.abs(end).max())
     if not np.isfinite(size):  # NumPy's maximum, unlike Python's, is NaN if one is
-        return FreeMotion(0.0, None, Limit.NOT_FINITE)
+        return FreeMotion(0.0, None, proved=False)
     search = _Search(mesh, (start, end), tuple(obstacles), max([size, *(each.size for each in obstacles)]))
     for candidates in search.candidates():
         search.take(*candidates)
         if search.met is not None and not exhaustive:
             break
-    if search.met is None:
-        return FreeMotion(1.0)
-    return FreeMotion(search.limit, search.met, Limit.CONTACT if search.limit > 0 else Limit.TOUCHING_START)
+    return FreeMotion(1.0) if search.met is None else FreeMotion(search.limit, search.met, proved=False)
 
 
 def is_free(mesh: Mesh, start: FloatArray, end: FloatArray, obstacles: Sequence[Obstacle] = ()) -> bool:

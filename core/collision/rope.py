@@ -22,7 +22,7 @@ import numpy as np
 from ..base import BoolArray, FloatArray, IntArray
 from ..curve import Mesh, Obstacle
 from .boxes import BoxTree, Level, Test, contact_window, corners, still_triangles
-from .motion import Contact, FreeMotion, Limit, free_motion, is_free
+from .motion import Contact, FreeMotion, free_motion, is_free
 from .planes import cross, march
 
 _TINY = np.finfo(np.float64).tiny
@@ -47,7 +47,7 @@ def rope_motion(
     if radius is None:
         return free_motion(mesh, start, end, obstacles)
     if not all(np.isfinite(each).all() for each in (start, end, radius)):
-        return FreeMotion(0.0, None, Limit.NOT_FINITE)
+        return FreeMotion(0.0, None, proved=False)
     if not obstacles:  # margins are relative to coordinates: those of curves far away get smaller, where that is exact
         near = start - start[0], end - start[0]
         if not any(_lost(given, start[0], each).any() for given, each in zip((start, end), near, strict=True)):
@@ -75,10 +75,9 @@ def rope_motion(
         for k, ends in enumerate(((start, middle), (middle, end))):
             found = rope_motion(mesh, *ends, radius, obstacles, halvings - 1)
             if not found.proved:
-                time = max(limit, 0.5 * (k + found.time))
-                return FreeMotion(time, found.contact, Limit.CONTACT if time > 0.0 else Limit.TOUCHING_START)
+                return FreeMotion(max(limit, 0.5 * (k + found.time)), found.contact, proved=False)
         return FreeMotion(1.0)
-    return FreeMotion(limit, met, Limit.CONTACT if limit > 0.0 else Limit.TOUCHING_START)
+    return FreeMotion(limit, met, proved=False)
 
 
 def is_rope(

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from ..base import FloatArray, OptionError, check_time
-from ..collision import FreeMotion, Limit, rope_motion
+from ..collision import FreeMotion, rope_motion
 from ..curve import Curve, Mesh, Obstacle, Pins
 from ..curve.symmetry import NO_SYMMETRY, Symmetry
 from ..energies import Objective
@@ -142,7 +142,7 @@ class Problem:
         """How far a straight motion in the user's units, both (n, m), is proved free of contact, and that of a rope."""
         check_time()
         if not self.certifiable:
-            return FreeMotion(1.0, None, Limit.UNTESTED)
+            return FreeMotion(1.0, None, proved=False)
         return rope_motion(self.mesh, start, end, self.radius, self.obstacles)
 
 

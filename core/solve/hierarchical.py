@@ -28,7 +28,7 @@ from .metrics import DenseInnerProduct, FractionalMetric, InnerProduct, Metric, 
 from .metrics.local import lumped_mass, mass, stiffness
 from .metrics.moebius import pair_kernels
 from .saddle import TangentSpace
-from .saddle.iterative import IterativeTangentSpace, Tolerances, conjugate_gradients, relative
+from .saddle.iterative import IterativeTangentSpace, Tolerances
 from .saddle.models import Circulants, Resolvents, TwoLevel
 
 EdgePairs = tuple[IntArray, IntArray]
@@ -161,9 +161,6 @@ class CompressedInnerProduct:
         for running, form in self.far:
             product += running.apply_transpose(form @ running.apply(u))
         return np.asarray(product + self.vectors @ (self.vectors.T @ u))
-
-    def solve(self, f: FloatArray) -> FloatArray:
-        return conjugate_gradients(self.apply, relative(self.model.solve, 1e-10), f, 1000)
 
     def plus(self, other: InnerProduct, weight: float = 1.0) -> InnerProduct:
         """The sum: compressed with a sparse one, otherwise dense."""

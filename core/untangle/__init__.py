@@ -1,3 +1,3 @@
 """Strand moves of diagrams, made by a rope that lies on a table: all its motions are proved."""
 
-from .untangle import Legs, Untangled, untangled, worth
+from .untangle import Legs, untangled, worth

@@ -7,7 +7,6 @@ to save nothing are taken back.  A knot that is stuck in one view comes apart in
 import math
 from collections.abc import Generator, Iterable, Iterator, Sequence
 from itertools import chain
-from typing import NamedTuple
 
 import numpy as np
 
@@ -26,15 +25,6 @@ MOST_VERTICES = 20_000
 WORK = 60_000  # crossings that may be visited to find out how few moves lead to
 
 
-class Untangled(NamedTuple):
-    """How it ended: the number of crossings, whether no diagram has fewer, both in words, and the number of moves."""
-
-    crossings: int | None
-    least: bool
-    reason: Message
-    moves: int = 0
-
-
 def untangled(
     curve: Curve,
     pins: IntArray = NOWHERE,
@@ -42,7 +32,7 @@ def untangled(
     radius: FloatArray | None = None,
     seed: int = 20231,
     share: float = 0.0,
-) -> Generator[Legs, None, Untangled]:
+) -> Generator[Legs, None, Message]:
     """Yield motions, all of them proved, to a curve with fewer crossings; return how it ended.
 
     Parameters
@@ -61,8 +51,7 @@ def untangled(
         Of the crossings that can go, so many may be left to the flow.
     """
     if curve.dimension != 3 or len(curve) > MOST_VERTICES:
-        told = Message("only curves in space with at most {most:,} vertices are untangled", most=MOST_VERTICES)
-        return Untangled(None, False, told)
+        return Message("only curves in space with at most {most:,} vertices are untangled", most=MOST_VERTICES)
     rng, moves, few = np.random.default_rng(seed), 0, 0
     reached: int | None = None
     held: BoolArray = holds(curve.mesh, np.concatenate([pins, curve.mesh.ends.ravel()]))
@@ -93,16 +82,14 @@ def untangled(
             left = simplified(drawing.diagram)
             if left.crossings == reached and shows_least(left):
                 told = Message("{count} crossings are left, as few as can be", count=reached)
-                return Untangled(reached, True, told if reached else Message("no crossing is left"), moves)
+                return told if reached else Message("no crossing is left")
             if few and reached <= left.crossings + few:
-                told = Message("{count} crossings are left to the flow", count=reached)
-                return Untangled(reached, False, told, moves)
+                return Message("{count} crossings are left to the flow", count=reached)
             rope.rise()
             curve = rope.curve
     except UnclearError as error:
-        return Untangled(reached, False, error.reason, moves)
-    told = Message("{count} crossings are left, as no free way of a strand is known that saves any", count=reached)
-    return Untangled(reached, False, told, moves)
+        return error.reason
+    return Message("{count} crossings are left, as no free way of a strand is known that saves any", count=reached)
 
 
 def _make_moves(

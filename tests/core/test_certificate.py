@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import METHODS, Curve, CurveError, RelaxOptions, Status, WithOutcome, relax
 from mobius_flow.core.base.errors import Place
-from mobius_flow.core.collision import Contact, FreeMotion, Limit, survives_rounding
+from mobius_flow.core.collision import Contact, FreeMotion, survives_rounding
 from mobius_flow.core.descent import NoStep, Step, problem
 from mobius_flow.core.driver import run as driver
 from mobius_flow.core.driver.run import Run
@@ -28,21 +28,20 @@ class Forgetful:
 
     second_order, other_metrics = False, ()
 
-    def __init__(self, limit):
-        self._rule, self._limit, self._count = METHODS["lbfgs"].rule, limit, 0
+    def __init__(self):
+        self._rule, self._count = METHODS["lbfgs"].rule, 0
 
     def step(self, point, state):
         step, state = self._rule.step(point, state)
         self._count += 1
         if self._count == 3:
             assert isinstance(step, Step)
-            step = replace(step, legs=(step.legs[-1]._replace(proof=FreeMotion(1.0, None, self._limit)),))
+            step = replace(step, legs=(step.legs[-1]._replace(proof=FreeMotion(1.0, proved=False)),))
         return step, state
 
 
-@pytest.mark.parametrize("limit", [Limit.UNTESTED, Limit.CONTACT])
-def test_one_step_without_proof_and_nothing_after_it_is_certified(limit, monkeypatch):
-    monkeypatch.setattr(driver, "METHODS", {"lbfgs": replace(METHODS["lbfgs"], rule=Forgetful(limit))})
+def test_one_step_without_proof_and_nothing_after_it_is_certified(monkeypatch):
+    monkeypatch.setattr(driver, "METHODS", {"lbfgs": replace(METHODS["lbfgs"], rule=Forgetful())})
     iterates = relax(torus_trefoil(60), RelaxOptions(max_iterations=6, vertices=60))
     assert [iterate.certified for iterate in iterates] == [True] * 3 + [False] * 4
 

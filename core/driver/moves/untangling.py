@@ -148,7 +148,7 @@ class Untangling(Move):
             try:
                 stages.append(next(work))
             except StopIteration as stop:
-                reason: Message = stop.value.reason
+                reason: Message = stop.value
                 return refused or reason
             seen = stages[-1]
             if least is None or earlier is None:

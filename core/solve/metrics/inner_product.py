@@ -9,14 +9,13 @@ from typing import ClassVar, Protocol, runtime_checkable
 import numpy as np
 import scipy.sparse as sp
 from scipy.linalg import lapack
-from scipy.sparse.linalg import SuperLU
 
 from ...base import FloatArray, IntArray, checked
 from ...curve import NOWHERE, Curve
 from ...energies import Rule
 from ..constraints import ConstraintDerivative
 from ..saddle import TangentSpace
-from ..saddle.tangent_space import DenseTangentSpace, SparseTangentSpace, cholesky, factorised, symmetric_product
+from ..saddle.tangent_space import DenseTangentSpace, SparseTangentSpace, cholesky, symmetric_product
 
 
 @runtime_checkable
@@ -25,9 +24,6 @@ class InnerProduct(Protocol):
 
     def apply(self, u: FloatArray) -> FloatArray:
         """A u; shape (n, k)."""
-
-    def solve(self, f: FloatArray) -> FloatArray:
-        """A⁻¹ f; shape (n, k).  A LinAlgError says if A is not positive definite."""
 
     def plus(self, other: "InnerProduct", weight: float = 1.0) -> "InnerProduct":
         """⟨u, v⟩ + weight ⟨u, v⟩_other."""
@@ -51,9 +47,6 @@ class DenseInnerProduct:
 
     def apply(self, u: FloatArray) -> FloatArray:
         return symmetric_product(self._matrix, u)
-
-    def solve(self, f: FloatArray) -> FloatArray:
-        return symmetric_product(self.inverse, f)
 
     def plus(self, other: InnerProduct, weight: float = 1.0) -> InnerProduct:
         if not isinstance(other, SparseInnerProduct):
@@ -100,9 +93,6 @@ class SparseInnerProduct:
     def apply(self, u: FloatArray) -> FloatArray:
         return np.asarray(self.matrix @ u)
 
-    def solve(self, f: FloatArray) -> FloatArray:
-        return np.asarray(self._factor.solve(f))
-
     def plus(self, other: InnerProduct, weight: float = 1.0) -> InnerProduct:
         if isinstance(other, SparseInnerProduct):
             return SparseInnerProduct(self.matrix + weight * other.matrix)
@@ -113,10 +103,6 @@ class SparseInnerProduct:
 
     def tangent_space(self, constraints: ConstraintDerivative, weights: FloatArray | None = None) -> TangentSpace:
         return SparseTangentSpace(self.matrix, constraints, weights)
-
-    @cached_property
-    def _factor(self) -> SuperLU:
-        return factorised(self.matrix)
 
 
 def _filled(lower: FloatArray) -> FloatArray:

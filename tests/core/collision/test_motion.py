@@ -8,7 +8,7 @@ from exact_decisions import meet, until
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mobius_flow.core import Mesh
-from mobius_flow.core.collision import FreeMotion, Limit, free_motion, is_free
+from mobius_flow.core.collision import FreeMotion, free_motion, is_free
 from mobius_flow.core.collision.motion import walk
 from shapes import hopf_link, regular_polygon, torus_trefoil
 
@@ -36,7 +36,7 @@ def test_hopf_link_pulled_apart():
     end[100:, 0] += 4.0
     motion = free_motion(link.mesh, link.vertices, end)
     # the second circle's leftmost vertex, at x = 0, meets the first circle's vertex at x = 1
-    assert motion.limit is Limit.CONTACT
+    assert not motion.proved
     assert 0.98 * 0.25 < motion.time < 0.25
     assert sorted(link.mesh.component[list(motion.contact.edges)].tolist()) == [0, 1]
     assert not is_free(link.mesh, link.vertices, end)
@@ -150,11 +150,12 @@ def test_contacts_known_by_hand(start, end, contact):
     motion = free_motion(mesh, start, end)
     assert is_free(mesh, start, end) == (contact is None)
     if contact is None:
-        assert motion == FreeMotion(1.0, None, Limit.NONE)
+        assert motion == FreeMotion(1.0)
     elif contact == 0:
-        assert motion == FreeMotion(0.0, motion.contact, Limit.TOUCHING_START)
+        assert motion == FreeMotion(0.0, motion.contact, proved=False)
+        assert motion.contact is not None
     else:
-        assert motion.limit is Limit.CONTACT
+        assert not motion.proved
         assert 0.98 * contact <= motion.time < contact
 
 
@@ -162,7 +163,7 @@ def test_not_finite_is_never_free():
     for bad in (np.nan, np.inf):
         end = CIRCLE.copy()
         end[3, 1] = bad
-        assert free_motion(Mesh((60,)), CIRCLE, end) == FreeMotion(0.0, None, Limit.NOT_FINITE)
+        assert free_motion(Mesh((60,)), CIRCLE, end) == FreeMotion(0.0, None, proved=False)
         assert not is_free(Mesh((60,)), end, CIRCLE)
 
 

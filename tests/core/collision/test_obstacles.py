@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from exact_decisions import meet_triangle, until
 from mobius_flow.core import Curve, Mesh, Obstacle
-from mobius_flow.core.collision import Contact, Limit, free_motion, is_free
+from mobius_flow.core.collision import Contact, free_motion, is_free
 from mobius_flow.core.collision.boxes import still_triangles
 from shapes import hopf_link, regular_polygon
 from solids import box, plate, rod, sphere
@@ -18,7 +18,7 @@ def test_a_wall_in_the_way(obstacle, scale):
     end = curve.vertices + scale * np.array([0.0, 0.0, 3.0])
     still = Obstacle(scale * obstacle.vertices, obstacle.faces, obstacle.name)
     motion = free_motion(curve.mesh, curve.vertices, end, (still,))
-    assert motion.limit is Limit.CONTACT
+    assert not motion.proved
     assert 0.98 / 3 < motion.time < 1 / 3
     assert motion.contact.obstacle == "obstacle plate"
     assert motion.contact.edges[0] in (19, 20)
@@ -44,7 +44,7 @@ def test_touching_or_piercing_at_the_start():
     circle = regular_polygon(20)
     for obstacle in (plate(0.0), rod(1.0, 0.0), box(-0.5, 2.0)):
         motion = free_motion(circle.mesh, circle.vertices, circle.vertices + 1.0, (obstacle,))
-        assert (motion.time, motion.limit) == (0.0, Limit.TOUCHING_START)
+        assert (motion.time, motion.proved) == (0.0, False)
 
 
 def test_a_point_a_segment_and_a_triangle_without_area_are_the_same_in_the_way():

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from families import family
 from mobius_flow.core import Curve, Iterate, Mesh, Obstacle, RelaxOptions, Status, minimize
-from mobius_flow.core.collision import FreeMotion, Limit
+from mobius_flow.core.collision import FreeMotion
 from mobius_flow.core.curve import refine
 from mobius_flow.core.driver.move import iterates
 from mobius_flow.core.driver.moves import MOVES
@@ -133,7 +133,7 @@ def test_a_trial_that_fails_keeps_the_lowest_curve(error, said, plain, monkeypat
 def test_a_way_is_certified_only_if_all_its_steps_are():
     def unproved(point, rng):
         step = next(MOTIONS[0](point, rng))
-        yield replace(step, legs=tuple(leg._replace(proof=FreeMotion(1.0, limit=Limit.UNTESTED)) for leg in step.legs))
+        yield replace(step, legs=tuple(leg._replace(proof=FreeMotion(1.0, proved=False)) for leg in step.legs))
 
     for motion, certified in ((MOTIONS[0], True), (unproved, False)):
         run = run_of(replace(OPTIONS, max_iterations=2))
