@@ -15,30 +15,17 @@ first edge is by graded panels.  Derivatives are those of the exact integral, at
 complex steps.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import ClassVar
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.polynomial.polynomial import polyval
 
 from ..base import BoolArray, FloatArray, IntArray, checked_fields
 from ..curve import Curve, near_by_octave
-from .edge_pairs import (
-    DELTA,
-    E,
-    EdgePairIndices,
-    EdgePairs,
-    F,
-    Jet,
-    arctan2,
-    change,
-    scatter_first,
-    scatter_second,
-    stepped,
-)
+from .edge_pairs import DELTA, E, EdgePairIndices, EdgePairs, F, Jet, PairTerm, arctan2
 from .quadrature import gauss_legendre
 
 NEAR = 1.0  # of q, up to which only the exact energy of a pair counts,
@@ -50,7 +37,7 @@ _POINT_COUNTS = np.array([8, 12, 16, 24, 32, 48, 64, 96, 128])
 
 @checked_fields
 @dataclass(frozen=True)
-class Barrier:
+class Barrier(PairTerm):
     """B, the difference between exact and midpoint energy over near pairs of edges.
 
     Midpoint contributions are subtracted for the default energy, which contains them; for others the barrier is
@@ -64,49 +51,19 @@ class Barrier:
 
     name: ClassVar[str] = "barrier"
 
-    def value(self, curve: Curve) -> float:
-        """B; 0 when strands are further apart than edges are long."""
-        return self.value_and_derivative(curve)[0]
+    def shares(self, curve: Curve) -> Iterator[tuple[IntArray, IntArray, Callable[[EdgePairs], Jet]]]:
+        """None where strands are further apart than edges are long."""
+        i, j = near_pairs(curve)
+        for first in range(0, len(i), 4096):  # to bound the memory, and for the processor's cache
+            e, f = i[first : first + 4096], j[first : first + 4096]
+            yield e, f, partial(self._excess, replaced=is_replaced(curve, e, f))
 
-    def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
-        value, first = self._sum(curve, curve.vertices)
-        return float(value), first
-
-    def sparse_hessian(self, curve: Curve) -> sp.csr_array:
-        """D²B as a sparse matrix: it couples near edges only."""
-        total = sp.csr_array((curve.vertices.size, curve.vertices.size))
-        for i, j in _blocks(curve):
-            pairs, replaced = EdgePairs.of(curve.mesh, curve.vertices, i, j), is_replaced(curve, i, j)
-            second = [change(self._contributions(each, replaced).first) for each in pairs.along_coordinates()]
-            total = total + scatter_second(curve.mesh, i, j, 2.0 * np.stack(second, axis=2))
-        return total
-
-    def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
-        return change(self._sum(curve, stepped(curve.vertices, v))[1])
-
-    def _sum(self, curve: Curve, vertices: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """B and its derivative at a curve's vertices, or after a complex step from them."""
-        total, first = np.zeros((), vertices.dtype), [np.empty((0, 3 * curve.dimension), vertices.dtype)]
-        for i, j in _blocks(curve):
-            jet = self._contributions(EdgePairs.of(curve.mesh, vertices, i, j), is_replaced(curve, i, j))
-            total = total + jet.value.sum()
-            first.append(jet.first)
-        # unordered pairs are listed, the sum is over ordered ones
-        return 2.0 * total, 2.0 * scatter_first(curve.mesh, *near_pairs(curve), np.concatenate(first))
-
-    def _contributions(self, pairs: EdgePairs, replaced: BoolArray) -> Jet:
-        """χ (W_exact − W_mid) of pairs of edges; ``replaced`` marks those that have χ = 1."""
+    def _excess(self, pairs: EdgePairs, replaced: BoolArray) -> Jet:
+        """2 χ (W_exact − W_mid) of unordered pairs; ``replaced`` marks those that have χ = 1."""
         q, excess = closeness(pairs), exact(pairs)
         if self.replaces_midpoint:
             excess = excess - (midpoint(pairs).where(~replaced) if self.left_out else midpoint(pairs))
-        return q.compose(*cutoff(q.value)) * excess
-
-
-def _blocks(curve: Curve) -> Iterator[tuple[IntArray, IntArray]]:
-    """The near pairs in blocks, to bound the memory and for the processor's cache."""
-    i, j = near_pairs(curve)
-    for first in range(0, len(i), 4096):
-        yield i[first : first + 4096], j[first : first + 4096]
+        return (q.compose(*cutoff(q.value)) * excess).scaled(2.0)
 
 
 def cutoff(q: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -10,14 +10,15 @@ for f analytic and real on real arguments, with ε so small that its square vani
 SIAM Review 40, 1998).  Comparisons go by real parts, as NumPy orders complex numbers.
 """
 
-from collections.abc import Iterator
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
 
-from ..base import BoolArray, FloatArray, IntArray
+from ..base import BoolArray, FloatArray, IntArray, frozen
 from ..curve import Curve, Mesh
 
 STEP = 1e-100
@@ -122,6 +123,44 @@ def scatter_second(mesh: Mesh, i: IntArray, j: IntArray, second: FloatArray) -> 
     sums = np.stack([np.bincount(number, entries, len(pairs)) for entries in blocks.T], axis=1)
     begins = np.searchsorted(pairs, n * np.arange(n + 1))
     return sp.csr_array(sp.bsr_array((sums.reshape(-1, m, m), pairs % n, begins), shape=(n * m, n * m)))
+
+
+class PairTerm(ABC):
+    """A sum over pairs of edges that are near each other; its second derivative is by complex steps, and sparse."""
+
+    @abstractmethod
+    def shares(self, curve: Curve) -> Iterator[tuple[IntArray, IntArray, Callable[[EdgePairs], Jet]]]:
+        """Yield pairs (i, j) of edges, some at a time, each of shape (k,), and what their shares are functions of."""
+
+    def value(self, curve: Curve) -> float:
+        """The sum, which may be infinite."""
+        return self.value_and_derivative(curve)[0]
+
+    def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
+        value, first = self._sum(curve, curve.vertices)
+        return float(value), frozen(first)
+
+    def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
+        return change(self._sum(curve, stepped(curve.vertices, v))[1])
+
+    def sparse_hessian(self, curve: Curve) -> sp.csr_array:
+        total = sp.csr_array((curve.vertices.size, curve.vertices.size))
+        for i, j, share in self.shares(curve):
+            pairs = EdgePairs.of(curve.mesh, curve.vertices, i, j)
+            second = [change(share(each).first) for each in pairs.along_coordinates()]
+            total = total + scatter_second(curve.mesh, i, j, np.stack(second, axis=2))
+        return total
+
+    def _sum(self, curve: Curve, vertices: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """The sum and its derivative at a curve's vertices, or after a complex step from them."""
+        total, first = np.zeros((), vertices.dtype), np.zeros_like(vertices)
+        for i, j, share in self.shares(curve):
+            jet = share(EdgePairs.of(curve.mesh, vertices, i, j))
+            total = total + jet.value.sum()
+            if not np.isfinite(total):
+                return total, np.zeros_like(vertices)
+            first = first + scatter_first(curve.mesh, i, j, jet.first)
+        return total, first
 
 
 class Tile(NamedTuple):

@@ -16,12 +16,11 @@ from functools import cached_property, lru_cache
 from typing import ClassVar, NamedTuple, cast
 
 import numpy as np
-import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
-from ..base import FloatArray, IntArray, checked_fields, frozen
+from ..base import FloatArray, IntArray, checked_fields
 from ..curve import Curve, bending_radii
-from .edge_pairs import E, EdgePairs, F, Jet, change, scatter_first, scatter_second, stepped
+from .edge_pairs import E, EdgePairs, F, Jet, PairTerm
 
 
 class Walls(NamedTuple):
@@ -42,7 +41,7 @@ class Walls(NamedTuple):
 
 @checked_fields
 @dataclass(frozen=True, eq=False)
-class Rope:
+class Rope(PairTerm):
     """The barrier of a rope with a radius for each component, shape (components,), in the units of curves.
 
     The curve ``seen`` tells distances along the curve and the weights of terms: by default that at hand, which
@@ -77,37 +76,9 @@ class Rope:
             return replace(self, tightest=allowed)
         return replace(self, seen=curve, tightest=allowed)
 
-    def value(self, curve: Curve) -> float:
-        """E; infinite where the curve is no rope."""
-        return self.value_and_derivative(curve)[0]
-
     @lru_cache(maxsize=2)  # noqa: B019 (two: a run asks again for what the step to a point has asked)
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
-        value, first = self._sum(curve, curve.vertices)
-        return float(value), frozen(first)
-
-    def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
-        return change(self._sum(curve, stepped(curve.vertices, v))[1])
-
-    def sparse_hessian(self, curve: Curve) -> sp.csr_array:
-        """D²E as a sparse matrix: it couples near edges, and those that meet at a corner."""
-        total = sp.csr_array((curve.vertices.size, curve.vertices.size))
-        for walls, quantity in self._barriers(curve):
-            pairs = EdgePairs.of(curve.mesh, curve.vertices, walls.i, walls.j)
-            second = [change(walls(quantity(each)).first) for each in pairs.along_coordinates()]
-            total = total + scatter_second(curve.mesh, walls.i, walls.j, np.stack(second, axis=2))
-        return total
-
-    def _sum(self, curve: Curve, vertices: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """E and its derivative at a curve's vertices, or after a complex step from them."""
-        mesh, total, first = curve.mesh, np.zeros((), vertices.dtype), np.zeros_like(vertices)
-        for walls, quantity in self._barriers(curve):
-            part = walls(quantity(EdgePairs.of(mesh, vertices, walls.i, walls.j)))
-            total = total + part.value.sum()
-            if not np.isfinite(total):
-                return total, np.zeros_like(vertices)
-            first = first + scatter_first(mesh, walls.i, walls.j, part.first)
-        return total, first
+        return super().value_and_derivative(curve)
 
     def meets(self, curve: Curve) -> bool:
         """Whether strands are no further apart than they must be, so that E is infinite; corners are left aside."""
@@ -115,12 +86,13 @@ class Rope:
         chord, _, _ = closest(EdgePairs.of(curve.mesh, curve.vertices, walls.i, walls.j))
         return bool((np.einsum("km,km->k", chord, chord) <= walls.wall**2).any())
 
-    def _barriers(self, curve: Curve) -> Iterator[tuple[Walls, Callable[[EdgePairs], Jet]]]:
-        """The terms of both sums that do not vanish at a curve, with the quantities that they are of."""
+    def shares(self, curve: Curve) -> Iterator[tuple[IntArray, IntArray, Callable[[EdgePairs], Jet]]]:
+        """Of both sums; infinite where the curve is no rope."""
         rope = self._seeing(curve)
-        yield rope._strands(curve, self.reach), distance
+        strands = rope._strands(curve, self.reach)
+        yield strands.i, strands.j, lambda pairs: strands(distance(pairs))
         if len((corners := rope._corners(curve)).i):
-            yield corners, lambda pairs: bends(pairs)[0]
+            yield corners.i, corners.j, lambda pairs: corners(bends(pairs)[0])
 
     @lru_cache(maxsize=2)  # noqa: B019 (products with the second derivative are of one curve)
     def _strands(self, curve: Curve, reach: float) -> Walls:
