@@ -13,7 +13,7 @@ from ..base import CurveError, FloatArray
 from ..collision import check_embedded
 from ..curve import Curve, arc_lengths
 from ..knots import Drawing, rounded
-from ..knots.diagrams.projection import frames, plane_crossings, project
+from ..knots.diagrams.projection import NO_VIEW, frames, plane_crossings, project
 from ..knots.layout import upright
 
 
@@ -96,7 +96,7 @@ def seen(curves: Sequence[Curve], trials: int = 200, seed: int = 20231) -> list[
         _, sights[k], views[k], _ = max((each for each in own if each[3] >= enough), key=lambda each: each[0])
         done.append(k)
     if None in views:
-        raise CurveError("strands touch, or nearly do: no view of the curve shows which one is in front")
+        raise CurveError(NO_VIEW)
     return [each for each in views if each is not None]
 
 

@@ -7,8 +7,8 @@ import numpy as np
 
 from ..base import BoolArray, FloatArray, IntArray
 from ..curve import arc_lengths
+from ..knots.diagrams.projection import Projection
 from ..knots.diagrams.rerouting import StrandMove
-from .drawing import PlaneDrawing
 from .rope import ElasticRope, Springs
 from .ways import Way
 
@@ -16,7 +16,7 @@ from .ways import Way
 class Lead:
     """A strand that is led: its vertices, where they lie, the way to which they are led, and what that costs."""
 
-    def __init__(self, rope: ElasticRope, drawing: PlaneDrawing, move: StrandMove, way: Way) -> None:
+    def __init__(self, rope: ElasticRope, drawing: Projection, move: StrandMove, way: Way) -> None:
         self.move, mesh = move, rope.mesh
         start, end = way.ends
         part = mesh.slices[mesh.component[int(start)]]

@@ -5,23 +5,22 @@ to save nothing are taken back.  A knot that is stuck in one view comes apart in
 """
 
 import math
-from collections.abc import Generator, Iterable, Iterator, Sequence
+from collections.abc import Generator, Sequence
 from itertools import chain
 
 import numpy as np
 
-from ..base import BoolArray, FloatArray, IntArray, Message, check_time
+from ..base import BoolArray, FloatArray, IntArray, Message
 from ..collision import is_rope, survives_rounding
-from ..curve import NOWHERE, Curve, Mesh, Obstacle, Pins, holds, refine
+from ..curve import NOWHERE, Curve, Obstacle, Pins, holds, refine
 from ..knots.diagrams import Diagram, factors, is_least, simplified
-from ..knots.diagrams.projection import frames, rotation
+from ..knots.diagrams.projection import Projection, UnclearError, frames, projections, rotation
 from ..knots.diagrams.rerouting import Strand, StrandMove, reduced, shortenings, shortest_route, strands
-from .drawing import PlaneDrawing, UnclearError
 from .leading import Lead, lead
 from .rope import ElasticRope, Legs
 from .ways import Plane
 
-MOST_VERTICES = 20_000
+MOST_VERTICES, MOST_CROSSINGS = 20_000, 5_000  # of the curve, and in a view
 WORK = 60_000  # crossings that may be visited to find out how few moves lead to
 
 
@@ -32,7 +31,7 @@ def untangled(
     radius: FloatArray | None = None,
     seed: int = 20231,
     share: float = 0.0,
-) -> Generator[Legs, None, Message]:
+) -> Generator[Legs, None, str]:
     """Yield motions, all of them proved, to a curve with fewer crossings; return how it ended.
 
     Parameters
@@ -88,19 +87,19 @@ def untangled(
             rope.rise()
             curve = rope.curve
     except UnclearError as error:
-        return error.reason
+        return str(error)
     return Message("{count} crossings are left, as no free way of a strand is known that saves any", count=reached)
 
 
 def _make_moves(
     rope: ElasticRope,
-    drawing: PlaneDrawing,
+    drawing: Projection,
     moves: int,
     rng: np.random.Generator,
     few: int,
     patience: int = 12,
     tabu_for: int = 8,
-) -> Generator[Legs, None, tuple[PlaneDrawing, int]]:
+) -> Generator[Legs, None, tuple[Projection, int]]:
     """Make moves in one view until few crossings can still go; return the drawing, and the number of moves.
 
     A move that adds crossings may be what leads on; what does not is taken back. The view is given up after so many
@@ -138,7 +137,7 @@ def _make_moves(
 
 def _choose(
     rope: ElasticRope,
-    drawing: PlaneDrawing,
+    drawing: Projection,
     left_alone: Sequence[set[int]],
     best: int,
     rng: np.random.Generator,
@@ -202,31 +201,31 @@ def worth(curve: Curve, least: int = 0, seed: int = 20231, count: int = 4) -> tu
     """
     if curve.dimension != 3 or len(curve) > MOST_VERTICES:
         return 0, 0
-    held = holds(curve.mesh, curve.mesh.ends.ravel())
     axes = frames(curve.vertices - curve.vertices.mean(axis=0), count, np.random.default_rng(seed))
     try:
-        seen = [drawing.diagram for _, drawing in _draw_clear(curve.mesh, curve.vertices, axes, held)]
+        views = projections(curve.mesh, curve.vertices, axes, curve.mesh.ends.ravel(), most=MOST_CROSSINGS)
+        diagrams = [drawing.diagram for _, drawing in views]
     except UnclearError:
         return 0, 0
-    crossings = left = min(diagram.crossings for diagram in seen)
+    crossings = left = min(diagram.crossings for diagram in diagrams)
     if crossings >= least:
-        left = min(left, *(simplified(diagram, WORK).crossings for diagram in seen))
+        left = min(left, *(simplified(diagram, WORK).crossings for diagram in diagrams))
     return crossings - left, left
 
 
-def draw(rope: ElasticRope, rng: np.random.Generator) -> PlaneDrawing:
+def draw(rope: ElasticRope, rng: np.random.Generator) -> Projection:
     """The drawing of a rope as it lies or, if need be, turned by very little."""
     turns = (rotation(np.eye(3) + 1e-4 * k * rng.normal(size=(3, 3))) for k in range(8))
-    return next(_draw_clear(rope.mesh, rope.seen, turns, rope.held))[1]
+    return next(projections(rope.mesh, rope.seen, turns, np.flatnonzero(rope.held), most=MOST_CROSSINGS))[1]
 
 
 def _best_view(
     curve: Curve, held: BoolArray, rng: np.random.Generator, reached: int | None, count: int = 24
-) -> tuple[FloatArray, PlaneDrawing] | None:
+) -> tuple[FloatArray, Projection] | None:
     """The frame from which moves lead to the fewest crossings, and what is seen; None if not to fewer than now."""
     middle = curve.vertices - curve.vertices.mean(axis=0)
     axes = frames(middle, count, rng) if reached is None else map(rotation, rng.normal(size=(count, 3, 3)))
-    views = _draw_clear(curve.mesh, curve.vertices, axes, held)
+    views = projections(curve.mesh, curve.vertices, axes, np.flatnonzero(held), most=MOST_CROSSINGS)
     best, least = None, math.inf if reached is None else reached
     for frame, drawing in sorted(views, key=lambda each: each[1].diagram.crossings):
         left = simplified(drawing.diagram, WORK)
@@ -235,21 +234,3 @@ def _best_view(
         if shows_least(left):
             break
     return best
-
-
-def _draw_clear(
-    mesh: Mesh, points: FloatArray, frames: Iterable[FloatArray], held: BoolArray
-) -> Iterator[tuple[FloatArray, PlaneDrawing]]:
-    """Yield the drawings in some frames, except where they are unclear; raise UnclearError if all of them are."""
-    none, reason = True, UnclearError()
-    for frame in frames:
-        check_time()
-        try:
-            drawing = PlaneDrawing.of(mesh, points @ frame, held)
-        except UnclearError as error:
-            reason = error
-        else:
-            none = False
-            yield frame, drawing
-    if none:
-        raise reason

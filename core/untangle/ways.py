@@ -15,8 +15,8 @@ from scipy.spatial import Delaunay, cKDTree
 
 from ..base import FloatArray
 from ..curve import arc_lengths
+from ..knots.diagrams.projection import Projection
 from ..knots.diagrams.rerouting import Strand
-from .drawing import PlaneDrawing
 
 
 class Way(NamedTuple):
@@ -30,7 +30,7 @@ class Way(NamedTuple):
 class Plane:
     """A drawing's plane in triangles; its faces are about as wide as ``face``."""
 
-    def __init__(self, drawing: PlaneDrawing, face: float) -> None:
+    def __init__(self, drawing: Projection, face: float) -> None:
         self.drawing, self.face, nodes = drawing, face, drawing.nodes
         low, high = nodes.min(axis=0) - 2.0 * face, nodes.max(axis=0) + 2.0 * face
         x, y = np.meshgrid(*(np.arange(a, b, 0.5 * face) for a, b in zip(low, high, strict=True)))

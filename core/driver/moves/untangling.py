@@ -100,7 +100,7 @@ class Untangling(Move):
         mesh = self.run.iterate.curve.mesh
         return bool(holds(mesh, np.array(self.run.iterate.pins, dtype=np.intp))[mesh.ends].all())
 
-    def _tell(self, reason: Message) -> None:
+    def _tell(self, reason: str) -> None:
         self.remarks.append(Message("strand moves: {reason}", reason=reason))
 
     def _untangled(self) -> Iterator[Iterate]:
@@ -129,7 +129,7 @@ class Untangling(Move):
         run.rises.change(first, run.iterate)
         yield from self._restored()
 
-    def _moved(self, lengths: "_Lengths") -> Generator[Iterate, None, Message]:
+    def _moved(self, lengths: "_Lengths") -> Generator[Iterate, None, str]:
         """Yield the motions of all moves, down to the fewest crossings; return how they end.
 
         Nothing is yielded before it is known to be worthwhile: with "auto", until no more crossings are left than gone.
@@ -148,7 +148,7 @@ class Untangling(Move):
             try:
                 stages.append(next(work))
             except StopIteration as stop:
-                reason: Message = stop.value
+                reason: str = stop.value
                 return refused or reason
             seen = stages[-1]
             if least is None or earlier is None:

@@ -1,14 +1,18 @@
 """Diagrams of polygons in space: what is seen of them from some direction."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
-from ...base import CurveError, FloatArray, IntArray
-from ...curve import Curve, Mesh
-from .diagram import PIN, Diagram
+from ...base import CurveError, FloatArray, IntArray, Message, check_time
+from ...curve import NOWHERE, Curve, Mesh
+from .diagram import ENDS, PIN, Diagram
+
+NO_VIEW = Message("strands touch, or nearly do: no view of the curve shows which one is in front")
 
 
 def views(curve: Curve, count: int, seed: int = 20217, clear: float = 1e-9) -> Iterator[Diagram]:
@@ -22,15 +26,40 @@ def views(curve: Curve, count: int, seed: int = 20217, clear: float = 1e-9) -> I
     _, power = np.frexp(np.abs(curve.vertices).max())
     points = np.ldexp(curve.vertices, -power)  # where products of coordinates neither overflow nor vanish
     middle = points - points.mean(axis=0)
-    none, mesh = True, curve.mesh
-    for axes in frames(middle, count, rng):
-        turned = middle @ axes
-        found = project(mesh, turned, plane_crossings(mesh, turned, clear), np.empty(0, dtype=np.intp), clear)
-        if found is not None:
+    for _, found in projections(curve.mesh, middle, frames(middle, count, rng), clear=clear):
+        yield found.diagram
+
+
+class UnclearError(CurveError):
+    """No view shows which strand is in front, or all have too many crossings."""
+
+
+def projections(
+    mesh: Mesh,
+    points: FloatArray,
+    axes: Iterable[FloatArray],
+    held: IntArray = NOWHERE,
+    clear: float = 1e-9,
+    most: float = np.inf,
+) -> Iterator[tuple[FloatArray, "Projection"]]:
+    """Yield what is seen of points, shape (n, 3), in some frames, with each, but where that is unclear.
+
+    An UnclearError says if it is so in all of them, or there are ``most`` crossings or more.
+    """
+    none, reason = True, NO_VIEW
+    for frame in axes:
+        check_time()
+        turned = points @ frame
+        crossings = plane_crossings(mesh, turned, clear)
+        if len(crossings.turn) >= most:
+            reason = Message("in no view are there fewer than {most:,} crossings, which are too many", most=most)
+        elif (found := project(mesh, turned, crossings, held, clear)) is None:
+            reason = NO_VIEW
+        else:
             none = False
-            yield found.diagram
+            yield frame, found
     if none:
-        raise CurveError("strands touch, or nearly do: no view of the curve shows which one is in front")
+        raise UnclearError(reason)
 
 
 def frames(middle: FloatArray, count: int, rng: np.random.Generator) -> list[FloatArray]:
@@ -57,13 +86,59 @@ class PlaneCrossings(NamedTuple):
     turn: FloatArray  # cross product of their vectors, positive if the second crosses from right to left; shape (k,)
 
 
-class Projection(NamedTuple):
-    """What is seen of polygons along the third axis."""
+@dataclass(frozen=True, eq=False)
+class Projection:
+    """What is seen of polygons along the third axis: their diagram, with held places among its passes."""
 
-    crossings: PlaneCrossings
+    mesh: Mesh
+    points: FloatArray  # the vertices, shape (n, 3)
+    crossings: PlaneCrossings  # of the edges, which are numbered by their tails here
     heights: FloatArray  # of both edges at each crossing; shape (2, k)
     diagram: Diagram
     at: list[float]  # where each pass is: the tail of its edge plus a fraction
+
+    @cached_property
+    def nodes(self) -> FloatArray:
+        """The vertices in the plane, and after them the crossings; shape (n + k, 2)."""
+        crossings = self.mesh.tails[self.crossings.edges[0]] + self.crossings.at[0]
+        return np.concatenate([self.points[:, :2], self.placed(crossings)])
+
+    def placed(self, at: FloatArray) -> FloatArray:
+        """Points of the plane at tails plus fractions."""
+        tails = np.floor(at).astype(np.intp)
+        t = (at - tails)[:, None]
+        return np.asarray(self.points[tails, :2] * (1.0 - t) + self.points[self.mesh.cycle[tails], :2] * t)
+
+    def stops(self, edge: int) -> tuple[list[int], list[float]]:
+        """The nodes on an edge of the diagram, its ends included, and where on the component they are, ascending."""
+        diagram, n = self.diagram, self.mesh.size
+        part = self.mesh.slices[diagram.component[edge]]
+        size, after = part.stop - part.start, diagram.next[edge]
+        begin, end = self.at[edge], self.at[after]
+        if diagram.sequence[after] == ENDS:
+            end = part.stop - 1.0
+        elif end <= begin:
+            end += size
+        inner = range(int(np.floor(begin)) + 1, int(np.ceil(end)))
+        first, last = (
+            n + crossing if crossing >= 0 else part.start + (int(place) - part.start) % size
+            for (crossing, _), place in ((diagram.sequence[edge], begin), (diagram.sequence[after], end))
+        )
+        wrap = [part.start + (k - part.start) % size for k in inner]
+        return [first, *wrap, last], [begin, *map(float, inner), end]
+
+    def chains(self) -> Iterator[tuple[int, list[int]]]:
+        """The edges of the diagram, and the nodes on each; circles without passes take the next number."""
+        for edge in range(len(self.at)):
+            yield edge, self.stops(edge)[0]
+        for part, passes in zip(self.mesh.slices, self.diagram.passes, strict=True):
+            if not passes:
+                yield len(self.at), [*range(part.start, part.stop), part.start]
+
+    def wrapped(self, edge: int, place: float) -> float:
+        """A place on an edge as the tail plus a fraction."""
+        part = self.mesh.slices[self.diagram.component[edge]]
+        return place - (part.stop - part.start if place >= part.stop else 0)
 
 
 def project(mesh: Mesh, points: FloatArray, found: PlaneCrossings, held: IntArray, clear: float) -> Projection | None:
@@ -83,7 +158,7 @@ def project(mesh: Mesh, points: FloatArray, found: PlaneCrossings, held: IntArra
     parts = (order[a:b] for a, b in pairwise(np.searchsorted(along[order], mesh.offsets).tolist()))
     passes = (tuple(zip(crossing[part].tolist(), upper[part].tolist(), strict=True)) for part in parts)
     diagram = Diagram(tuple(passes), tuple(signs))
-    return Projection(found, heights, diagram, along[order].tolist()) if diagram.is_planar else None
+    return Projection(mesh, points, found, heights, diagram, along[order].tolist()) if diagram.is_planar else None
 
 
 def plane_crossings(mesh: Mesh, points: FloatArray, beyond: float = 0.0) -> PlaneCrossings:

@@ -14,9 +14,8 @@ from mobius_flow.core.energies.rope import closest, phi
 from mobius_flow.core.knots import knot, scramble
 from mobius_flow.core.knots.diagrams import is_least, jones, simplified
 from mobius_flow.core.knots.diagrams.diagram import ENDS, PIN
-from mobius_flow.core.knots.diagrams.projection import rotation
+from mobius_flow.core.knots.diagrams.projection import projections, rotation
 from mobius_flow.core.knots.diagrams.rerouting import StrandMove, shortened, strands
-from mobius_flow.core.untangle.drawing import PlaneDrawing
 from mobius_flow.core.untangle.leading import Lead, lead
 from mobius_flow.core.untangle.model import ElasticModel
 from mobius_flow.core.untangle.rope import ElasticRope, Springs
@@ -34,8 +33,10 @@ def messy(name, held=(), *, is_open=False):
     curve = scrambled(name)
     if is_open:
         curve = Curve(curve.vertices[:-1], Mesh((len(curve) - 1,), (False,)))
-    seen = curve.vertices @ rotation(np.random.default_rng(1).normal(size=(3, 3)))
-    return PlaneDrawing.of(curve.mesh, seen, holds(curve.mesh, np.array([*held, *curve.mesh.ends.ravel()], dtype=int)))
+    frame = rotation(np.random.default_rng(1).normal(size=(3, 3)))
+    return next(
+        projections(curve.mesh, curve.vertices, [frame], np.array([*held, *curve.mesh.ends.ravel()], dtype=int))
+    )[1]
 
 
 def laid(name, vertices=120, held=(), radius=None):
@@ -50,7 +51,7 @@ def laid(name, vertices=120, held=(), radius=None):
 
 
 def drawing(rope):
-    return PlaneDrawing.of(rope.mesh, rope.seen, rope.held)
+    return next(projections(rope.mesh, rope.seen, [np.eye(3)], np.flatnonzero(rope.held)))[1]
 
 
 def test_where_a_curve_is_held_strands_end():
