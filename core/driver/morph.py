@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise, product
 
-from ..base import BLAS, OF_GOAL, CurveError, Message, MobiusFlowError, OptionError, TimeLimit, checked, counted
+from ..base import OF_GOAL, CurveError, Message, MobiusFlowError, OptionError, checked, counted
 from ..curve import Alignment, Curve
 from ..descent import Task
 from ..io.trajectory import Iterate
@@ -20,7 +20,7 @@ from ..knots.knot_type import bracket_key
 from .meeting import Radius, change_mesh, images, meeting, min_radius, rename, run_back
 from .options import RelaxOptions
 from .outcome import Outcome, Result, Status
-from .relax import WithOutcome, finish, relax, within
+from .relax import WithOutcome, bounded, finish, relax
 from .run import Relaxation
 
 NAMES = ("the first curve", "the second curve")
@@ -91,10 +91,7 @@ def moving(tasks: Sequence[Task], options: RelaxOptions, names: Sequence[str]) -
             raise CurveError(f"{places}; move their ends together")
     alone = replace(options, time_limit=None, balance=False, hops=0)
     ways = [_Way(*each, tasks[0], alone) for each in zip(names, tasks, strict=True)]
-    work = BLAS.bounding(_number(_chain(ways, alone, options.hops)))
-    if options.time_limit is None:
-        return work
-    return within(TimeLimit(options.time_limit, used=time.perf_counter() - began), work)
+    return bounded(_number(_chain(ways, alone, options.hops)), options.time_limit, began)
 
 
 def _chain(ways: "Sequence[_Way]", options: RelaxOptions, hops: int) -> Relaxation:

@@ -61,6 +61,12 @@ def within(limit: TimeLimit, relaxation: Relaxation) -> Relaxation:
         yield iterate
 
 
+def bounded(work: Relaxation, seconds: float | None, began: float) -> Relaxation:
+    """The same with one BLAS thread, and within a time limit, if there is one, since it was begun."""
+    work = BLAS.bounding(work)
+    return work if seconds is None else within(TimeLimit(seconds, used=time.perf_counter() - began), work)
+
+
 @checked
 @BLAS.bounded()
 def relax(curve: Curve | Task, options: RelaxOptions | None = None, hand: Hand | None = None) -> Relaxation:
@@ -85,10 +91,7 @@ def relax(curve: Curve | Task, options: RelaxOptions | None = None, hand: Hand |
         start, first = replace(start, curve=symmetrised.start), [partial(SymmetricStart, symmetrised=symmetrised)]
     run = begin(start, options)
     run.hand = hand
-    work = BLAS.bounding(iterates(run, [*first, *moves.MOVES]))
-    if options.time_limit is None:
-        return work
-    return within(TimeLimit(options.time_limit, used=time.perf_counter() - began), work)
+    return bounded(iterates(run, [*first, *moves.MOVES]), options.time_limit, began)
 
 
 def begin(start: Task, options: RelaxOptions) -> Run:

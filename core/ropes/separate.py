@@ -4,13 +4,14 @@ Centre lines that meet are led apart first.  Ropes are as thin at first as that 
 radii that is kept then follows the room that steps make.
 """
 
+import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import MISSING, dataclass
 from typing import Any
 
 import numpy as np
 
-from ..base import BLAS, COMPONENT, CurveError, Message, OptionError, TimeLimit, checked
+from ..base import COMPONENT, CurveError, Message, OptionError, checked
 from ..base.arguments import check_options, option
 from ..collision import check_clear, check_embedded, is_free, written
 from ..curve import Curve, Pins, at_edges, bending_radii, holds, subdivide
@@ -18,7 +19,7 @@ from ..descent.task import Task, check_units
 from ..driver import Outcome, Relaxation, Result, Status, finish
 from ..driver.options import are_radii, radii, time_limit
 from ..driver.outcome import stalled
-from ..driver.relax import within
+from ..driver.relax import bounded
 from ..io.trajectory import Iterate
 from .crossings import AXES, Crossing, lead_apart
 from .displacement import Ropes
@@ -98,8 +99,7 @@ def separate(
 
 def separating(task: Task, options: SeparateOptions) -> Relaxation:
     """Yield the iterates of a separation; return how it ended, a `Separated`.  Raises as `separate` does."""
-    work = BLAS.bounding(_iterates(task, options))
-    return work if options.time_limit is None else within(TimeLimit(options.time_limit), work)
+    return bounded(_iterates(task, options), options.time_limit, time.perf_counter())
 
 
 def _iterates(task: Task, options: SeparateOptions) -> Relaxation:

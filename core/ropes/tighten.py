@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base.arguments import check_options, checked, option
-from ..base.deadline import TimeIsUp, TimeLimit
+from ..base.deadline import TimeIsUp
 from ..base.errors import CurveError, OptionError
 from ..base.messages import Message
 from ..base.threads import BLAS
@@ -24,7 +24,7 @@ from ..driver import Outcome, Relaxation, RelaxOptions, Result, Status, finish, 
 from ..driver.move import iterates
 from ..driver.options import time_limit
 from ..driver.prepare import rope_radius, start_problem
-from ..driver.relax import within
+from ..driver.relax import bounded
 from ..driver.run import Run
 from ..energies.rope import Rope
 from ..io.trajectory import Iterate
@@ -146,10 +146,7 @@ def tightening(task: Task, options: TightenOptions) -> Relaxation:
         start, unit = task.refined(), math.inf
     if unknot or not start.curve.mesh.all_closed:  # which are not scaled until they fit
         unit = min(unit, 0.9 * thickness(start.curve))
-    work = BLAS.bounding(_tightened(start, unit, coarse, vertices, unknot, options))
-    if options.time_limit is None:
-        return work
-    return within(TimeLimit(options.time_limit, used=time.perf_counter() - began), work)
+    return bounded(_tightened(start, unit, coarse, vertices, unknot, options), options.time_limit, began)
 
 
 def _spread(start: Task, unit: float, unknot: bool) -> tuple[PulledRope, Iterable[Iterate]]:

@@ -33,10 +33,8 @@ def messy(name, held=(), *, is_open=False):
     curve = scrambled(name)
     if is_open:
         curve = Curve(curve.vertices[:-1], Mesh((len(curve) - 1,), (False,)))
-    frame = rotation(np.random.default_rng(1).normal(size=(3, 3)))
-    return next(
-        projections(curve.mesh, curve.vertices, [frame], np.array([*held, *curve.mesh.ends.ravel()], dtype=int))
-    )[1]
+    frame, still = rotation(np.random.default_rng(1).normal(size=(3, 3))), [*held, *curve.mesh.ends.ravel()]
+    return next(projections(curve.mesh, curve.vertices, [frame], np.array(still, dtype=int)))[1]
 
 
 def laid(name, vertices=120, held=(), radius=None):
