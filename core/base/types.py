@@ -1,6 +1,6 @@
-"""Array types used throughout the core."""
+"""Arrays, as they are used throughout the core: their types, and inner products of vectors."""
 
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -9,6 +9,7 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
 BoolArray = npt.NDArray[np.bool_]
+TINY = float(np.finfo(np.float64).tiny)  # keeps quotients from division by 0
 _Scalar = TypeVar("_Scalar", bound=np.generic)
 
 
@@ -16,6 +17,16 @@ def frozen(array: npt.NDArray[_Scalar]) -> npt.NDArray[_Scalar]:
     """Make an array read-only and return it, so that values can be shared without copies."""
     array.setflags(write=False)
     return array
+
+
+def dot(u: npt.NDArray[Any], v: npt.NDArray[Any]) -> FloatArray:
+    """⟨u, v⟩ of vectors along the last axis, not conjugated; shapes (..., m) to (...)."""
+    return np.asarray(np.einsum("...i,...i->...", u, v))
+
+
+def column_dot(u: npt.NDArray[Any], v: npt.NDArray[Any]) -> FloatArray:
+    """⟨u, v⟩ of vectors along the first axis, which keeps loops over many contiguous; shapes (m, ...) to (...)."""
+    return np.asarray(np.einsum("i...,i...->...", u, v))
 
 
 def real(values: npt.ArrayLike) -> FloatArray:

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ..base import COMPONENT, EDGE, MIN_GAP, PLANE_ROUNDING, VERTEX, CurveError, FloatArray, Message
+from ..base import COMPONENT, EDGE, MIN_GAP, PLANE_ROUNDING, TINY, VERTEX, CurveError, FloatArray, Message, column_dot
 from ..base.tolerances import MIN_SPACING, ON_EDGE_UNITS
 from ..curve import Curve, Mesh, Obstacle, at_edges, at_vertices
 from .boxes import BoxTree, corners, nearer_than, still_triangles
@@ -44,7 +44,7 @@ def check_embedded(curve: Curve) -> None:
     p, q = np.triu_indices(len(points), 1)
     left, right = first[p] * second[q], first[q] * second[p]
     parallel = (np.abs(left - right) <= PLANE_ROUNDING * (np.abs(left) + np.abs(right))).all(axis=0)
-    bad = np.flatnonzero(parallel & (np.einsum("mn,mn->n", first, second) < 0))
+    bad = np.flatnonzero(parallel & (column_dot(first, second) < 0))
     if bad.size:
         vertex = int(mesh.tails[after[bad[0]]])
         back = "the curve doubles back at {vertex}, {place}; move or remove it"
@@ -74,7 +74,7 @@ def meeting_point(ends: FloatArray) -> FloatArray:
     x0, x1, y0, y1 = ends
     x = x0 + np.linspace(0.0, 1.0, 257)[:, None] * (x1 - x0)
     f = y1 - y0
-    r = ((x - y0) @ f / max(f @ f, np.finfo(np.float64).tiny)).clip(0.0, 1.0)
+    r = ((x - y0) @ f / max(f @ f, TINY)).clip(0.0, 1.0)
     return np.asarray(x[np.linalg.norm(x - y0 - r[:, None] * f, axis=1).argmin()])
 
 

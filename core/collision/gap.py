@@ -5,7 +5,7 @@ from itertools import chain
 
 import numpy as np
 
-from ..base import MIN_GAP, CurveError, FloatArray, IntArray, Message, Place
+from ..base import MIN_GAP, CurveError, FloatArray, IntArray, Message, Place, column_dot, dot
 from ..curve import Curve, Mesh, arc_distance_of_points, bending_radii
 from .boxes import BoxTree, corners, nearer_than
 from .planes import closest_chord, relative_motion
@@ -82,7 +82,7 @@ def thickness(curve: Curve, most: float = np.inf) -> float:
         t = (ef * s + Df).clip(0.0, ell[j])
         s = (ef * t - De).clip(0.0, ell[i])
         chord = np.ldexp(D + s[:, None] * e - t[:, None] * f, -unit)
-        squares = np.einsum("pm,pm->p", chord, chord)[arc_distance_of_points(curve, i, s, j, t) >= np.pi * bend]
+        squares = dot(chord, chord)[arc_distance_of_points(curve, i, s, j, t) >= np.pi * bend]
         best = min(best, float(squares.min(initial=np.inf)))
     return min(bend, most, 0.5 * float(np.ldexp(np.sqrt(best), unit)))
 
@@ -115,7 +115,7 @@ def squared_segment_distances(points: FloatArray, vertices: IntArray) -> FloatAr
     if len(points) > 3:  # four points span three dimensions at most: the same vectors in coordinates of their span
         motion = np.asarray(np.linalg.qr(motion.transpose(2, 1, 0), mode="r")).transpose(2, 1, 0)
     chord = closest_chord(motion)
-    return np.asarray(np.einsum("mp,mp->p", chord, chord))
+    return column_dot(chord, chord)
 
 
 def written(position: FloatArray) -> str:

@@ -6,7 +6,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from ..base import EDGE, BoolArray, FloatArray, IntArray, Message, check_time
+from ..base import EDGE, BoolArray, FloatArray, IntArray, Message, check_time, column_dot
 from ..curve import Mesh, Obstacle
 from .boxes import BoxTree, Level, contact_window, still_triangles
 from .exact import first_contact, first_contact_with_triangle
@@ -107,9 +107,9 @@ class _Search:
         # in this time vertices move by about an edge length: contacts until then limit the search for others
         speed = end - start
         speed -= speed.mean(axis=1, keepdims=True)
-        fastest = float(np.sqrt(np.einsum("mn,mn->n", speed, speed).max()))
+        fastest = float(np.sqrt(column_dot(speed, speed).max()))
         edges = start[:, self.mesh.heads] - start[:, self.mesh.tails]
-        length = float(np.sqrt(np.einsum("mn,mn->n", edges, edges)).mean())
+        length = float(np.sqrt(column_dot(edges, edges)).mean())
         soon = 1.0 if 2 * length >= fastest else length / fastest
         for after, until in ((-1.0, soon), (soon, 1.0)) if soon < 1 else ((-1.0, 1.0),):
             yield from self._windows(tree, tree, 0, after, until)

@@ -7,9 +7,9 @@ if all are positive at two times, a plane orthogonal to n separates the two at e
 
 import numpy as np
 
-from ..base import PLANE_ROUNDING, PLANE_UNDERFLOW, BoolArray, FloatArray, IntArray
+from ..base import PLANE_ROUNDING, PLANE_UNDERFLOW, TINY, BoolArray, FloatArray, IntArray
+from ..base import column_dot as dot
 
-_TINY = np.finfo(np.float64).tiny
 _PARALLEL = 1e-14  # sin² of the angle below which a cross product is mostly rounding
 
 
@@ -77,7 +77,7 @@ class Separation:
         self, motion: FloatArray, size: FloatArray, direction: FloatArray, distance: FloatArray | float = 0.0
     ) -> None:
         D, e, *spans = np.einsum("tkmp,mp->ktp", motion, direction)
-        width = distance * np.sqrt(np.einsum("mp,mp->p", direction, direction))
+        width = distance * np.sqrt(dot(direction, direction))
         error = PLANE_ROUNDING * (np.einsum("tmp,mp->tp", size, np.abs(direction)) + width)
         D = D - (width + error + PLANE_UNDERFLOW)
         ends = (D, D + e)
@@ -100,7 +100,7 @@ def doubtful(points: FloatArray, vertices: IntArray, radius: float = 0.0) -> Boo
     motion = relative_motion(points, points, vertices)
     chord = closest_chord(motion[0])
     planes = Separation(motion, np.abs(motion).sum(axis=1), chord)
-    near = np.einsum("mp,mp->p", chord, chord) <= radius**2
+    near = dot(chord, chord) <= radius**2
     return np.asarray(near | ~planes.proves(np.zeros(chord.shape[1])))
 
 
@@ -121,11 +121,11 @@ def closest_chord(motion: FloatArray) -> FloatArray:
 
 def _to_segment(D: FloatArray, e: FloatArray, f: FloatArray) -> FloatArray:
     """From the closest point of a segment to that of the other; 0 where segments in the plane cross."""
-    ee, ef, ff = (_dot(u, v) for u, v in ((e, e), (e, f), (f, f)))
-    De, Df = _dot(D, e), _dot(D, f)
+    ee, ef, ff = (dot(u, v) for u, v in ((e, e), (e, f), (f, f)))
+    De, Df = dot(D, e), dot(D, f)
     # The nearest point of the other edge to each of the four end points.
-    r = np.stack([Df, Df + ef]) / np.maximum(ff, _TINY)
-    s = np.stack([-De, ef - De]) / np.maximum(ee, _TINY)
+    r = np.stack([Df, Df + ef]) / np.maximum(ff, TINY)
+    s = np.stack([-De, ef - De]) / np.maximum(ee, TINY)
     s, r = s.clip(0.0, 1.0), r.clip(0.0, 1.0)
     chords = np.empty((4, *D.shape))
     chords[0] = D - r[0] * f
@@ -144,9 +144,9 @@ def _to_segment(D: FloatArray, e: FloatArray, f: FloatArray) -> FloatArray:
 def _to_face(D: FloatArray, f: FloatArray, g: FloatArray) -> FloatArray:
     """From the foot of x₀ in a triangle to x₀; D, no shorter than the chord, where the foot is not in the triangle."""
     normal = cross(f, g)
-    whole = _dot(normal, normal)
-    r, q = _dot(cross(D, g), normal), _dot(cross(f, D), normal)
-    inside = (whole > _PARALLEL * _dot(f, f) * _dot(g, g)) & (r > 0) & (q > 0) & (r + q < whole)
+    whole = dot(normal, normal)
+    r, q = dot(cross(D, g), normal), dot(cross(f, D), normal)
+    inside = (whole > _PARALLEL * dot(f, f) * dot(g, g)) & (r > 0) & (q > 0) & (r + q < whole)
     return np.where(inside, _along(normal, D), D)
 
 
@@ -154,10 +154,6 @@ def _shortest(chords: FloatArray) -> FloatArray:
     """The shortest of several vectors of each pair; shapes (k, m, pairs) -> (m, pairs)."""
     nearest = np.einsum("kmp,kmp->kp", chords, chords).argmin(axis=0)
     return np.asarray(np.take_along_axis(chords, nearest[None, None], axis=0)[0])
-
-
-def _dot(u: FloatArray, v: FloatArray) -> FloatArray:
-    return np.asarray(np.einsum("mp,mp->p", u, v))
 
 
 def cross(u: FloatArray, v: FloatArray) -> FloatArray:
@@ -169,4 +165,4 @@ def cross(u: FloatArray, v: FloatArray) -> FloatArray:
 
 def _along(normal: FloatArray, D: FloatArray) -> FloatArray:
     """The part of D along a normal: a good direction even where the difference of close points is mostly rounding."""
-    return np.asarray(normal * (_dot(normal, D) / np.maximum(_dot(normal, normal), _TINY)))
+    return np.asarray(normal * (dot(normal, D) / np.maximum(dot(normal, normal), TINY)))

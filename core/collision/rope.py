@@ -13,19 +13,18 @@ All is decided in floating-point numbers with error bounds: what is proved is so
 """
 
 from collections.abc import Iterator, Sequence
-from functools import partial
 from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 
-from ..base import BoolArray, FloatArray, IntArray
+from ..base import TINY, BoolArray, FloatArray, IntArray
+from ..base import column_dot as dot
 from ..curve import Mesh, Obstacle
 from .boxes import BoxTree, Level, Test, contact_window, corners, still_triangles
 from .motion import Contact, FreeMotion, free_motion, is_free
 from .planes import cross, march
 
-_TINY = np.finfo(np.float64).tiny
 _SLACK = 1e-10  # relative to the size of coordinates, far above rounding and far below any radius
 
 
@@ -107,7 +106,7 @@ def _near(
     """
     tree, component = BoxTree.build(mesh, *points), mesh.edge_component
     # no edge is longer on the way than at both its ends, as the norm is convex
-    longest = np.sqrt(np.maximum(*(np.einsum("me,me->e", e, e) for e in spans))) * (1.0 + _SLACK) + _SLACK
+    longest = np.sqrt(np.maximum(*(dot(e, e) for e in spans))) * (1.0 + _SLACK) + _SLACK
     position, around = np.cumsum(longest - saved) - longest, np.add.reduceat(longest - saved, mesh.edge_offsets[:-1])
     once_round, batch = np.where(mesh.closed, around, np.inf), 1 << 13
     turned, all_round = np.cumsum(turns), np.add.reduceat(turns, mesh.edge_offsets[:-1])
@@ -215,23 +214,22 @@ class Corners(NamedTuple):
 
         Products of moving vectors are quadratic polynomials in time, between their coefficients in Bernstein's basis.
         """
-        dots = partial(np.einsum, "mk,mk->k")
         normals = [cross(u, v) for u, v in product(self.e, self.f)]
         middle = 0.5 * (normals[1] + normals[2])
-        length = np.sqrt(dots(middle, middle))
+        length = np.sqrt(dot(middle, middle))
         normals[1:3] = [middle]
-        largest = np.sqrt(np.max([dots(n, n) for n in normals], axis=0))
-        smallest = np.min([dots(n, middle) for n in normals], axis=0) / np.maximum(length, _TINY)
+        largest = np.sqrt(np.max([dot(n, n) for n in normals], axis=0))
+        smallest = np.min([dot(n, middle) for n in normals], axis=0) / np.maximum(length, TINY)
 
         def between(u: tuple[FloatArray, FloatArray], v: tuple[FloatArray, FloatArray]) -> FloatArray:
-            return np.stack([dots(u[0], v[0]), 0.5 * (dots(u[0], v[1]) + dots(u[1], v[0])), dots(u[1], v[1])])
+            return np.stack([dot(u[0], v[0]), 0.5 * (dot(u[0], v[1]) + dot(u[1], v[0])), dot(u[1], v[1])])
 
         ee, ff, ef = between(self.e, self.e), between(self.f, self.f), between(self.e, self.f)
         a, b = (np.sqrt(np.maximum(each.min(axis=0), 0.0)) for each in (ee, ff))
         longest = np.sqrt(np.maximum(ee[0], ee[2]) * np.maximum(ff[0], ff[2]))  # the norm is convex
         least = a * b + ef.min(axis=0)
-        above = np.where(least > _SLACK * longest, largest / np.maximum(least, _TINY) + _SLACK, np.inf)
-        below = smallest / np.maximum(longest + ef.max(axis=0), _TINY) * (1.0 - _SLACK) - _SLACK
+        above = np.where(least > _SLACK * longest, largest / np.maximum(least, TINY) + _SLACK, np.inf)
+        below = smallest / np.maximum(longest + ef.max(axis=0), TINY) * (1.0 - _SLACK) - _SLACK
         return np.maximum(below, 0.0), above, a, b
 
     def halves(self, k: IntArray) -> "Corners":
@@ -287,7 +285,7 @@ def _bends(
         corner, other, r = is_corner[which], after[which] != which, radius[which]
         fails = r * (np.where(corner, high, 0.0) + np.where(other, above, 0.0)) * (1.0 + _SLACK) > own - _SLACK
         # where arcs do not fit at any time nothing later matters
-        longest = np.sqrt(np.max([np.einsum("mk,mk->k", f, f) for f in tail.f], axis=0))
+        longest = np.sqrt(np.max([dot(f, f) for f in tail.f], axis=0))
         ends = r * (np.where(corner, low, 0.0) + np.where(other, below, 0.0)) > longest
         if ends.any() and (time := float(first[ends].min())) < limit:
             limit, worst = time, int(which[ends][first[ends].argmin()])

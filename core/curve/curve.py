@@ -8,7 +8,7 @@ from typing import cast
 import numpy as np
 import numpy.typing as npt
 
-from ..base import CurveError, FloatArray, Place, counted, frozen, is_list, real
+from ..base import CurveError, FloatArray, Place, counted, dot, frozen, is_list, real
 from .mesh import Mesh
 
 MAKERS: list[Callable[[object], "Curve | None"]] = []
@@ -116,7 +116,7 @@ class Curve:
     @cached_property
     def edge_lengths(self) -> FloatArray:
         """Edge lengths ℓ_I = |e_I|; shape (edges,)."""
-        return frozen(np.sqrt(np.einsum("ij,ij->i", self.edge_vectors, self.edge_vectors)))
+        return frozen(np.sqrt(dot(self.edge_vectors, self.edge_vectors)))
 
     @cached_property
     def midpoints(self) -> FloatArray:

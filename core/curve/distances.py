@@ -3,11 +3,10 @@
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..base import FloatArray, IntArray
+from ..base import TINY, FloatArray, IntArray, dot
 from .curve import Curve
 
 STRAND_RATIO = 2.0  # points are on different strands if their distance along the curve is this many times their gap
-TINY = float(np.finfo(np.float64).tiny)  # avoids division by 0: far from the origin sample points may coincide
 
 
 def points_at(curve: Curve, t: float) -> FloatArray:
@@ -41,14 +40,14 @@ def points_along(curve: Curve, component: IntArray, position: FloatArray) -> Flo
     round_ = np.asarray(mesh.closed)[component]
     along = starts[component] + np.where(round_, position % np.diff(starts)[component], position)
     edge = np.minimum(np.searchsorted(ends, along, side="right"), mesh.edge_offsets[component + 1] - 1)
-    t = 1.0 - ((ends[edge] - along) / np.maximum(ell[edge], np.finfo(np.float64).tiny)).clip(0.0, 1.0)
+    t = 1.0 - ((ends[edge] - along) / np.maximum(ell[edge], TINY)).clip(0.0, 1.0)
     return np.asarray(curve.vertices[mesh.tails[edge]] + t[:, None] * curve.edge_vectors[edge])
 
 
 def nearest_on_edges(curve: Curve, edges: IntArray, points: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Where edges, (k,), are nearest to points, (k, m) or (m,), as shares of their lengths, and how far that is."""
     e, chord = curve.edge_vectors[edges], points - curve.vertices[curve.mesh.tails[edges]]
-    t = (np.einsum("km,km->k", chord, e) / np.maximum(curve.edge_lengths[edges] ** 2, TINY)).clip(0.0, 1.0)
+    t = (dot(chord, e) / np.maximum(curve.edge_lengths[edges] ** 2, TINY)).clip(0.0, 1.0)
     return t, np.asarray(np.linalg.norm(chord - t[:, None] * e, axis=1))
 
 

@@ -4,7 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ..base import CurveError, FloatArray, frozen
+from ..base import CurveError, FloatArray, dot, frozen
 from .curve import Curve
 
 
@@ -23,14 +23,14 @@ def bending_and_derivative(curve: Curve) -> tuple[float, FloatArray]:
     before, after = mesh.incoming[mesh.inner], mesh.outgoing[mesh.inner]
     tau = curve.edge_vectors / ell[:, None]
     turn = tau[after] - tau[before]  # at each inner vertex, of length 2 sin(θ/2)
-    sine, per_length = np.einsum("ij,ij->i", turn, turn), 2.0 / (ell[after] + ell[before])
+    sine, per_length = dot(turn, turn), 2.0 / (ell[after] + ell[before])
     cosine = np.maximum(4.0 - sine, 1e-20)  # (2 cos(θ/2))², which is 0 where edges double back
     bends, length = 4.0 * per_length * sine / cosine, curve.length
     by_turn = (32.0 * per_length / cosine**2)[:, None] * turn
     by_tangent = np.zeros_like(tau)
     by_tangent[after] += by_turn
     by_tangent[before] -= by_turn
-    by_tangent -= np.einsum("ij,ij->i", by_tangent, tau)[:, None] * tau
+    by_tangent -= dot(by_tangent, tau)[:, None] * tau
     by_length = np.zeros_like(ell)
     by_length[after] -= 0.5 * bends * per_length
     by_length[before] -= 0.5 * bends * per_length
@@ -56,22 +56,18 @@ def writhe_and_crossings(curve: Curve, rows: int = 64) -> tuple[float, float]:
         tails, heads = curve.vertices[mesh.tails], curve.vertices[mesh.heads]
         i, j = slice(first, first + rows), slice(first, None)
         a, b, d, c = (end[None, j] - start[i, None] for start in (tails, heads) for end in (tails, heads))
-        volume = _dot(np.cross(curve.edge_vectors[None, j], curve.edge_vectors[i, None]), a)
-        size_a, size_c = (np.sqrt(_dot(x, x)) for x in (a, c))
+        volume = dot(np.cross(curve.edge_vectors[None, j], curve.edge_vectors[i, None]), a)
+        size_a, size_c = (np.sqrt(dot(x, x)) for x in (a, c))
         area = np.zeros_like(volume)
         for x in (b, d):
-            across = (size_a * size_c + _dot(a, c)) * np.sqrt(_dot(x, x))
-            area += 2.0 * np.arctan2(volume, across + _dot(a, x) * size_c + _dot(c, x) * size_a)
+            across = (size_a * size_c + dot(a, c)) * np.sqrt(dot(x, x))
+            area += 2.0 * np.arctan2(volume, across + dot(a, x) * size_c + dot(c, x) * size_a)
         one, other = np.arange(mesh.edges)[i, None], np.arange(mesh.edges)[None, j]
         counted = (other > one) & mesh.disjoint(one, other)
         areas = np.asarray(np.where(counted, area, 0.0))
         writhe += float(areas.sum())
         crossings += float(np.abs(areas).sum())
     return writhe / (2.0 * np.pi), crossings / (2.0 * np.pi)
-
-
-def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
-    return np.asarray(np.einsum("ijk,ijk->ij", a, b))
 
 
 @lru_cache(maxsize=2)
@@ -82,6 +78,6 @@ def bending_radii(curve: Curve) -> FloatArray:
     """
     ell, mesh = curve.edge_lengths, curve.mesh
     tau, before, after = curve.edge_vectors / ell[:, None], mesh.incoming, mesh.outgoing
-    sine, cosine = (np.einsum("ij,ij->i", d, d) for d in (tau[after] - tau[before], tau[after] + tau[before]))
+    sine, cosine = (dot(d, d) for d in (tau[after] - tau[before], tau[after] + tau[before]))
     with np.errstate(divide="ignore", over="ignore"):  # straight on
         return frozen(0.5 * np.minimum(ell[before], ell[after]) * np.sqrt(cosine / sine))  # ½ min(ℓ, ℓ') / tan(θ/2)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from ..base import CurveOptionError, FloatArray, IntArray, checked
+from ..base import CurveOptionError, FloatArray, IntArray, checked, dot
 from .curve import Curve
 from .distances import strand_gaps
 from .mesh import Mesh
@@ -197,7 +197,7 @@ def onto_chords(curve: Curve, vertices: IntArray) -> Curve:
     mesh, moved = curve.mesh, curve.vertices.copy()
     before = curve.vertices[mesh.tails[mesh.incoming[vertices]]]
     chord = curve.vertices[mesh.heads[mesh.outgoing[vertices]]] - before
-    along = np.einsum("ij,ij->i", curve.vertices[vertices] - before, chord) / np.einsum("ij,ij->i", chord, chord)
+    along = dot(curve.vertices[vertices] - before, chord) / dot(chord, chord)
     moved[vertices] = before + np.clip(along, 0.2, 0.8)[:, None] * chord
     return curve.with_vertices(moved)
 

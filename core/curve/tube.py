@@ -12,12 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..base import FloatArray, IntArray
+from ..base import TINY, FloatArray, IntArray, dot
 from .curve import Curve
 from .mesh import Mesh
 from .refine import interpolated
-
-_TINY = float(np.finfo(np.float64).tiny)
 
 
 class Tube(NamedTuple):
@@ -111,7 +109,7 @@ def normals(points: FloatArray, closed: bool = True) -> FloatArray:
     # carried along from the first vertex, each by the least rotation from tangent to tangent
     bare = np.empty_like(tau)
     axis = np.eye(3)[np.abs(tau[:, 0]).argmin(axis=-1)]  # never along the tangent
-    bare[:, 0] = unit(axis - _dot(axis, tau[:, 0])[..., None] * tau[:, 0])
+    bare[:, 0] = unit(axis - dot(axis, tau[:, 0])[..., None] * tau[:, 0])
     for i in range(1, tau.shape[1]):
         bare[:, i] = carried(bare[:, i - 1], tau[:, i - 1], tau[:, i])
     share = np.zeros(points.shape[:2])  # of what is missing at the end, by the length before each vertex
@@ -147,7 +145,7 @@ def places_between(points: FloatArray, mesh: Mesh) -> FloatArray:
     for _ in range(5):
         shapes, pieces = interpolated(points, places), zip(mesh.slices, mesh.closed, strict=True)
         tau = np.concatenate([tangents(shapes[:, s], closed) for s, closed in pieces], axis=1)
-        far = np.einsum("kni,kni->kn", tau[:-1], tau[1:]).min(axis=1) < np.cos(np.radians(30.0))
+        far = dot(tau[:-1], tau[1:]).min(axis=1) < np.cos(np.radians(30.0))
         if not far.any():
             break
         places = np.sort(np.concatenate([places, 0.5 * (places[:-1] + places[1:])[far]]))
@@ -156,9 +154,9 @@ def places_between(points: FloatArray, mesh: Mesh) -> FloatArray:
 
 def carried(normal: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
     """Turn normals by the least rotation that takes unit tangents ``start`` to ``end``; all of shape (..., 3)."""
-    along = _dot(normal, end) / np.maximum(1.0 + _dot(start, end), _TINY)
+    along = dot(normal, end) / np.maximum(1.0 + dot(start, end), TINY)
     moved = normal - along[..., None] * (start + end)
-    return unit(moved - _dot(moved, end)[..., None] * end)
+    return unit(moved - dot(moved, end)[..., None] * end)
 
 
 def turned(normal: FloatArray, tau: FloatArray, angle: FloatArray) -> FloatArray:
@@ -168,12 +166,8 @@ def turned(normal: FloatArray, tau: FloatArray, angle: FloatArray) -> FloatArray
 
 def signed_angle(start: FloatArray, end: FloatArray, tau: FloatArray) -> FloatArray:
     """Angles about unit tangents from one normal to the other, in [−π, π]; (..., 3) to (...)."""
-    return np.asarray(np.arctan2(_dot(np.cross(tau, start), end), _dot(start, end)))
+    return np.asarray(np.arctan2(dot(np.cross(tau, start), end), dot(start, end)))
 
 
 def unit(vectors: FloatArray) -> FloatArray:
-    return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), _TINY))
-
-
-def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
-    return np.asarray(np.einsum("...i,...i->...", a, b))
+    return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), TINY))

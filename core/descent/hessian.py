@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base import BULK, FloatArray
+from ..base import BULK, FloatArray, dot
 from ..energies.moebius import OwnBlocks
 from ..solve.saddle import LinearMap, TangentSpace
 from ..solve.saddle.iterative import conjugate_gradients
@@ -45,7 +45,7 @@ def lagrangian_hessian(point: Point) -> LinearMap:
     def apply(v: FloatArray) -> FloatArray:
         # D² log ℓ (v, ·) = (Δv − 2 ⟨τ, Δv⟩ τ)/ℓ²
         dv = mesh.changes(v)
-        bend = weight * (dv - 2.0 * np.einsum("ij,ij->i", tau, dv)[:, None] * tau)
+        bend = weight * (dv - 2.0 * dot(tau, dv)[:, None] * tau)
         return of_energy(v) - mesh.scatter(-bend, bend)
 
     return apply
@@ -136,7 +136,7 @@ def soft_modes(
         # what the lowest pairs leave of (D²L − θ J) w
         forces = turns[:count] @ images - values[:count, None] * (turns[:count] @ duals)
         new = each(lambda force: space.gradient(force)[0], forces)
-        residuals = np.sqrt(np.maximum(0.0, np.einsum("ij,ij->i", new, forces)))
+        residuals = np.sqrt(np.maximum(0.0, dot(new, forces)))
         # residuals that are shorter than the largest Ritz value by so much are rounding errors
         far = residuals > max(tolerance, 1e-10 * np.abs(values).max(initial=0.0))
         if len(vectors) >= most or not far[:wanted].any():

@@ -23,7 +23,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 
-from ..base import BoolArray, FloatArray, IntArray, checked_fields
+from ..base import BoolArray, FloatArray, IntArray, checked_fields, dot
 from ..curve import Curve, near_by_octave
 from .edge_pairs import DELTA, E, EdgePairIndices, EdgePairs, F, Jet, PairTerm, arctan2
 from .quadrature import gauss_legendre
@@ -138,7 +138,7 @@ def inverse_square(pairs: EdgePairs) -> Jet:
     """The integral as a jet in (Δ, e, f); edges must not touch."""
     k, m = pairs.delta.shape
     value, first = np.zeros(k, pairs.delta.dtype), np.zeros((k, 3, m), pairs.delta.dtype)
-    length = np.sqrt(_dot(pairs.f, pairs.f))
+    length = np.sqrt(dot(pairs.f, pairs.f))
     tau = pairs.f / length[:, None]
     for pair, s, weight in graded_points(EdgePairs(*(vectors.real for vectors in pairs))):
         s, weight = s - 0.5, weight / length[pair, None]  # dt from dw
@@ -147,7 +147,7 @@ def inverse_square(pairs: EdgePairs) -> Jet:
         along, size = tau[pair], length[pair, None]
         foot = np.einsum("psm,pm->ps", z, along)
         height = z - foot[:, :, None] * along[:, None, :]
-        h2 = np.einsum("psm,psm->ps", height, height)
+        h2 = dot(height, height)
         inverse, m0, m1, m2 = moments(h2, -0.5 * size - foot, 0.5 * size - foot)
         n0, n1 = (m1 + foot * m0) / size, (m2 + foot * m1) / size
         result = np.empty((len(weight), 3, along.shape[1]), z.dtype)
@@ -167,15 +167,15 @@ def graded_points(pairs: EdgePairs) -> Iterator[tuple[IntArray, FloatArray, Floa
     # edge vanishes, and at the lines' closest approach if its foot lies within the second edge (otherwise the poles
     # pass by); δ is in lengths of the first edge
     e, f = pairs.e, pairs.f
-    e2, f2 = _dot(e, e), _dot(f, f)
+    e2, f2 = dot(e, e), dot(f, f)
     to_tail, to_head = pairs.combination((-1.0, 0.5, -0.5)), pairs.combination((-1.0, 0.5, 0.5))
-    s0, s1 = _dot(to_tail, e) / e2, _dot(to_head, e) / e2
+    s0, s1 = dot(to_tail, e) / e2, dot(to_head, e) / e2
     g0, g_head = to_tail - s0[:, None] * e, to_head - s1[:, None] * e
     # the point y0 + t f has the distance |g0 + t g1| from the line of e, smallest at t
-    g1 = f - (_dot(f, e) / e2)[:, None] * e
-    square = _dot(g1, g1)
+    g1 = f - (dot(f, e) / e2)[:, None] * e
+    square = dot(g1, g1)
     crossing = square > 1e-24 * f2
-    t = -_dot(g0, g1) / np.where(crossing, square, 1.0)
+    t = -dot(g0, g1) / np.where(crossing, square, 1.0)
     crossing &= (t > 0.0) & (t < 1.0)
     position = np.stack([np.where(crossing, s0 + t * (s1 - s0), 0.0), s0, s1], axis=1)
     distance = np.linalg.norm(np.stack([g0 + t[:, None] * g1, g0, g_head], axis=1), axis=2) / np.sqrt(e2)[:, None]
@@ -207,10 +207,6 @@ def graded_points(pairs: EdgePairs) -> Iterator[tuple[IntArray, FloatArray, Floa
         scale = np.copysign(width[chosen], signed_half[chosen])[:, None]
         s = start[chosen, None] + scale * np.sinh(u)
         yield pair[chosen], s, np.abs(scale) * np.cosh(u) * (reach[chosen, None] * weight)
-
-
-def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
-    return np.asarray(np.einsum("ij,ij->i", a, b))
 
 
 def moments(h2: FloatArray, a: FloatArray, b: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:

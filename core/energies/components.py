@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base import FloatArray, IntArray
+from ..base import FloatArray, IntArray, dot
 from ..curve import Curve, Mesh
 from .edge_pairs import change, stepped
 
@@ -35,7 +35,7 @@ class ComponentShares:
         mesh = self.curve.mesh
         first, last = self.curve.vertices[mesh.ends.T]
         lengths = self.curve.component_lengths[~np.asarray(mesh.closed)]
-        chords = np.sqrt(np.einsum("ij,ij->i", last - first, last - first))
+        chords = np.sqrt(dot(last - first, last - first))
         return float(sum(mesh.closed) + 0.5 * np.sum(np.log(lengths / chords)))
 
     def derivative(self) -> FloatArray:

@@ -18,7 +18,7 @@ from typing import NamedTuple, Protocol, runtime_checkable
 import numpy as np
 from scipy.spatial.distance import cdist
 
-from ..base import BoolArray, FloatArray, OptionError
+from ..base import BoolArray, FloatArray, OptionError, dot
 from ..curve import Curve, arc_positions, periods
 from .edge_pairs import Tile, half_changes
 
@@ -118,13 +118,13 @@ class PointPairs:
 
     @cached_property
     def a(self) -> FloatArray:
-        a = np.einsum("ij,ij->i", self._x, self._tau_x)[:, None] - self._tau_x @ self._y.T
+        a = dot(self._x, self._tau_x)[:, None] - self._tau_x @ self._y.T
         a[self._tile.excluded] = 0.0
         return np.asarray(a)
 
     @cached_property
     def b(self) -> FloatArray:
-        b = self._x @ self._tau_y.T - np.einsum("ij,ij->i", self._y, self._tau_y)
+        b = self._x @ self._tau_y.T - dot(self._y, self._tau_y)
         b[self._tile.excluded] = 0.0
         return np.asarray(b)
 

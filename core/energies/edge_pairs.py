@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy.sparse as sp
 
-from ..base import BoolArray, FloatArray, IntArray, frozen
+from ..base import BoolArray, FloatArray, IntArray, dot, frozen
 from ..curve import Curve, Mesh
 
 STEP = 1e-100
@@ -96,7 +96,7 @@ class EdgePairs(NamedTuple):
         """The inner product of two combinations, as a function of the 3m coordinates of (Δ, e, f)."""
         u, v = self.combination(a), self.combination(b)
         first = np.asarray(a)[:, None] * v[:, None, :] + np.asarray(b)[:, None] * u[:, None, :]
-        return Jet(np.einsum("km,km->k", u, v), first.reshape(len(u), 3 * u.shape[1]))
+        return Jet(dot(u, v), first.reshape(len(u), 3 * u.shape[1]))
 
 
 def scatter_first(mesh: Mesh, i: IntArray, j: IntArray, first: FloatArray) -> FloatArray:
@@ -208,7 +208,7 @@ def stepped(x: FloatArray, v: FloatArray) -> FloatArray:
 
 def half_changes(x: FloatArray, y: FloatArray) -> FloatArray:
     """Im |d|²/2 = ⟨Re d, Im d⟩, d = x_i − y_j, after complex steps of points, (k, m) and (l, m); shape (k, l)."""
-    own, other = (np.einsum("ij,ij->i", points.real, points.imag)[:, None] for points in (x, y))
+    own, other = (dot(points.real, points.imag)[:, None] for points in (x, y))
     left = np.hstack([-x.imag, -x.real, own, np.ones_like(own)])
     return np.asarray(left @ np.hstack([y.real, y.imag, np.ones_like(other), other]).T)
 

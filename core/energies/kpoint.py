@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base import FloatArray, checked, checked_fields
+from ..base import FloatArray, checked, checked_fields, dot
 from ..curve import Curve, points_at
 from .components import ComponentShares
 from .density import ArcDensity, Arcs, Density, IshizekiNagasawaDensity, PointPairs, PointSet, TangentPointDensity
@@ -94,7 +94,7 @@ class KPointEnergy:
                 by_tail[edges] += (1.0 - t) * force
                 by_head[edges] += t * force
         # ∂τ/∂e = (1 − τ τᵀ)/ℓ
-        across = by_tau - np.einsum("ij,ij->i", by_tau, tau)[:, None] * tau
+        across = by_tau - dot(by_tau, tau)[:, None] * tau
         by_edge = (by_length + arcs.by_length())[:, None] * tau + across / ell[:, None]
         derivative = 2.0 * curve.mesh.scatter(by_tail - by_edge, by_head + by_edge)
         return total, derivative + self.density.constant * ComponentShares(curve).derivative()

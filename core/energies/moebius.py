@@ -19,14 +19,14 @@ second derivatives of a pair's W by e_I, e_J and Δ are
 Vertices enter through e_I = P(I↑) − P(I↓) and c_I = P(I↑) + P(I↓) = 2 m_I, so ∂c_I = ∂Δ/2 and ∂c_J = −∂Δ/2.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import product
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from scipy.spatial.distance import cdist
 
-from ..base import BoolArray, FloatArray, IntArray, checked_fields
+from ..base import BoolArray, FloatArray, IntArray, checked_fields, dot
 from ..curve import Curve, Mesh
 from .components import CONSTANT, ComponentShares, energy_of_pairs
 from .edge_pairs import ROWS_TIMES_COLUMNS, EdgePairIndices, SteppedCurve, change, half_changes, pair_tiles
@@ -51,7 +51,7 @@ class Edges(NamedTuple):
     def of(cls, curve: Curve) -> "Edges":
         # products of coordinates lose digits far from the origin, so the curve is moved to the origin
         e, ell, m = curve.edge_vectors, curve.edge_lengths, curve.midpoints - curve.midpoints.mean(axis=0)
-        foot = np.column_stack([-e, np.einsum("ij,ij->i", m, e)])
+        foot = np.column_stack([-e, dot(m, e)])
         e_ell, m_one = np.column_stack([e, ell]), np.column_stack([m, np.ones(len(m))])
         return cls(e_ell, m_one, e / ell[:, None], foot, e_ell[:, :-1], e_ell[:, -1], m_one[:, :-1])
 
@@ -134,7 +134,7 @@ class EdgeDerivatives(NamedTuple):
 
     def row_energies(self, edges: Edges) -> FloatArray:
         """Σ_J W_IJ for each edge I, shape (edges,): it follows from the derivative, W_IJ being linear in (e_I, ℓ_I)."""
-        return np.asarray(np.einsum("ij,ij->i", self.by_edge, edges.e) + self.by_length * edges.ell)
+        return dot(self.by_edge, edges.e) + self.by_length * edges.ell
 
     def at_vertices(self, mesh: Mesh, tau: FloatArray) -> FloatArray:
         """The derivative with respect to the vertices, shape (n, m)."""
@@ -155,9 +155,9 @@ class MoebiusEnergy:
     contains_midpoint_pairs = True
     description = "Möbius energy without arc distances, midpoint rule (Ishizeki–Nagasawa density)"
 
-    def leaving_out(self, pairs: EdgePairIndices) -> "MoebiusEnergy":
-        """The same sum without some pairs of edges."""
-        return MoebiusEnergy(pairs)
+    def leaving_out(self, pairs: EdgePairIndices) -> Self:
+        """The same sum without some pairs of edges, such as `replaced_pairs`."""
+        return replace(self, without=pairs)
 
     def value(self, curve: Curve) -> float:
         """Energy E of the curve; 4 for a regular polygon."""
@@ -189,7 +189,7 @@ class MoebiusEnergy:
                 row, pair = np.nonzero(own[:, None] == i)
                 excluded[row, j[pair]] = True
             g, p, q, s = Pairs.of(edges, own, slice(None), excluded)
-            found.append(np.einsum("ij,ij->i", g, s) - 2.0 * np.einsum("ij,ij->i", p, q))
+            found.append(dot(g, s) - 2.0 * dot(p, q))
         return np.concatenate(found)
 
     def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:

@@ -18,7 +18,7 @@ from typing import ClassVar, NamedTuple, cast
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..base import FloatArray, IntArray, checked_fields
+from ..base import FloatArray, IntArray, checked_fields, dot
 from ..curve import Curve, bending_radii
 from .edge_pairs import E, EdgePairs, F, Jet, PairTerm
 
@@ -84,7 +84,7 @@ class Rope(PairTerm):
         """Whether strands are no further apart than they must be, so that E is infinite; corners are left aside."""
         walls = self._seeing(curve)._strands(curve, 1.0)
         chord, _, _ = closest(EdgePairs.of(curve.mesh, curve.vertices, walls.i, walls.j))
-        return bool((np.einsum("km,km->k", chord, chord) <= walls.wall**2).any())
+        return bool((dot(chord, chord) <= walls.wall**2).any())
 
     def shares(self, curve: Curve) -> Iterator[tuple[IntArray, IntArray, Callable[[EdgePairs], Jet]]]:
         """Of both sums; infinite where the curve is no rope."""
@@ -106,7 +106,7 @@ class Rope(PairTerm):
         wall = r[i] + r[j]
         end = np.minimum(reach * wall, self.share * way)
         chord = middle.take(i, axis=0) - middle.take(j, axis=0)
-        near = np.einsum("km,km->k", chord, chord) < (end + 0.5 * (ell[i] + ell[j])) ** 2
+        near = dot(chord, chord) < (end + 0.5 * (ell[i] + ell[j])) ** 2
         i, j, wall, end = i[near], j[near], wall[near], end[near]
         ell = cast(Curve, self.seen).edge_lengths
         return Walls(i, j, wall, end, self.weight * ell[i] * ell[j] / (0.5 * wall) ** 2)
@@ -159,7 +159,7 @@ def bends(pairs: EdgePairs) -> tuple[Jet, Jet]:
 def distance(pairs: EdgePairs) -> Jet:
     """The distances of k pairs of edges, which change as if closest points stayed in their places on the edges."""
     chord, s, t = closest(pairs)
-    d = np.sqrt(np.einsum("km,km->k", chord, chord))
+    d = np.sqrt(dot(chord, chord))
     unit = chord / np.where(d == 0, 1.0, d)[:, None]
     return Jet(d, np.concatenate([unit, s[:, None] * unit, -t[:, None] * unit], axis=1))
 

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.sparse import diags_array
 from scipy.sparse.linalg import spsolve
 
-from ..base import FloatArray
+from ..base import FloatArray, dot
 from ..collision.embedded import clears
 from ..curve import Curve, Mesh, Obstacle, interpolated, nearest_strands
 from ..curve.distances import strand_gaps
@@ -172,7 +172,7 @@ def _bendable(curve: Curve, radii: FloatArray) -> FloatArray:
     """
     found, mesh, bent, thinned = radii.copy(), curve.mesh, 1.1, 0.5
     along = curve.edge_vectors / curve.edge_lengths[:, None]
-    cosines = np.einsum("ij,ij->i", along[mesh.incoming], along[mesh.outgoing])
+    cosines = dot(along[mesh.incoming], along[mesh.outgoing])
     turns = np.minimum(np.arccos(np.clip(cosines, -1.0, 1.0)), 0.5 * bent)
     for piece, edges, closed in zip(mesh.slices, mesh.edge_slices, mesh.closed, strict=True):
         n, rounds = piece.stop - piece.start, 3 if closed else 1  # the middle one has neighbours on both sides

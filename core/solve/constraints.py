@@ -18,7 +18,7 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 
-from ..base import FloatArray, IntArray
+from ..base import FloatArray, IntArray, dot
 from ..curve import NO_PINS, NOWHERE, Curve, Mesh, Pins, free_edges
 from ..curve.symmetry import NO_SYMMETRY, Symmetry
 
@@ -188,7 +188,7 @@ class ConstraintDerivative:
 
     def apply(self, u: FloatArray) -> FloatArray:
         """DΦ u; shape (r + k,) from (n, m)."""
-        stretch = np.einsum("ij,ij->i", self.tangents, self.mesh.changes(u))
+        stretch = dot(self.tangents, self.mesh.changes(u))
         if not self.loose:
             return np.asarray(stretch[self.edges])
         # what displaces the vertices of each part and stretches its edges
@@ -211,7 +211,7 @@ class ConstraintDerivative:
             return tensions, np.zeros((n, m))
         # the multiplier of its part's barycenter pulls at each vertex and edge
         pull = np.append(multipliers[len(self.edges) :], np.zeros(m)).reshape(-1, m)[self._part]
-        tensions += np.einsum("ij,ij->i", self._moments, pull.take(self.mesh.edge_component, axis=0))
+        tensions += dot(self._moments, pull.take(self.mesh.edge_component, axis=0))
         return tensions, pull.take(self.mesh.component, axis=0) * self._masses
 
     def tensions(self, multipliers: FloatArray) -> FloatArray:

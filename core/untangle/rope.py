@@ -13,7 +13,7 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..base import BoolArray, FloatArray, IntArray, check_time
+from ..base import BoolArray, FloatArray, IntArray, check_time, dot
 from ..collision import is_rope, minimal_gap
 from ..curve import Curve, Obstacle, arc_distance_of_pairs
 from ..curve.distances import arc_distance_of_vertices
@@ -251,7 +251,7 @@ class ElasticRope:
     def _cosines(self, here: Curve) -> FloatArray:
         """Cosines of the angles by which the curve turns at its inner vertices."""
         along, mesh = here.edge_vectors / here.edge_lengths[:, None], self.mesh
-        return np.asarray(np.einsum("ij,ij->i", along[mesh.incoming[mesh.inner]], along[mesh.outgoing[mesh.inner]]))
+        return dot(along[mesh.incoming[mesh.inner]], along[mesh.outgoing[mesh.inner]])
 
     def _gap(self, seen: FloatArray, e: IntArray, f: IntArray) -> float:
         """The smallest distance between pairs of edges."""

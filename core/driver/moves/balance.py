@@ -17,7 +17,7 @@ from itertools import product
 
 import numpy as np
 
-from ...base import FloatArray
+from ...base import FloatArray, dot
 from ...collision import thickness, walk
 from ...curve import Curve, arc_lengths, bending, bending_and_derivative, cubic_spline, sample_parameters
 from ...descent import Leg, Point, Problem, Step, leg
@@ -184,7 +184,7 @@ def least_bending(images: MoebiusImages, dimension: int) -> list[FloatArray]:
 def moebius_image(points: FloatArray, q: FloatArray) -> FloatArray:
     """Images of points, shape (n, m), under the map of ``q``, shape (m + 1,)."""
     c, v = float(q[0]), q[1:]
-    along, square = points @ v, np.einsum("ij,ij->i", points, points)
+    along, square = points @ v, dot(points, points)
     numerator = (q @ q) * points + np.multiply.outer(c * (square - 1.0) - 2.0 * along, v)
     return np.asarray(numerator / _denominator(q, along, square)[:, None])
 
@@ -192,9 +192,9 @@ def moebius_image(points: FloatArray, q: FloatArray) -> FloatArray:
 def moebius_pullback(points: FloatArray, q: FloatArray, covector: FloatArray) -> FloatArray:
     """A function's derivative by ``q``, shape (m + 1,), from its derivative by the images of points, shape (n, m)."""
     c, v = float(q[0]), q[1:]
-    along, square = points @ v, np.einsum("ij,ij->i", points, points)
+    along, square = points @ v, dot(points, points)
     g = covector / _denominator(q, along, square)[:, None]
-    shrink = -np.einsum("ij,ij->i", g, moebius_image(points, q))  # the weight of dD
+    shrink = -dot(g, moebius_image(points, q))  # the weight of dD
     on_points, on_v = float(np.sum(points * g)), g @ v
     by_c = 2.0 * c * on_points + on_v @ (square - 1.0) + 2.0 * shrink @ (c + along)
     by_v = 2.0 * (on_points + shrink @ square) * v + 2.0 * (c * shrink - on_v) @ points

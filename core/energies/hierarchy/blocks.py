@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ...base import BoolArray, FloatArray, IntArray, OptionError
+from ...base import BoolArray, FloatArray, IntArray, OptionError, dot
 from ...curve import Curve, Mesh, component_order
 from ..clusters import ClusterTree, ranges
 from ..edge_pairs import EdgePairIndices
@@ -113,7 +113,7 @@ class BlockList:
 def _admissible(center: FloatArray, radius: FloatArray, first: IntArray, second: IntArray, theta: float) -> BoolArray:
     d = center[first] - center[second]
     bound = radius[first] + radius[second]
-    return np.asarray(bound * bound < theta**2 * np.einsum("ij,ij->i", d, d))
+    return np.asarray(bound * bound < theta**2 * dot(d, d))
 
 
 def _code(i: IntArray, j: IntArray, n: int) -> IntArray:
@@ -149,4 +149,4 @@ def balls(tree: ClusterTree, curve: Curve) -> tuple[FloatArray, FloatArray]:
     low = tree.reduced(np.minimum, np.minimum(*ends))
     high = tree.reduced(np.maximum, np.maximum(*ends))
     diagonal = high - low
-    return 0.5 * (low + high), 0.5 * np.sqrt(np.einsum("ij,ij->i", diagonal, diagonal))
+    return 0.5 * (low + high), 0.5 * np.sqrt(dot(diagonal, diagonal))

@@ -17,9 +17,7 @@ import numpy as np
 from ...base import BLAS, FloatArray, IntArray, checked_fields, number
 from ...curve import Curve
 from ..components import CONSTANT, ComponentShares, energy_of_pairs, energy_scale
-from ..edge_pairs import EdgePairIndices
 from ..moebius import EdgeDerivatives, Edges, MoebiusEnergy
-from ..quadrature import MIDPOINT
 from .blocks import BlockList
 from .fields import FarField, NearField
 
@@ -31,8 +29,8 @@ EXACT_UP_TO = 30_000  # vertices; all pairs of edges take some fifteen seconds t
 
 @checked_fields
 @dataclass(frozen=True, eq=False)
-class HierarchicalMoebiusEnergy:
-    """The midpoint sum `MoebiusEnergy` for curves of many vertices.
+class HierarchicalMoebiusEnergy(MoebiusEnergy):
+    """The midpoint sum for curves of many vertices; its second derivative as a matrix is that of the sum itself.
 
     Every curve has its own block list, and where the list changes the value jumps by its error.  `frozen_at` keeps one,
     which gives a smooth function as long as it fits, as a line search needs.  Where strands are so dense that
@@ -44,16 +42,10 @@ class HierarchicalMoebiusEnergy:
     """
 
     blocks: BlockList | None = None  # used as long as its blocks stay well separated; None for each curve's own
-    without: EdgePairIndices | None = None  # near pairs of edges that are left out, because another term replaces them
     order: int = number(4, most=MAX_ORDER)  # of the expansions
     theta: float = number(0.19, most=OUTDATED)  # separation parameter of blocks
     leaf: int = number(16)  # edges up to which clusters are not halved; halving leaves 8 to 16
 
-    name = "moebius"
-    rule = MIDPOINT
-    scale_exponent = 0.0
-    moebius_invariant = True
-    contains_midpoint_pairs = True
     description = "Möbius energy without arc distances, midpoint rule, distant clusters by Taylor expansion"
 
     def frozen_at(self, curve: Curve) -> "HierarchicalMoebiusEnergy":
@@ -61,10 +53,6 @@ class HierarchicalMoebiusEnergy:
         if self.blocks is not None and self.blocks.is_separated(curve, KEPT * self.theta):
             return self
         return replace(self, blocks=_block_list(curve, self.theta, self.leaf))
-
-    def leaving_out(self, pairs: EdgePairIndices) -> "HierarchicalMoebiusEnergy":
-        """The same sum without some near pairs of edges, such as `replaced_pairs`."""
-        return replace(self, without=pairs)
 
     @property
     def exact(self) -> MoebiusEnergy:
@@ -79,21 +67,18 @@ class HierarchicalMoebiusEnergy:
     def value(self, curve: Curve) -> float:
         blocks = self.block_list(curve)
         if blocks.mostly_near:
-            return self.exact.value(curve)
+            return super().value(curve)
         near, far = self._fields(blocks, _unit_sized(curve)[0])
         return energy_of_pairs(curve, near.value() + far.value())
 
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
         blocks = self.block_list(curve)
         if blocks.mostly_near:
-            return self.exact.value_and_derivative(curve)
+            return super().value_and_derivative(curve)
         unit, exponent = _unit_sized(curve)
         value, sums, edges = self._value_and_sums(blocks, unit)
         derivative = 2.0 * sums.at_vertices(curve.mesh, edges.tau) + CONSTANT * ComponentShares(unit).derivative()
         return energy_of_pairs(curve, value), np.ldexp(derivative, -exponent)
-
-    def hessian(self, curve: Curve) -> FloatArray:
-        return self.exact.hessian(curve)
 
     def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
         """D²E v for ``v`` of shape (n, m), to some five digits: a central difference with one block list."""
@@ -107,12 +92,12 @@ class HierarchicalMoebiusEnergy:
         ahead, behind = (smooth.value_and_derivative(end)[1] for end in ends)
         return 0.5 * rate * (ahead - behind)
 
-    def row_energies(self, curve: Curve) -> FloatArray:
+    def row_energies(self, curve: Curve, rows: IntArray) -> FloatArray:
         blocks = self.block_list(curve)
         if blocks.mostly_near:
-            return self.exact.row_energies(curve, np.arange(curve.mesh.edges))
+            return super().row_energies(curve, rows)
         _, sums, edges = self._value_and_sums(blocks, _unit_sized(curve)[0])
-        return sums.row_energies(edges)
+        return sums.row_energies(edges)[rows]
 
     def _fields(self, blocks: BlockList, unit: Curve) -> tuple[NearField, FarField]:
         edges = Edges.of(unit)
@@ -171,7 +156,7 @@ class Estimate:
 def energy_error(energy: HierarchicalMoebiusEnergy, curve: Curve, count: int = 512) -> Estimate:
     """The error of the energy, from edges of which 512 leave a standard error of some 3e-7, and take half a step."""
     energy, sample = energy.frozen_at(curve), sampled_edges(curve, count)
-    rows = energy.row_energies(curve)
+    rows = energy.row_energies(curve, np.arange(curve.mesh.edges))
     off = rows[sample] - energy.exact.row_energies(curve, sample)
     # the value is not computed from the sums of single edges
     rest = energy.value(curve) - energy_of_pairs(curve, 0.5 * float(rows.sum()))
@@ -191,7 +176,7 @@ def slope_error(energy: HierarchicalMoebiusEnergy, curve: Curve, u: FloatArray, 
         return Estimate(0.0, 0.0)
     t = 1e-4 / change  # of distances between edges from P to P ± t u, relative
     ends = [curve.with_vertices(curve.vertices + way * u) for way in (t, -t)]
-    rows = [energy.row_energies(end) for end in ends]
+    rows = [energy.row_energies(end, np.arange(curve.mesh.edges)) for end in ends]
     off = [each[sample] - energy.exact.row_energies(end, sample) for each, end in zip(rows, ends, strict=True)]
     slope = float(np.sum((energy.value_and_derivative(curve)[1] - CONSTANT * ComponentShares(curve).derivative()) * u))
     rest = slope - float(np.sum(rows[0] - rows[1])) / (2.0 * t)

@@ -12,6 +12,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from ...base import FloatArray, IntArray
+from ...base import column_dot as dot
 from ..edge_pairs import EdgePairIndices
 from ..moebius import EdgeDerivatives, Edges, Pairs, PartnerSums
 from .blocks import BlockList
@@ -50,8 +51,8 @@ class NearField(NamedTuple):
             part = slice(first, first + PAIRS)
             i, j = (np.take(columns, side[part], axis=1) for side in self.pairs)
             d, e_ell, f_ell = i[:m] - j[:m], i[m:], j[m:]
-            s = 1.0 / _inner(d, d)
-            yield part, Pairs(_inner(e_ell, f_ell), _inner(d, e_ell[:-1]) * s, _inner(d, f_ell[:-1]) * s, s)
+            s = 1.0 / dot(d, d)
+            yield part, Pairs(dot(e_ell, f_ell), dot(d, e_ell[:-1]) * s, dot(d, f_ell[:-1]) * s, s)
 
 
 class FarField:
@@ -183,7 +184,3 @@ def _links(levels: Iterable[tuple[IntArray, IntArray]]) -> Iterator[tuple[IntArr
 def _rows_of(array: FloatArray, clusters: IntArray) -> FloatArray:
     """The entries for some clusters of an array of shape (clusters, rows), contiguous by rows; shape (rows, k)."""
     return np.ascontiguousarray(np.take(array, clusters, axis=0).T)
-
-
-def _inner(x: FloatArray, y: FloatArray) -> FloatArray:
-    return np.asarray(np.einsum("ik,ik->k", x, y))

@@ -11,7 +11,7 @@ from itertools import combinations_with_replacement, pairwise
 
 import numpy as np
 
-from ...base import FloatArray, IntArray
+from ...base import FloatArray, IntArray, column_dot
 
 
 @dataclass(frozen=True)
@@ -109,7 +109,7 @@ def kernel_derivatives(table: Polynomials, d: FloatArray, degree: int) -> tuple[
     # Taylor coefficients s_α = ∂^α (1/|d|²)/α!, and a row of zeros at the end.  From s |d + w|² = 1, in every degree,
     # |d|² s_α + 2 Σ_i d_i s_{α−e_i} + Σ_i s_{α−2e_i} = 0
     s = np.zeros((table.size(degree + 1) + 1, d.shape[1]))
-    s[0] = 1.0 / np.einsum("ik,ik->k", d, d)
+    s[0] = 1.0 / column_dot(d, d)
     slope = -2.0 * d * s[0]
     for monomials in table.of_degree[1 : degree + 2]:
         once = table.lower[:, monomials]

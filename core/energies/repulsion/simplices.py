@@ -17,6 +17,7 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval
 
 from ...base import FloatArray, IntArray, frozen
+from ...base import column_dot as dot
 from ..barrier import CONTACT
 from ..clusters import ClusterTree, ranges
 from ..edge_pairs import arctan2
@@ -119,11 +120,6 @@ def _quotient(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
     """Their quotient, inf where the denominator is 0."""
     safe = np.where(denominator > 0.0, denominator, 1.0)
     return np.where(denominator > 0.0, numerator / safe, np.inf)
-
-
-def dot(a: FloatArray, b: FloatArray) -> FloatArray:
-    """⟨a, b⟩, not conjugated; shapes (3, ...) -> (...): loops over points stay contiguous."""
-    return np.asarray(np.einsum("i...,i...->...", a, b))
 
 
 def norm(a: FloatArray) -> FloatArray:

@@ -21,7 +21,7 @@ import numpy as np
 from scipy.linalg import blas
 from scipy.spatial.distance import cdist
 
-from ...base import FloatArray, IntArray, checked_fields, number
+from ...base import FloatArray, IntArray, checked_fields, dot, number
 from ...curve import Curve, Mesh, arc_distance_of_pairs, arc_distances, points_at
 from ...energies import Rule
 from ...energies.edge_pairs import ROWS_TIMES_COLUMNS
@@ -176,7 +176,7 @@ def pair_kernels(curve: Curve, i: IntArray, j: IntArray) -> PairKernels:
     """The kernels of edges ``i`` and ``j``, elementwise."""
     nearest = (MoebiusMetric.least_distance * (curve.edge_lengths[i] + curve.edge_lengths[j])) ** 2
     chord = curve.midpoints[i] - curve.midpoints[j]
-    inverse = 1.0 / np.maximum(np.einsum("km,km->k", chord, chord), nearest)
+    inverse = 1.0 / np.maximum(dot(chord, chord), nearest)
     rho = arc_distance_of_pairs(curve, i, j, 0.5)
     return PairKernels(inverse, inverse * (inverse - 1.0 / np.maximum(rho * rho, nearest)))
 

@@ -17,7 +17,7 @@ import scipy.sparse as sp
 from scipy.linalg import blas, lapack
 from scipy.sparse.linalg import SuperLU, splu
 
-from ...base import FloatArray
+from ...base import FloatArray, dot
 from ...curve import Curve, free_edges, holds
 from ...energies.edge_pairs import ROWS_TIMES_COLUMNS
 from ..constraints import ConstraintDerivative, Constraints
@@ -87,7 +87,7 @@ def euclidean_correction(constraints: Constraints, curve: Curve, residual: Float
     rows, free = free_edges(mesh, pins), np.where(holds(mesh, pins), 0.0, 1.0)
     tau, stretch = curve.edge_vectors / ell[:, None], np.zeros_like(ell)
     stretch[rows] = -ell[rows] * residual[: len(rows)]
-    cosines = free[mesh.heads] * np.einsum("ij,ij->i", tau, tau[mesh.next])
+    cosines = free[mesh.heads] * dot(tau, tau[mesh.next])
     diagonal = np.maximum(free[mesh.tails] + free[mesh.heads], 1.0)  # 1 where there is no row, and nothing to solve
     # T has the diagonal, and −cosines[I] between edge I and the one after it.  Each component's block is T₀ − |c| w wᵀ,
     # c its corners, 0 on arcs, and w supported on its first and last edge: T₀ is tridiagonal and positive definite,

@@ -47,7 +47,7 @@ CURVE = pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)
 
 def with_small_leaves(curve, theta=HierarchicalMoebiusEnergy.theta):
     """The energy with many blocks even on small curves."""
-    energy = HierarchicalMoebiusEnergy(BlockList.of(curve, theta, 4))
+    energy = HierarchicalMoebiusEnergy(blocks=BlockList.of(curve, theta, 4))
     assert len(energy.blocks.first) > len(curve) / 4
     return energy
 
