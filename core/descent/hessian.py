@@ -45,7 +45,7 @@ def lagrangian_hessian(point: Point) -> LinearMap:
     def apply(v: FloatArray) -> FloatArray:
         # D² log ℓ (v, ·) = (Δv − 2 ⟨τ, Δv⟩ τ)/ℓ²
         dv = mesh.changes(v)
-        bend = weight * (dv - 2.0 * dot(tau, dv)[:, None] * tau)
+        bend = weight * (dv - 2.0 * tau * dot(tau, dv)[:, None])
         return of_energy(v) - mesh.scatter(-bend, bend)
 
     return apply
