@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ..base import OptionError, check_options, declared, is_list
-from ..base.arguments import documented, option
+from ..base import OptionError, declared, is_list
+from ..base.arguments import check_options, documented, option
 from ..curve.symmetry import IS_NAME
 from ..descent import METHODS
 from ..energies import ENERGIES, TERMS, Energy, Term, is_weighted, weighted_term
