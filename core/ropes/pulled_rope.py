@@ -160,8 +160,18 @@ class PulledRope:
                 return
         self.last = before
 
-    def pulled(self, vertices: int) -> Iterator[Iterate]:
-        """The steps of an interior point, on half as many vertices as the last one, to the end on so many."""
+    def finished(self, vertices: int) -> Iterator[Iterate]:
+        """Pulled to the end on so many vertices, or as many as there can be."""
+        end = False
+        while not end:
+            before = len(self.curve)
+            if before < vertices:
+                yield from self.refined(vertices)
+            end = len(self.curve) == before or len(self.curve) >= vertices
+            yield from self.pulled(end)
+
+    def pulled(self, end: bool = False) -> Iterator[Iterate]:
+        """An interior point's steps, with half as many vertices as the last one, until it is centred, or to the end."""
         curve, last = self.curve.with_vertices((self.curve.vertices - self.center) / self.unit), self.point
         # as the square of edges, so that the barrier is about the same on all meshes, and then less
         square = (self.per * curve.length / len(curve)) ** 2
@@ -182,7 +192,7 @@ class PulledRope:
         if not closed:
             point.longest, point.proportions = 2.0, curve.edge_lengths
             point.drawn = 0.0 if last is None else last.drawn
-        for share in point.run(GAP if len(curve) >= vertices else None):
+        for share in point.run(GAP if end else None):
             if share > 0.0:
                 path = [placed(point.curve.vertices)]
                 if not closed:  # what rope comes out of the knot leads ends on, what is pulled in leads them back

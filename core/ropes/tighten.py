@@ -99,9 +99,9 @@ def tighten(
 
     In the end there are ``vertices`` or up to twice as many, by default 800, and 400 of open ropes.  What is tight is
     only refined.  Of several ``starts`` all but the first are drawn anew from other diagrams (`redrawn`), in the same
-    place, with handedness and components as they are, but no motion there is recorded.  The three that are shortest on
-    few vertices are compared on twice as many, and the best of them is the result, whose way begins at its start.  Open
-    ropes, unknots and links that come apart have one start.
+    place, with handedness and components as they are, but no motion there is recorded.  The given curve
+    and three that are shortest on few vertices are compared on twice as many, those that are nearly equal in the end,
+    and the best is the result, whose way begins at its start.  Open ropes, unknots and links that come apart have one.
     ``energy`` of iterates is length over radius, ``gradient_norm`` the residual.  The result's outcome is a
     `Tightened`, unless it was cut short.
 
@@ -149,9 +149,8 @@ def tightening(task: Task, options: TightenOptions) -> Relaxation:
     return bounded(_tightened(start, unit, coarse, vertices, unknot, options), options.time_limit, began)
 
 
-def _spread(start: Task, unit: float, unknot: bool) -> tuple[PulledRope, Iterable[Iterate]]:
+def _spread(start: Task, unit: float, unknot: bool, most: int) -> tuple[PulledRope, Iterable[Iterate]]:
     """The rope of a start, and its way along a flow that spreads it out; none if it is tight already."""
-    most = 2000 if unknot else 300  # knots take up to a hundred, and parts that are not linked would part for ever
     options = RelaxOptions(
         mesh="fixed", untangle="never", radius=unit, vertices=len(start.curve), tolerance=1e-2, max_iterations=most
     )
@@ -189,45 +188,40 @@ def _tightened(
         return round(len(trial[0].curve) / coarse), trial[0].promise
 
     try:
-        for each in starts():
-            rope, spread = _spread(each, unit, unknot)
+        for k, each in enumerate(starts()):
+            # knots take up to a hundred, parts that are not linked would part for ever; with less shapes differ more
+            rope, spread = _spread(each, unit, unknot, most=2000 if unknot else 40 if k % 2 else 300)
             if alone and min(fine, len(rope.curve)) >= 2 * COARSE and each.curve.mesh.all_closed and spread == ():
                 steps = chain(rope.thinned(fine), rope.shrunk())  # it is tight: it is refined only
             else:
-                steps = chain(spread, rope.thinned(coarse), rope.shrunk(), rope.pulled(vertices))
+                steps = chain(spread, rope.thinned(coarse), rope.shrunk(), rope.pulled())
             if alone:
                 yield rope.last
-                yield from steps
+                yield from chain(steps, rope.finished(vertices))
             else:
                 trials.append((rope, way := [rope.last]))
                 way += steps
-        several = list[tuple[PulledRope, list[Iterate]]]()  # shapes, as starts often come to the same one
+        several = trials[:1]  # with the given curve the shortest others, as starts often come to the same shape
         for trial in sorted(trials, key=rank):
-            if not several or abs(trial[0].promise / several[-1][0].promise - 1.0) > 2e-4:
+            if len(several) < 4 and all(abs(trial[0].promise / rope.promise - 1.0) > 2e-4 for rope, _ in several):
                 several.append(trial)
-            elif trial is trials[0]:  # of the same shapes that to which a motion leads
-                several[-1] = trial
-        del several[3:]  # which on few vertices are not told apart
         for rope, way in several if coarse < vertices and len(several) > 1 else ():
-            way += chain(rope.refined(vertices), rope.pulled(vertices))
-        if several:
-            rope, way = min(several, key=rank)
+            way += chain(rope.refined(vertices), rope.pulled())
+        ranks = [rank(trial) for trial in several]
+        for (count, promise), (rope, way) in zip(ranks, several, strict=True):
+            if all(promise < 1.001 * other for others, other in ranks if others == count):  # it may be the shortest
+                way += rope.finished(vertices)
+        if several:  # of the same shapes that to which a motion leads
+            least = min(rope.last.energy for rope, _ in several)
+            rope, way = next(each for each in several if each[0].last.energy <= (1.0 + 1e-5) * least)
+            yield from way
     except TimeIsUp as up:
         if trials:  # the shortest so far
-            rope, way = min(trials, key=rank)
+            rope, way = min(trials, key=lambda trial: trial[0].last.energy)
             yield from way
             if rope is not trials[0][0]:
                 up.add_note(Message(ELSEWHERE))
         raise
-    if trials:
-        yield from way
-    while (before := len(rope.curve)) < vertices or rope.point is None:
-        yield from rope.refined(vertices)
-        blocked = len(rope.curve) == before
-        if not blocked or rope.point is None:
-            yield from rope.pulled(before if blocked else vertices)
-        if blocked:
-            break
     return _ended(rope, elsewhere=bool(trials) and rope is not trials[0][0])
 
 
