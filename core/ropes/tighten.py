@@ -149,10 +149,18 @@ def tightening(task: Task, options: TightenOptions) -> Relaxation:
     return bounded(_tightened(start, unit, coarse, vertices, unknot, options), options.time_limit, began)
 
 
-def _spread(start: Task, unit: float, unknot: bool, most: int) -> tuple[PulledRope, Iterable[Iterate]]:
+def _spread(start: Task, unit: float, unknot: bool, number: int) -> tuple[PulledRope, Iterable[Iterate]]:
     """The rope of a start, and its way along a flow that spreads it out; none if it is tight already."""
+    # knots take up to a hundred, parts that are not linked would part for ever; with less drawings differ more
+    most = 2000 if unknot else 40 if number % 2 else 300
     options = RelaxOptions(
-        mesh="fixed", untangle="never", radius=unit, vertices=len(start.curve), tolerance=1e-2, max_iterations=most
+        barrier="off" if number else "on",  # drawings' strands are apart, and their rope keeps them so
+        max_iterations=most,
+        mesh="fixed",
+        radius=unit,
+        tolerance=1e-2,
+        untangle="never",
+        vertices=len(start.curve),
     )
     if unknot:  # forces may balance wherever it is packed, but the flow and its moves bring it to the circle
         flow = relax(start, options)
@@ -188,9 +196,8 @@ def _tightened(
         return round(len(trial[0].curve) / coarse), trial[0].promise
 
     try:
-        for k, each in enumerate(starts()):
-            # knots take up to a hundred, parts that are not linked would part for ever; with less shapes differ more
-            rope, spread = _spread(each, unit, unknot, most=2000 if unknot else 40 if k % 2 else 300)
+        for number, each in enumerate(starts()):
+            rope, spread = _spread(each, unit, unknot, number)
             if alone and min(fine, len(rope.curve)) >= 2 * COARSE and each.curve.mesh.all_closed and spread == ():
                 steps = chain(rope.thinned(fine), rope.shrunk())  # it is tight: it is refined only
             else:
