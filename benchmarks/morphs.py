@@ -19,7 +19,7 @@ from tempfile import TemporaryDirectory
 
 from hard_curves import hard_unknot, lattice_knot, lattice_unknot
 from mobius_flow.core import Curve, Iterate, NoMotionError, RelaxOptions, Trajectory, morph
-from mobius_flow.core.knots import coded_knot, knot, knot_type, scramble, smooth_knot
+from mobius_flow.core.knots import knot, knot_type, scramble, smooth_knot
 from mobius_flow.core.knots.planar import drawn
 from mobius_flow.core.proof import verify
 from mobius_flow.core.proof.checker import check
@@ -30,7 +30,7 @@ PERKO = (
     "Gauss: O1+U8+O2+U1+O4+U7+U9+O6+U5+O3+O7+U10+O8+U2+U6+O9+O10+U4+U3+O5+",
 )
 KINDS: Mapping[str, Callable[[str], Curve]] = {
-    "lattice": lattice_knot, "braid": knot, "smooth": smooth_knot, "unknot": knot, "code": coded_knot,
+    "lattice": lattice_knot, "braid": knot, "smooth": smooth_knot, "unknot": knot, "code": knot,
     "diagram": lambda name: drawn(knot_type(knot(name)).diagram),  # reduced, with straight lines, and lifted
     "messy": lambda name: scramble(smooth_knot(name, 60), seed=1), "plat": lambda word: knot(f"plat({word})"),
     "random": lambda size: hard_unknot(int(size), seed=7), "steps": lambda size: lattice_unknot(int(size), seed=3),

@@ -9,9 +9,9 @@ of which lets strands pass through each other, make it unrecognisable; invariant
 import matplotlib.pyplot as plt
 from drawing import draw
 from mobius_flow.core import minimize
-from mobius_flow.core.knots import coded_knot, knot_type, scramble
+from mobius_flow.core.knots import knot, knot_type, scramble
 
-curve = coded_knot("DT: [4 8 10 2 6]")
+curve = knot("DT: [4 8 10 2 6]")
 scrambled = scramble(curve, seed=3)
 relaxed = minimize(scrambled).curve
 

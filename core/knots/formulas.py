@@ -19,16 +19,12 @@ from .inscribed import arc_steps, inscribed, shares
 
 @checked
 def lissajous_knot(
-    frequencies: tuple[int, int, int],
-    phases: tuple[float, float] = (0.7, 0.2),
-    vertices: int | None = None,
-    *,
-    least_gap: float = 0.01,
+    frequencies: tuple[int, int, int], phases: tuple[float, float] = (0.7, 0.2), vertices: int | None = None
 ) -> Curve:
     """Make the Lissajous knot (cos(a t + φ), cos(b t + ψ), cos(c t)), 0 ≤ t < 2π.
 
     Frequencies are positive, no two with a common divisor; phases are in radians.  Raises CurveError for others, and
-    for strands nearer than ``least_gap``, below which default polygons would have thousands of vertices.
+    for strands nearer than 0.01, as default polygons would have thousands of vertices.
     """
     a, b, c = frequencies
     # beyond 40, strands are too near to each other to be of any use
@@ -39,7 +35,7 @@ def lissajous_knot(
     t = 2 * np.pi * np.arange(count := 160 * max(frequencies)) / count  # in each period of the fastest cosine 160
     waves = [np.cos(f * t + phase) for f, phase in zip(frequencies, (*phases, 0.0), strict=True)]
     curve = Curve(np.stack(waves, axis=1))
-    if (gap := nearest_strands(curve, 2.0)) < least_gap:
+    if (gap := nearest_strands(curve, 2.0)) < 0.01:
         raise CurveError(f"strands of this Lissajous curve meet, or are only {gap:.1g} apart; change a phase a little")
     return inscribed(curve, vertices)
 
@@ -144,19 +140,19 @@ MAX_STRANDS, MAX_TURNS = 12, 100
 
 
 @checked
-def cable(companion: Curve, p: int, q: int, vertices: int | None = None, *, room: float = 0.5) -> Curve:
+def cable(companion: Curve, p: int, q: int, vertices: int | None = None) -> Curve:
     """Make the cable C(p, q) of a knot: p strands along it that turn q/p times around, in gcd(p, q) components.
 
     Turns are counted from the longitude that does not link the knot, so that C(p, q) of the circle is T(p, q), and
     C(p, 0) are p parallel copies that do not link each other; negative q turn left.  The companion is a polygon that
-    follows a smooth curve closely; ``room`` is the radius that the strands take, as a fraction of the thickest tube's.
-    Raises CurveError if a number is not allowed, the companion is no knot, or the vertices are too few.
+    follows a smooth curve closely; strands take half the radius of the thickest tube around it.  Raises CurveError if a
+    number is not allowed, the companion is no knot, or the vertices are too few.
     """
     if not (2 <= p <= MAX_STRANDS and abs(q) <= MAX_TURNS):
         allowed = f"strands are 2 to {MAX_STRANDS}, turns -{MAX_TURNS} to {MAX_TURNS}"
         raise CurveError(f"a cable of {p} strands with {q} turns is of no use; {allowed}")
     tube, parts = SolidTorus.around(companion), math.gcd(p, q)
-    radius, turns = tube.radius(room), p // parts
+    radius, turns = 0.5 * tube.reach, p // parts
     count = tube.samples(turns * tube.length + 2 * math.pi * radius * abs(q) / parts)
     t = turns * np.arange(count) / count
     angles = [2 * math.pi * (q * t + k) / p for k in range(parts)]
@@ -165,9 +161,7 @@ def cable(companion: Curve, p: int, q: int, vertices: int | None = None, *, room
 
 
 @checked
-def double(
-    companion: Curve, twists: int = 0, *, clasp: int = 1, vertices: int | None = None, room: float = 0.5
-) -> Curve:
+def double(companion: Curve, twists: int = 0, *, clasp: int = 1, vertices: int | None = None) -> Curve:
     """Make a twisted Whitehead double of a knot: two strands along it that hook into each other at a clasp.
 
     Its Alexander polynomial is −cw t + (2 cw + 1) − cw t⁻¹ for w twists and a clasp c = ±1, whatever the companion.
@@ -177,7 +171,7 @@ def double(
         allowed = f"twists are -{MAX_TURNS} to {MAX_TURNS}, and a clasp 1 or -1"
         raise CurveError(f"twists is {twists} and clasp {clasp}; {allowed}")
     tube = SolidTorus.around(companion)
-    radius = tube.radius(room)
+    radius = 0.5 * tube.reach
     # half the length of the clasp, and how far its hooks reach past each other
     end, tip = 2.2 * radius / tube.length, 0.8 * radius / tube.length
     count = tube.samples(tube.length + 2 * math.pi * radius * abs(twists))
@@ -238,12 +232,6 @@ class SolidTorus:
         across = turned(across, tangent, -2.0 * np.pi * linking_numbers(beside)[0] * np.arange(count) / count)
         length = float(np.linalg.norm(np.diff(center, axis=0, append=center[:1]), axis=1).sum())
         return cls(length, reach, np.stack([center, across, np.cross(tangent, across)], axis=1))
-
-    def radius(self, room: float) -> float:
-        """The fraction ``room`` of the reach; a CurveError unless it is between 0 and 1."""
-        if not 0.0 < room < 1.0:
-            raise CurveError(f"room is {room}; it must be above 0 and below 1")
-        return room * self.reach
 
     def samples(self, length: float) -> int:
         """Number of points that resolve a smooth curve of this length in the tube."""

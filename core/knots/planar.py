@@ -18,7 +18,6 @@ from ..base import CurveError, FloatArray, checked
 from ..collision import check_embedded
 from ..curve import MAKERS, Curve, refine
 from .diagrams import Diagram, PlanarCrossing, diagram_of, views
-from .diagrams.codes import diagram_from_code
 from .diagrams.rerouting import rearranged, without_nugatory
 from .inscribed import MAX_VERTICES
 
@@ -34,12 +33,6 @@ def diagram_knot(code: Sequence[PlanarCrossing], vertices: int | None = None) ->
     22
     """
     return refined(drawn(diagram_of(code)), vertices)
-
-
-@checked
-def coded_knot(text: str, vertices: int | None = None, kind: str | None = None) -> Curve:
-    """Make the knot or link of a PD, DT or Gauss code, read by `diagram_from_code`, as :func:`diagram_knot` does."""
-    return refined(drawn(diagram_from_code(text, kind)), vertices)
 
 
 def redrawn(curve: Curve, count: int, seed: int) -> Iterator[Curve]:

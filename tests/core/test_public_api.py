@@ -117,14 +117,13 @@ FINE: dict[str, tuple[Callable[..., object], dict[str, object]]] = {
     "torus_knot": (knots.torus_knot, {"p": 2, "q": 3, "vertices": 20, "major": 1.0, "minor": 0.3}),
     "lissajous_knot": (
         knots.lissajous_knot,
-        {"frequencies": (2, 3, 7), "phases": (0.7, 0.2), "vertices": 200, "least_gap": 0.01},
+        {"frequencies": (2, 3, 7), "phases": (0.7, 0.2), "vertices": 200},
     ),
     "braid_closure": (knots.braid_closure, {"word": (1, 1, 1), "vertices": 20, "strands": 2}),
     "braid_word": (knots.braid_word, {"name": "3_1"}),
     "diagram_knot": (knots.diagram_knot, {"code": [(1, 5, 2, 4), (3, 1, 4, 6), (5, 3, 6, 2)], "vertices": 30}),
-    "coded_knot": (knots.coded_knot, {"text": "4 6 2", "vertices": 30, "kind": "dt"}),
-    "cable": (knots.cable, {"companion": torus_trefoil(60), "p": 2, "q": 1, "vertices": 200, "room": 0.4}),
-    "double": (knots.double, {"companion": torus_trefoil(60), "twists": 0, "clasp": 1, "vertices": 200, "room": 0.4}),
+    "cable": (knots.cable, {"companion": torus_trefoil(60), "p": 2, "q": 1, "vertices": 200}),
+    "double": (knots.double, {"companion": torus_trefoil(60), "twists": 0, "clasp": 1, "vertices": 200}),
     "scramble": (
         knots.scramble,
         {"curve": TREFOIL, "seed": 1, "moves": 2, "reach": 0.1, "gap": 0.01, "least_angle": 0.2},

@@ -4,7 +4,7 @@ import sys
 
 import numpy as np
 import pytest
-from mobius_flow.core.knots import HARD_UNKNOTS, KNOTS, coded_knot, exterior, knot_type
+from mobius_flow.core.knots import HARD_UNKNOTS, KNOTS, exterior, knot, knot_type
 from mobius_flow.core.knots.braids import braid_diagram
 from mobius_flow.core.knots.diagrams import diagram_of
 from mobius_flow.core.knots.exterior import CENSUS, GENUS, GROUP, KnotGroup, floer, group
@@ -78,7 +78,7 @@ def test_knots_beyond_ten_crossings_have_names_of_their_mirror_images_too(name, 
     snappy = pytest.importorskip("snappy")
     link = snappy.Link(name)
     for each, expected in ((link, name), (link.mirror(), name if others else f"m{name}")):
-        curve = coded_knot(str([list(map(int, edges)) for edges in each.PD_code()]))
+        curve = knot(str([list(map(int, edges)) for edges in each.PD_code()]))
         found = knot_type(curve)
         assert (found.names, found.proved, found.evidence) == ((expected,), False, (CENSUS,))
 
@@ -91,4 +91,4 @@ def test_two_hundred_knots_beyond_ten_crossings():
         for number in rng.integers(1, last, size=34, endpoint=True):
             name = f"{kind}{number}"
             code = [list(map(int, edges)) for edges in snappy.Link(name).PD_code()]
-            assert knot_type(coded_knot(str(code))).names == (name,)
+            assert knot_type(knot(str(code))).names == (name,)
