@@ -22,4 +22,4 @@ from .messages import COMPONENT, EDGE, OBSTACLE, OF_GOAL, VERTEX, VERTEX_COUNT, 
 from .plugins import Table
 from .threads import BLAS
 from .tolerances import BULK, ENERGY_ROUNDING, MIN_GAP, PLANE_ROUNDING, PLANE_UNDERFLOW
-from .types import TINY, BoolArray, ComplexArray, FloatArray, IntArray, column_dot, dot, frozen, real
+from .types import TINY, BoolArray, ComplexArray, FloatArray, IntArray, column_cross, column_dot, dot, frozen, real

@@ -35,3 +35,10 @@ def real(values: npt.ArrayLike) -> FloatArray:
     if np.iscomplexobj(array):
         raise TypeError("they are complex")
     return array.astype(np.float64, copy=False)
+
+
+def column_cross(u: npt.NDArray[Any], v: npt.NDArray[Any]) -> FloatArray:
+    """u × v of vectors along the first axis, in the plane the only component; shapes (m, ...) to (3 or 1, ...)."""
+    if len(u) == 2:
+        return np.asarray(u[:1] * v[1:] - u[1:] * v[:1])
+    return np.stack([u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]])

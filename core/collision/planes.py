@@ -8,6 +8,7 @@ if all are positive at two times, a plane orthogonal to n separates the two at e
 import numpy as np
 
 from ..base import PLANE_ROUNDING, PLANE_UNDERFLOW, TINY, BoolArray, FloatArray, IntArray
+from ..base import column_cross as cross
 from ..base import column_dot as dot
 
 _PARALLEL = 1e-14  # sin² of the angle below which a cross product is mostly rounding
@@ -154,13 +155,6 @@ def _shortest(chords: FloatArray) -> FloatArray:
     """The shortest of several vectors of each pair; shapes (k, m, pairs) -> (m, pairs)."""
     nearest = np.einsum("kmp,kmp->kp", chords, chords).argmin(axis=0)
     return np.asarray(np.take_along_axis(chords, nearest[None, None], axis=0)[0])
-
-
-def cross(u: FloatArray, v: FloatArray) -> FloatArray:
-    """The vector product of vectors (m, k), in the plane its only component."""
-    if len(u) == 2:
-        return np.asarray(u[:1] * v[1:] - u[1:] * v[:1])
-    return np.stack([u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]])
 
 
 def _along(normal: FloatArray, D: FloatArray) -> FloatArray:

@@ -19,11 +19,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base import TINY, BoolArray, FloatArray, IntArray
+from ..base import column_cross as cross
 from ..base import column_dot as dot
 from ..curve import Mesh, Obstacle
 from .boxes import BoxTree, Level, Test, contact_window, corners, still_triangles
 from .motion import Contact, FreeMotion, free_motion, is_free
-from .planes import cross, march
+from .planes import march
 
 _SLACK = 1e-10  # relative to the size of coordinates, far above rounding and far below any radius
 

@@ -40,14 +40,12 @@ class KPointEnergy:
         return is_moebius_invariant(self.density)
 
     def value(self, curve: Curve) -> float:
-        """Energy of the curve."""
         arcs, total = Arcs(curve), 0.0
         for tile, x, y, area in self._pairs(curve):
             total += float(np.vdot(area, self.density.value(PointPairs(x, y, arcs, tile))))
         return self._energy(curve, total)
 
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
-        """Energy and its derivative with respect to the vertices, shape (n, m)."""
         total, derivative = self._sum_and_derivative(curve)
         return self._energy(curve, total), derivative
 

@@ -101,7 +101,6 @@ class Bending:
         return bending(curve)
 
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
-        """The bending and its derivative with respect to the vertices, shape (n, m)."""
         return bending_and_derivative(curve)
 
     def stiffness(self, curve: Curve) -> sp.csr_array:

@@ -58,7 +58,6 @@ class Keys:
 
     @property
     def kinds(self) -> Counter[Kind]:
-        """How many keys there are of each kind."""
         return Counter(key.kind for key in self.keys)
 
     @property

@@ -33,7 +33,6 @@ class Legs(NamedTuple):
 
     @property
     def end(self) -> Curve:
-        """The curve reached."""
         return self.start.with_vertices(self.path[-1]) if self.path else self.start
 
 
@@ -73,7 +72,6 @@ class ElasticRope:
 
     @property
     def curve(self) -> Curve:
-        """The curve as it is."""
         return Curve(self.vertices, self.mesh)
 
     def take(self, crossings: int, moves: int) -> Legs:

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval
 
 from ...base import FloatArray, IntArray, frozen
+from ...base import column_cross as cross
 from ...base import column_dot as dot
 from ..barrier import CONTACT
 from ..clusters import ClusterTree, ranges
@@ -125,11 +126,6 @@ def _quotient(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
 def norm(a: FloatArray) -> FloatArray:
     """√⟨a, a⟩; shapes (3, ...) -> (...)."""
     return np.asarray(np.sqrt(dot(a, a)))
-
-
-def cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    """a × b; shapes (3, ...) -> (3, ...)."""
-    return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
 @dataclass(frozen=True, eq=False)

@@ -34,7 +34,6 @@ class StrandMove:
 
     @cached_property
     def after(self) -> Diagram:
-        """The diagram that results."""
         diagram, strand = self.before, self.strand
         removed = {diagram.sequence[i][0] for i in strand.inner}
         new = range(diagram.crossings, diagram.crossings + len(self.route))
