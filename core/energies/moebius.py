@@ -166,6 +166,7 @@ class MoebiusEnergy:
         return energy_of_pairs(curve, sum(Pairs.of(edges, *tile).energy() for tile in tiles))
 
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
+        """Energy and its derivative with respect to the vertices, shape (n, m)."""
         edges = Edges.of(curve)
         total, sums = 0.0, PartnerSums.zeros(edges)
         for tile in pair_tiles(curve.mesh, self.without):

@@ -93,9 +93,11 @@ class Objective:
         return replace(self, energy=cast(Energy, energy), further=further)
 
     def value(self, curve: Curve) -> float:
+        """The objective at the curve."""
         return float(sum(weight * term.value(curve) for term, weight in self._summands(curve)))
 
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
+        """The objective and its derivative with respect to the vertices, shape (n, m)."""
         value, derivative = 0.0, np.zeros_like(curve.vertices)
         for term, weight in reversed(self._summands(curve)):  # the energy, which takes most of the time, is the first
             more, further = term.value_and_derivative(curve)
