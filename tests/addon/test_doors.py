@@ -16,6 +16,7 @@ from other_kinds import KINDS, KNOT, POINTS, STROKES, THICK, TINT, add_edges, ad
 from processes import finished
 
 FEW = {"max_iterations": 3, "timing": "ITERATE", "radius": "none"}
+SEVERAL = ["poly", "edges", *(["strokes"] if STROKES else [])]
 
 
 def there(points, wanted):
@@ -83,7 +84,7 @@ def test_a_source_stays_hidden_until_the_last_carrier_is_cleared():
             first.select_set(True)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", SEVERAL)
 def test_clearing_gives_everything_back(kind):
     source = KINDS[kind]()
     before, data = contents(), source.data
@@ -173,9 +174,6 @@ VERBS = {
     ),
     "still": lambda _: bpy.ops.curve.mobius_flow_relax(keyframes="RESULT", **FEW),
 }
-
-
-SEVERAL = ["poly", "edges", *(["strokes"] if STROKES else [])]
 
 
 @pytest.mark.parametrize(("kind", "verb"), crossed(SEVERAL, VERBS))

@@ -81,9 +81,9 @@ def test_errors_in_standard_input_name_it(refused, give, monkeypatch):
 @linux
 @pytest.mark.parametrize("target", family(["-", "/dev/stdout"]))
 def test_report_and_trajectory_go_through_a_pipe(target):
-    relax = "flow relax trefoil.txt o.txt --quiet --max-iterations 2"
-    assert json.loads(shell(f"{relax} --report {target} | cat").stdout)["iterations"] == 2
-    verdict = json.loads(shell(f"{relax} --trajectory {target} | flow verify - --json").stdout)
+    relax = f"flow relax trefoil.txt o.txt --quiet --max-iterations 2 --report r.json --trajectory {target}"
+    verdict = json.loads(shell(f"{relax} | flow verify - --json").stdout)
+    assert json.loads(Path("r.json").read_text())["iterations"] == 2
     assert (verdict["accepted"], verdict["legs"]) == (True, 2)
 
 
@@ -159,7 +159,7 @@ def test_terminals_of_few_letters(encoding, words):
 
 @linux
 @pytest.mark.parametrize(
-    ("words", "end"), crossed(["methods", "--help", "energy trefoil.txt", "knot 3_1 -"], [">/dev/full", ">&-"])
+    ("words", "end"), crossed(["--help", "energy trefoil.txt", "knot 3_1 -"], [">/dev/full", ">&-"])
 )
 def test_standard_output_that_takes_nothing(words, end):
     done = shell(f"flow {words} {end}")
@@ -168,7 +168,7 @@ def test_standard_output_that_takes_nothing(words, end):
 
 
 @linux
-@pytest.mark.parametrize("end", family(["2>/dev/full", "<&- 2>&-", ">&- 2>&-", "2>&-"], every=2))
+@pytest.mark.parametrize("end", family(["<&- 2>&-", "2>/dev/full", ">&- 2>&-", "2>&-"]))
 def test_work_is_done_without_standard_error(end):
     done = shell(f"flow relax trefoil.txt o.txt --report r.json --max-iterations 2 {end}")
     assert done.returncode == 0

@@ -5,7 +5,7 @@ import re
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_curve, add_hopf_link, add_trefoil, contents, sentence, stored
+from blender_scenes import add_curve, add_trefoil, contents, sentence, stored
 from knot_type import UNKNOT, knot_invariants
 from mobius_flow.addon.buttons import drawing
 from mobius_flow.core import Curve
@@ -148,12 +148,6 @@ def test_selected_curves_are_drawn(tmp_path):
     add_trefoil()
     assert draw(tmp_path / "out.pdf", arrows=True, numbers=True) == {"FINISHED"}
     assert (tmp_path / "out.pdf").read_bytes().startswith(b"%PDF")
-
-
-def test_links_have_colours(tmp_path):
-    add_hopf_link()
-    assert draw(tmp_path / "out.svg") == {"FINISHED"}
-    assert (tmp_path / "out.svg").read_text(encoding="utf-8").count("<g ") == 2
 
 
 @pytest.mark.parametrize(("name", "said"), [("out.png", "give 'out.png' one of these"), ("no/out.svg", "no/out.svg")])

@@ -1,12 +1,11 @@
 """A stage, in a film or in an artist's scene: all is in sight, above the floor; what was there comes back."""
 
-from itertools import product
-
 import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_curve, drawn, relax
 from bpy_extras.object_utils import world_to_camera_view
+from families import crossed
 from mathutils import Vector
 from mobius_flow.addon.curves import surroundings
 from mobius_flow.addon.curves.recorded import world_motion
@@ -70,7 +69,7 @@ def places_of_the_camera(scene, frames):
         yield np.array(scene.camera.matrix_world.translation)
 
 
-@pytest.mark.parametrize(("size", "keys", "far"), [*product(SIZES, [1, 2, 12], [False, True])])
+@pytest.mark.parametrize(("size", "keys", "far"), crossed(SIZES, [1, 2, 12], [False, True]))
 def test_all_is_seen_in_every_frame_of_a_film(size, keys, far):
     scene = composed(tumbling(keys), size, Origin(np.array([900.0, -500.0, 64.0]), 256.0) if far else None)
     frames = range(scene.frame_start, scene.frame_end + 1, 3)

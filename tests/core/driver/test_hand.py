@@ -277,7 +277,7 @@ def violent(task, options, drags, seed):
     return iterates
 
 
-@pytest.mark.parametrize("drags", [6, pytest.param(130, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("drags", [4, pytest.param(130, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", TASKS)
 def test_violent_drags_go_through_nothing(name, drags):
     """With the slow ones they are a thousand."""

@@ -168,7 +168,7 @@ def crowding(vertices, radius):
 @pytest.fixture(scope="module")
 def rope():
     iterates = []
-    minimize(knot("8_3"), RelaxOptions(radius="keep"), iterates.append)
+    minimize(knot("4_1"), RelaxOptions(radius="keep"), iterates.append)
     return iterates
 
 

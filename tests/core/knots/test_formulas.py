@@ -69,23 +69,13 @@ def test_longitudes_do_not_link_the_knot_and_the_reach_of_a_circle_is_its_radius
         (lambda: cable(Curve(np.eye(3)[:, :2]), 2, 3), "one closed curve in space"),
         (lambda: double(CIRCLE, 101), "twists is 101"),
         (lambda: double(CIRCLE, 1, clasp=0), "clasp 1 or -1"),
+        (lambda: lissajous_knot((2, 4, 5), (0.7, 0.2)), "common divisor"),
+        (lambda: lissajous_knot((0, 1, 3), (0.7, 0.2)), "from 1 to 40"),
+        (lambda: lissajous_knot((3, 4, 41), (0.7, 0.2)), "from 1 to 40"),
+        (lambda: lissajous_knot((3, 4, 7), (0.0, 0.0)), "change a phase"),
+        (lambda: lissajous_knot((3, 4, 7), (np.nan, 0.0)), "finite"),
     ],
 )
 def test_what_is_refused(make, said):
     with pytest.raises(CurveError, match=said):
         make()
-
-
-@pytest.mark.parametrize(
-    ("frequencies", "phases", "said"),
-    [
-        ((2, 4, 5), (0.7, 0.2), "common divisor"),
-        ((0, 1, 3), (0.7, 0.2), "from 1 to 40"),
-        ((3, 4, 41), (0.7, 0.2), "from 1 to 40"),
-        ((3, 4, 7), (0.0, 0.0), "change a phase"),
-        ((3, 4, 7), (np.nan, 0.0), "finite"),
-    ],
-)
-def test_refused_lissajous_knots(frequencies, phases, said):
-    with pytest.raises(CurveError, match=said):
-        lissajous_knot(frequencies, phases)

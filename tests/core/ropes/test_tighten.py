@@ -261,8 +261,7 @@ def test_a_rope_without_a_knot_becomes_straight():
 
 
 def test_many_vertices_are_thinned_out():
-    iterates, outcome = run(knot("3_1", 300), vertices=100)
-    assert outcome.converged
+    iterates = list(islice(tightening(Task(curve=knot("3_1", 300)), TightenOptions(vertices=100)), 30))
     assert {len(each.curve) for each in iterates} >= {300, 100}
     check(iterates)
 

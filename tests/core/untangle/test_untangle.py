@@ -97,7 +97,7 @@ def test_wherever_it_is_left_the_curve_is_embedded_and_of_its_type():
 
 
 def test_the_same_seed_gives_the_same_motions():
-    once, again = ([stage.end.vertices for stage in islice(untangled(knot("goeritz"), seed=3), 9)] for _ in range(2))
+    once, again = ([stage.end.vertices for stage in islice(untangled(knot("goeritz"), seed=3), 5)] for _ in range(2))
     assert all(map(np.array_equal, once, again))
 
 

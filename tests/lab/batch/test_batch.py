@@ -112,12 +112,12 @@ def test_links_are_pulled_tight_from_starts_that_compete(batch, tmp_path, capsys
 
 
 def test_starts_of_knots_of_the_table_are_of_several_kinds(batch, tmp_path):
-    rows = batch("m3_1", "T(2,3)", "--starts", 6, "--max-iterations", 0)
-    kinds = {name: [kind for each, kind in pick(rows, "name", "kind") if each == name] for name in ("m3_1", "T(2,3)")}
-    assert kinds["m3_1"] == ["named", "smooth", "lattice", "drawn", "hopped", "drawn"]
-    assert kinds["T(2,3)"] == ["named", *["scrambled"] * 5]
-    assert {row["type_before"] for row in rows if row["name"] == "m3_1"} == {"m3_1"}
-    assert len({row["energy"] for row in rows}) == len(rows)
+    kinds = ["named", "smooth", "lattice", "drawn", "hopped"]
+    for name, expected in (("m3_1", kinds), ("T(2,3)", ["named", "scrambled", "scrambled"])):
+        rows = batch(name, "--starts", len(expected), "--max-iterations", 0)
+        assert [row["kind"] for row in rows] == expected
+        assert {row["type_before"] for row in rows} <= {name, "3_1"}
+        assert len({row["energy"] for row in rows}) == len(rows)
 
 
 def test_what_is_finished_is_not_repeated(batch, ring, tmp_path, monkeypatch):
@@ -212,7 +212,7 @@ def test_a_run_that_goes_on_after_its_time_limit_is_killed(batch, ring, tmp_path
     assert left == {"ring", "results.csv", "results.parquet"}
 
 
-@pytest.mark.parametrize("deaths", [2, 3])
+@pytest.mark.parametrize("deaths", [1, 3])
 def test_a_killed_run_is_tried_again(deaths, batch, ring, tmp_path, monkeypatch):
     asked = []
     answer = sandbox.Sandbox._answer
@@ -226,7 +226,7 @@ def test_a_killed_run_is_tried_again(deaths, batch, ring, tmp_path, monkeypatch)
 
     monkeypatch.setattr(sandbox.Sandbox, "_answer", killed)
     (row,) = batch(ring, *TINY)
-    assert len(asked) == 3
+    assert len(asked) == min(deaths + 1, 3)
     assert (row["status"] == "failed") == (deaths == 3)
     assert ("3 tries failed: its process was killed by SIGKILL" in row["message"]) == (deaths == 3)
     assert (tmp_path / "out/ring").is_dir() == (deaths < 3)

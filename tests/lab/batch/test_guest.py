@@ -188,7 +188,7 @@ def test_it_listens_to_nobody_and_leaves_nothing_in_the_temporary_directory(tmp_
     with running(words, env=os.environ | {"TMPDIR": str(temporary)}) as process:
         while not psutil.Process(process.pid).children():
             assert listening(process) == set()
-        for _ in range(20):
+        for _ in range(8):
             assert listening(process) == set()
             time.sleep(0.1)
         process.terminate()
