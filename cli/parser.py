@@ -47,8 +47,7 @@ exit status:
 class Parser(argparse.ArgumentParser):
     """A parser whose errors are one line, and which takes no abbreviations: they break when options are added."""
 
-    def __init__(self, command: str = "", **arguments: Any) -> None:
-        self.command: str | None = command  # whose description is loaded before its arguments are parsed
+    def __init__(self, **arguments: Any) -> None:
         self.left_out: list[Group] = []
         super().__init__(allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter, **arguments)
         self.register("type", int, _read(int, "a whole number"))
@@ -57,17 +56,8 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"{self.prog}: {message} (see {self.prog} --help)")
 
-    def parse_known_args(  # type: ignore[override]
-        self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
-    ) -> tuple[argparse.Namespace, list[str]]:
-        command, self.command = self.command, None
-        if not command:
-            found, unknown = super().parse_known_args(args, namespace)
-            if command is None:  # called by the line below: options may stand between inputs and outputs
-                return found, unknown
-        else:
-            add_to(self, command)
-            found, unknown = self.parse_known_intermixed_args(args, namespace)
+    def check_known(self, unknown: Sequence[str]) -> None:
+        """End with a sentence about the first word that means nothing, if there is one."""
         word = unknown[0].partition("=")[0] if unknown else ""
         if word.startswith("-"):
             from ..core.base.errors import likeliest
@@ -76,7 +66,6 @@ class Parser(argparse.ArgumentParser):
             self.error(f"option {word} is unknown; {likeliest(word, known)}".rstrip("; "))
         if unknown:
             self.error(f"unexpected argument {word!r}")
-        return found, unknown
 
     def format_help(self) -> str:
         """The help, without the groups that are left out, and with no more than the arguments in its usage."""
@@ -218,21 +207,26 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     top.add_argument("--print-completion", action=_PrintCompletion, metavar="SHELL", choices=SHELLS, help=text)
     subparsers = top.add_subparsers(dest="command", metavar="COMMAND", title="commands")
     for name, (_, summary) in COMMANDS.items():
-        subparsers.add_parser(name, command=name, help=summary)
+        subparsers.add_parser(name, help=summary)
     words = sys.argv[1:] if arguments is None else arguments
     if not words or words[0] not in COMMANDS:
         for name, entry in joined().items():
             try:  # loaded, unless it is another one that is asked for
                 told = words and words[0] in joined()
                 summary = "" if told else str(entry.load().__doc__).splitlines()[0].rstrip(".")
-                subparsers.add_parser(name, command=name, help=summary[:1].lower() + summary[1:])
+                subparsers.add_parser(name, help=summary[:1].lower() + summary[1:])
             except Exception as error:  # whatever another package's code may raise
                 _leave_out(entry, error)
         if not any(entry.value.startswith("mobius_flow.lab.") for entry in joined().values()):
             missing = "batch, atlas, gallery, compare and methods need an installation: python -m pip install ."
             logging.getLogger(__name__).warning(missing)
-    found = top.parse_args(arguments)
-    if found.command is None:
+    if not words or words[0] not in subparsers.choices:
+        top.check_known(top.parse_known_args(words)[1])
         top.print_help()
         top.exit(2, "mobius-flow: name a command")
+    command = subparsers.choices[words[0]]
+    add_to(command, words[0])  # which is loaded only now
+    found, unknown = command.parse_known_intermixed_args(words[1:])  # options may stand between inputs and outputs
+    command.check_known(unknown)
+    found.command = words[0]
     return found
