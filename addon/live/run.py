@@ -5,7 +5,7 @@ The objects show what has been reached; their originals come back unless the run
 
 import time
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from enum import Enum
 from functools import cached_property
 from typing import Any
@@ -25,27 +25,6 @@ from ..engine.worker import Worker, WorkerError
 from ..pictures.rendering import is_rendering
 from .drag import Drag
 from .refresh import Refresh, looks_back
-
-
-class KeyChoice:
-    """Chooses and proves the keys of a session in a thread, while Blender stays usable."""
-
-    def __init__(self, session: Session) -> None:
-        self.abandoned = False  # which ends the thread at its next proof
-
-        def proved(*motion: Any) -> bool:
-            if self.abandoned:
-                raise MobiusFlowError("The keys are no longer wanted")
-            return session.proved(*motion)
-
-        thread = ThreadPoolExecutor(1, "Möbius Flow keys")
-        self._prepared = thread.submit(session.prepare, proved)
-        thread.shutdown(wait=False)
-
-    @property
-    def made(self) -> Prepared | None:
-        """What is to be written, once that is known; raises what has gone wrong in the thread."""
-        return self._prepared.result() if self._prepared.done() else None
 
 
 class RunState(Enum):
@@ -87,7 +66,7 @@ class LiveRun:
         except BaseException:
             self.session.discard()
             raise
-        self._keys: KeyChoice | None = None
+        self._keys: Future[Prepared] | None = None  # chosen and proved in a thread, while Blender stays usable
 
     @property
     def objects(self) -> list[bpy.types.Object]:
@@ -184,7 +163,15 @@ class LiveRun:
             self.session.outcome = Outcome(Status.INTERRUPTED, (reason,))
         self.state = RunState.FINISHING
         self._worker.close()
-        self._keys = KeyChoice(self.session)
+        thread = ThreadPoolExecutor(1, "Möbius Flow keys")
+        self._keys = thread.submit(self.session.prepare, self._proved)
+        thread.shutdown(wait=False)
+
+    def _proved(self, *motion: Any) -> bool:
+        """As `Session.proved`; raises MobiusFlowError if the keys are no longer wanted."""
+        if self.state.over:
+            raise MobiusFlowError("The relaxation is over")
+        return self.session.proved(*motion)
 
     def cancel(self, message: str = Message("Cancelled; all is as it was")) -> None:
         if not self.state.over:
@@ -217,8 +204,8 @@ class LiveRun:
                     self.message = Message("{ended}, {more}", ended=ended, more=more)
             elif self.state is RunState.RUNNING:
                 self._take()
-            elif self._keys is not None and self.last is not None and (made := self._keys.made) is not None:
-                self.report = self.session.bake(made)
+            elif self._keys is not None and self.last is not None and self._keys.done():
+                self.report = self.session.bake(self._keys.result())
                 self.trouble = self.session.spots(self.report.outcome.place, self.last.curve)
                 self._close(RunState.DONE, self.report.sentence, discard=False)
         except MobiusFlowError as error:
@@ -274,8 +261,6 @@ class LiveRun:
         """End, putting the curves back or not; return whether all are as they were."""
         self.state, self.message, self.drag = state, message, None
         self._worker.close()
-        if self._keys is not None:
-            self._keys.abandoned = True
         self.on_end()
         restored = discard and self.session.discard()
         self._left = {obj.session_uid: digest(obj.data) for obj in self.session.objects}

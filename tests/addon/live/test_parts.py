@@ -1,6 +1,5 @@
 """The parts of a run: when it redraws, how its keys are written, and what else is done while it goes on."""
 
-import threading
 from types import SimpleNamespace
 
 import pytest
@@ -9,8 +8,8 @@ pytest.importorskip("bpy")
 
 from mobius_flow.addon.live import registry
 from mobius_flow.addon.live.refresh import Refresh
-from mobius_flow.addon.live.run import KeyChoice
-from processes import PATIENCE
+from mobius_flow.addon.live.run import LiveRun, RunState
+from mobius_flow.core import MobiusFlowError
 
 
 @pytest.mark.parametrize("drawing", [1e-6, 0.001, 0.1, 2.0])
@@ -44,27 +43,12 @@ def test_what_is_shown_at_once():
     assert not refresh.ends_batch(8)
 
 
-def test_an_abandoned_thread_ends_at_its_next_proof():
-    gate, proved, went_on = threading.Event(), [], []
-
-    def prepare(proof):
-        gate.wait(PATIENCE)
-        proof(None, None, None)
-        went_on.append(True)
-
-    choice = KeyChoice(SimpleNamespace(prepare=prepare, proved=lambda *_: proved.append(True)))
-    choice.abandoned = True
-    gate.set()
-    assert choice._prepared.exception(PATIENCE)
-    assert not proved
-    assert not went_on
-
-
-def test_a_thread_that_fails_is_an_error():
-    choice = KeyChoice(SimpleNamespace(prepare=lambda proof: proof(0), proved=lambda number: 1 // number))
-    choice._prepared.exception(PATIENCE)
-    with pytest.raises(ZeroDivisionError):
-        _ = choice.made
+def test_proofs_for_keys_end_with_the_run():
+    run = SimpleNamespace(state=RunState.FINISHING, session=SimpleNamespace(proved=max))
+    assert LiveRun._proved(run, 1, 2) == 2
+    run.state = RunState.CANCELLED
+    with pytest.raises(MobiusFlowError, match="over"):
+        LiveRun._proved(run, 1, 2)
 
 
 @pytest.fixture

@@ -55,7 +55,7 @@ def test_keys_that_are_still_being_proved_are_not_in_the_file(operator, path, mo
     operator.start()
     operator.reach(2)
     operator.event("RET")
-    monkeypatch.setattr(operator.run._keys._thread, "is_alive", lambda: True)
+    monkeypatch.setattr(operator.run._keys, "done", lambda: False)
     shown = stored(obj.data)
     save(path)
     assert operator.run.state is RunState.FINISHING
