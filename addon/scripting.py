@@ -216,7 +216,7 @@ def begin(
     avoid = list(values["avoid"])
     if wrong := [each for each in avoid if not isinstance(each, bpy.types.Object)]:
         raise MobiusFlowError(f"avoid has {wrong[0]!r:.40}, which is not an object")
-    surroundings = Surroundings.of(avoid, [*objects, *goals])
+    surroundings = Surroundings(avoid, [*objects, *goals])
     pins, tangents = values.get("pins", ()), values["pin_tangents"]
     job: SeparateOptions | TightenOptions | None = None
     with ExitStack() as undone:

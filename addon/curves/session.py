@@ -32,7 +32,7 @@ from .group import Group
 from .report import Report
 from .sizes import placement
 from .splines import coordinates
-from .surroundings import NOTHING, Surroundings
+from .surroundings import Surroundings
 
 # what is to be written: the keys, and for each of them its scene frame, how far the relaxation has come there, and the
 # radius of the tube, in the common space of `Link`, if it is fitted
@@ -59,12 +59,12 @@ class Session(Group):
         objects: Sequence[bpy.types.Object],
         options: RelaxOptions,
         key_options: KeyOptions,
-        continues: bool = False,
-        surroundings: Surroundings = NOTHING,
-        pinned: Sequence[int] = (),
-        pin_tangents: bool = False,
-        goals: Sequence["bpy.types.Object"] = (),
-        ropes: SeparateOptions | TightenOptions | None = None,
+        continues: bool,
+        surroundings: Surroundings,
+        pinned: Sequence[int],
+        pin_tangents: bool,
+        goals: Sequence[bpy.types.Object],
+        ropes: SeparateOptions | TightenOptions | None,
     ) -> None:
         key_options.check_room(options.max_iterations)
         self.surroundings, self._key_options, self._continues = surroundings, key_options, continues

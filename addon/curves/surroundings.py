@@ -4,7 +4,6 @@ Objects count with their modifiers and everything they show copies of, as triang
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import bpy
 import numpy as np
@@ -40,25 +39,19 @@ def add(scene: bpy.types.Scene, objects: Sequence[bpy.types.Object]) -> bpy.type
     return settings.avoid
 
 
-@dataclass(frozen=True, eq=False)
 class Surroundings:
-    """Objects that are avoided; nothing of them is touched."""
+    """Objects that are avoided, as they are shown at the current frame; nothing of them is touched.
 
-    obstacles: tuple[Obstacle, ...] = ()  # what they show, in the world
-    _places: tuple[tuple[Reference, Placement], ...] = ()  # where they were
+    Raises MobiusFlowError if one of them is hidden, moves, or shows nothing that can be avoided, or a curve that is
+    relaxed moves.
+    """
 
-    @classmethod
-    def of(cls, avoided: Sequence[bpy.types.Object], relaxed: Sequence[bpy.types.Object]) -> "Surroundings":
-        """Read objects as they are shown at the current frame.
-
-        Raises MobiusFlowError if one of them is hidden, moves, or shows nothing that can be avoided, or a curve that is
-        relaxed moves.
-        """
+    def __init__(self, avoided: Sequence[bpy.types.Object], relaxed: Sequence[bpy.types.Object]) -> None:
         others = [obj for obj in dict.fromkeys(avoided) if obj not in relaxed]
         if reason := unsteady(others, relaxed):
             raise MobiusFlowError(reason)
-        places = ((Reference(obj), Placement.from_matrix(obj.matrix_world)) for obj in others)
-        return cls(tuple(_obstacles(others, relaxed)), tuple(places))
+        self.obstacles = tuple(_obstacles(others, relaxed))  # what they show, in the world
+        self._places = [(Reference(obj), Placement.from_matrix(obj.matrix_world)) for obj in others]
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -75,9 +68,6 @@ class Surroundings:
             if not Placement.from_matrix(obj.matrix_world).equals(placement):
                 return Message("'{name}' was moved against the others", name=obj.name)
         return None
-
-
-NOTHING = Surroundings()
 
 
 def warning(

@@ -170,8 +170,7 @@ def compose(
     scene.camera = stage.follow(scene.collection, size, ground, floor, *seen, playing.timing)
     scene.world = bundled("worlds", LOOKS[look].label)
     scene.world.name = "World"
-    key = next(each for each in scene.collection.objects if each.type == "LIGHT")
-    stage.light_workbench(scene, key.matrix_world.col[2][:3])
+    stage.light_workbench(scene, scene.collection)
     if origin is not None and (origin.scale != 1.0 or origin.location.any()):
         # move and scale everything from the curve's coordinates to the world's
         objects = list(scene.objects)

@@ -155,8 +155,8 @@ class Filming:
             rendering.look_fine(copy, LOOKS[look])
         elif look == "QUICK":
             rendering.look_plain(copy)
-            if direction := staging.key_direction(copy):
-                stage.light_workbench(copy, direction)
+            if made := staging.own_stage(copy):
+                stage.light_workbench(copy, made)
         _write_to(copy, self._part)
 
     def render(self) -> None:

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
-import numpy.typing as npt
 from mathutils import Matrix
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
@@ -92,10 +91,11 @@ def build(collection: bpy.types.Collection, stage: Ground, look: Look) -> bpy.ty
     return floor
 
 
-def light_workbench(scene: bpy.types.Scene, direction: npt.ArrayLike) -> None:
-    """Light Workbench, which ignores lights, from a direction of the world, (3,)."""
-    x, y, z = np.asarray(direction) / np.linalg.norm(direction)
-    scene.display.light_direction = (x, z, -y)  # its second axis is the world's up
+def light_workbench(scene: bpy.types.Scene, collection: bpy.types.Collection) -> None:
+    """Light Workbench, which ignores lights, from where the first light of a stage's collection, the key light, is."""
+    if key := next((each for each in collection.objects if each.type == "LIGHT"), None):
+        x, y, z = key.matrix_world.col[2].to_3d().normalized()
+        scene.display.light_direction = (x, z, -y)  # its second axis is the world's up
 
 
 def add(collection: bpy.types.Collection, name: str, data: bpy.types.ID) -> bpy.types.Object:

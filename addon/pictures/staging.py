@@ -179,13 +179,6 @@ def own_stage(scene: bpy.types.Scene) -> bpy.types.Collection | None:
     return next((each for each in scene.collection.children_recursive if STAGE in each), None)
 
 
-def key_direction(scene: bpy.types.Scene) -> "Sequence[float] | None":
-    """Where the key light of a scene's stage shines from, if there is one; a direction of the world."""
-    collection = own_stage(scene)
-    lights = [obj for obj in collection.objects if obj.type == "LIGHT" and STAGE in obj] if collection else []
-    return tuple(lights[0].matrix_world.col[2][:3]) if lights else None
-
-
 def fits(scene: bpy.types.Scene) -> bool:
     """Whether a scene renders pictures of the shape that its stage's camera was made for, if it has one."""
     collection = own_stage(scene)

@@ -218,10 +218,11 @@ def test_a_stage_looks_at_the_knot_of_a_rope_and_is_below_its_ends(scene):
 
 def test_workbench_has_its_light_from_where_the_key_light_is(scene):
     obj = baked()
-    assert staging.key_direction(scene) is None
-    staging.set_up(scene, [obj])
+    collection = staging.set_up(scene, [obj])
     bpy.context.view_layer.update()
     ground = stage.Ground.around(world_motion(scene, [obj])[1], np.array([0.0, 0.0, 1.0]))
     wanted = np.array([-1.6, 0.4, 2.6]) @ ground.axes  # as assets.blend has it
-    assert np.dot(staging.key_direction(scene), wanted) > 0.98 * np.linalg.norm(wanted)
+    stage.light_workbench(scene, collection)
+    right, up, back = scene.display.light_direction
+    assert np.dot([right, -back, up], wanted) > 0.98 * np.linalg.norm(wanted)
     assert surroundings.warning(bpy.context, [obj]) is None, "the stage is no neighbour to be warned of"
