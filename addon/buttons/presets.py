@@ -7,8 +7,10 @@ from bl_operators.presets import AddPresetBase
 from bl_ui.utils import PresetPanel
 from bpy.props import StringProperty
 
+from ...core.base import Message, MobiusFlowError
 from ..properties import FURTHER, SETTINGS, shown
 from ..translations import rpt_
+from .button import Button
 
 PANEL = "VIEW3D_PT_mobius_flow_presets"
 SUBDIRECTORY = "mobius_flow"
@@ -17,22 +19,19 @@ SHIPPED = ROOM / "presets" / SUBDIRECTORY
 _KEPT = ("options", *(name for name in SETTINGS if name not in FURTHER))
 
 
-class CURVE_OT_mobius_flow_preset(bpy.types.Operator):
+class CURVE_OT_mobius_flow_preset(Button, bpy.types.Operator):
     """Set the options of this preset; options that it does not name get their defaults"""
 
-    bl_idname = "curve.mobius_flow_preset"
     bl_label = "Use Preset"
     bl_options = {"REGISTER", "UNDO", "INTERNAL"}
 
     filepath: StringProperty(subtype="FILE_PATH", options={"SKIP_SAVE", "HIDDEN"})
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def act(self, context: bpy.types.Context) -> None:
         """Run the preset; only presets that say so change how a motion is kept."""
         path = Path(self.filepath)
         if not path.is_file():
-            sentence = "The preset {name} no longer exists; choose another one"
-            self.report({"ERROR"}, rpt_(sentence, name=path.name))
-            return {"CANCELLED"}
+            raise MobiusFlowError(Message("The preset {name} no longer exists; choose another one", name=path.name))
         settings = context.scene.mobius_flow
         before = {name: getattr(settings, name) for name in _KEPT}
         for name in ("options", *(option.name for option in shown() if option.row)):
@@ -43,10 +42,8 @@ class CURVE_OT_mobius_flow_preset(bpy.types.Operator):
             for name, value in before.items():
                 setattr(settings, name, value)
             sentence = "The preset {name} cannot be used here: {reason}"
-            self.report({"ERROR"}, rpt_(sentence, name=path.name, reason=error))
-            return {"CANCELLED"}
+            raise MobiusFlowError(Message(sentence, name=path.name, reason=error)) from error
         VIEW3D_PT_mobius_flow_presets.bl_label = bpy.path.display_name(path.name, title_case=False)
-        return {"FINISHED"}
 
 
 class CURVE_OT_mobius_flow_preset_add(AddPresetBase, bpy.types.Operator):

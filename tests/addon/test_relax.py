@@ -130,7 +130,7 @@ def test_a_curve_is_packed_into_its_container():
     lengths = [curve.length for curve in keys.curves]
     assert lengths[-1] > 1.2 * lengths[0]
     assert keys.unproved == 0
-    assert clears(keys.curves[-1], Surroundings.of([ball], []).obstacles, 0.0)
+    assert clears(keys.curves[-1], Surroundings([ball], []).obstacles, 0.0)
     low, high = box(ball)
     assert all((low < each.vertices).all() and (each.vertices < high).all() for each in keys.curves)
 

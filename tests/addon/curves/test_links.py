@@ -185,7 +185,7 @@ def test_a_curve_that_is_avoided_stays_linked(capfd, matrix):
     shapes = world_keys([moving])
     assert np.abs(shapes[-1] - shapes[0]).max() > 0.5
     assert {linking_number(there, shape) for shape in shapes} == {linking_number(circle, stretched)}
-    assert free(moving, Surroundings.of([still], []).obstacles)
+    assert free(moving, Surroundings([still], []).obstacles)
 
 
 def test_scripts_give_objects_and_operators_the_name_of_a_collection(capfd):

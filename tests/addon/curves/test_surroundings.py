@@ -12,7 +12,7 @@ from shapes import regular_polygon
 
 def obstacles(*objects, relaxed=()):
     bpy.context.view_layer.update()
-    return Surroundings.of(objects, relaxed).obstacles
+    return Surroundings(objects, relaxed).obstacles
 
 
 def added(kind, name, **values):
