@@ -5,7 +5,6 @@ may still say ``scene.mobius_flow.method = "flow-moebius"``.
 """
 
 import math
-import numbers
 import zlib
 from collections.abc import Callable, Mapping
 from contextlib import suppress
@@ -17,6 +16,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, St
 
 from ..core import OptionError, RelaxOptions
 from ..core.base import Message, Option, choice, declared, likeliest
+from ..core.base.arguments import WORDS, is_plain
 from ..core.keys.key_options import FRAMES_PER_ITERATE, LAST_FRAME, KeyOptions, Output, Pace, Timing
 from ..core.keys.placement import Measure
 
@@ -137,15 +137,8 @@ def settings(options: set[str], retime: Callable[[Any, Any], None] | None = None
     }
 
 
-_KINDS: dict[Any, tuple[type, str]] = {
-    BoolProperty: (bool, "True or False"),
-    IntProperty: (numbers.Integral, "a whole number"),
-    FloatProperty: (numbers.Real, "a number"),
-    EnumProperty: (str, "a name"),
-    StringProperty: (str, "a name"),
-}
-_DECLARED = {name: (each.function, each.keywords) for name, each in settings(set()).items()}
-DEFAULTS = {name: keywords["default"] for name, (_, keywords) in _DECLARED.items()}
+_DECLARED = {name: each.keywords for name, each in settings(set()).items()}
+DEFAULTS = {name: keywords["default"] for name, keywords in _DECLARED.items()}
 SETTINGS = tuple(_DECLARED)
 FURTHER = (
     *(option.name for option in shown() if not option.row),
@@ -158,16 +151,14 @@ def check(name: str, value: Any) -> None:
     """Raise an OptionError if there is no such setting, or it cannot have that value."""
     if name not in _DECLARED:
         raise OptionError(f"there is no setting {name!r}; {likeliest(name, _DECLARED)}see curve.mobius_flow_relax")
-    function, keywords = _DECLARED[name]
-    kind, words = _KINDS[function]
-    if not isinstance(value, kind):
-        raise OptionError(f"{name} is {value!r}; it must be {words}")
+    kind = type(DEFAULTS[name])
+    if not is_plain(value, kind):
+        raise OptionError(f"{name} is {value!r}; it must be {'a name' if kind is str else WORDS[kind]}")
     if name in ("max_keys", "view_every") and value < 0:
         raise OptionError(f"{name} is {value}; it must be 0 or more")
-    if function is EnumProperty:
-        names = [item[0] for item in keywords["items"] if item[0]]
-        if value not in names:
-            raise OptionError(f"{name} is {value!r}; {choice(str(value), names)}")
+    names = [item[0] for item in _DECLARED[name].get("items", ())]
+    if names and value not in names:
+        raise OptionError(f"{name} is {value!r}; {choice(value, names)}")
 
 
 def further(text: str) -> dict[str, Any]:
