@@ -17,32 +17,27 @@ from .pictures import icons, staging
 from .pictures.icons import GROUPS, group, labels
 from .pictures.looks import LOOKS
 from .pictures.movie import CHOICES
-from .properties import FURTHER, QUALITIES, Further, settings, timing
+from .properties import FURTHER, QUALITIES, Further, Quality, settings, timing
 
 # since 5.0 Blender marks relative paths as wrong unless a property declares that it supports them
 _RELATIVE = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (5, 0) else set()
-_LEVELS = [*QUALITIES, "CUSTOM"]
-_LEVEL_ITEMS = [
-    *((name, each.label, each.description, "NONE", k) for k, (name, each) in enumerate(QUALITIES.items())),
-    ("CUSTOM", "Custom", "Options as they are set in Expert", "NONE", len(QUALITIES)),
-]
+_LEVELS = {**QUALITIES, "CUSTOM": Quality("Custom", "Options as they are set in Expert", {})}  # which all options match
 _knot_items: dict[str, list[tuple[str, str, str, int, int]]] = {}  # Blender needs the strings to stay alive
 
 
 def _quality(panel: Any) -> int:
     """The level follows from the options: whatever sets them, it is never out of date."""
     options = panel.id_data.mobius_flow
-    with suppress(OptionError):  # what is written among the further options is wrong
-        for number, each in enumerate(QUALITIES.values()):
+    with suppress(OptionError):  # what is written among the further options is wrong: the panel says what
+        for number, each in enumerate(_LEVELS.values()):
             if all(getattr(options, name) == value for name, value in each.values.items()):
                 return number
-    return _LEVELS.index("CUSTOM")
+    return len(_LEVELS) - 1
 
 
 def _set_quality(panel: Any, number: int) -> None:
-    quality = QUALITIES.get(_LEVELS[number])
-    with suppress(OptionError):  # what is written among the further options is wrong: the panel says what
-        for name, value in quality.values.items() if quality is not None else ():
+    with suppress(OptionError):
+        for name, value in list(_LEVELS.values())[number].values.items():
             setattr(panel.id_data.mobius_flow, name, value)
 
 
@@ -88,7 +83,7 @@ class MobiusFlowPanelSettings(bpy.types.PropertyGroup):
     quality: EnumProperty(
         name="Quality",
         description="How near to the least energy the shape comes; sets some of the options in Expert",
-        items=_LEVEL_ITEMS,
+        items=[(name, each.label, each.description, "NONE", k) for k, (name, each) in enumerate(_LEVELS.items())],
         get=_quality,
         set=_set_quality,
     )
