@@ -8,17 +8,18 @@ import bpy
 import numpy as np
 from bpy.props import BoolProperty, BoolVectorProperty, CollectionProperty, FloatProperty, IntProperty
 from bpy_extras.object_utils import object_data_add
-from bpy_extras.view3d_utils import location_3d_to_region_2d, region_2d_to_location_3d
-from mathutils import Vector
+from bpy_extras.view3d_utils import region_2d_to_location_3d
 
 from ...core import Curve, MobiusFlowError
 from ...core.base import FloatArray, Message
 from ...core.curve import Mesh, arc_lengths, smoothed
+from ...core.keys.placement import Placement
 from ...core.keys.planes import DrawingPlane
 from ...core.knots import Drawing, knot_type
 from ...core.knots.inscribed import averaged
 from ..curves.strands import Strands, read_link
 from ..live import overlay
+from ..live.drag import projected
 from ..live.requirements import Condition
 from ..live.selection import selected_curves
 from ..translations import iface_, rpt_
@@ -229,11 +230,9 @@ def _crossing(context: bpy.types.Context, mouse: FloatArray) -> tuple[Drawing, D
     plane = DrawingPlane(values[:3], values[3:].reshape(3, 3))
     drawing = Drawing.seen(curve.with_vertices((curve.vertices - plane.origin) @ plane.axes.T))
     places = plane.raised(np.column_stack([drawing.crossings, np.zeros(len(drawing.crossings))]))
-    for number, place in enumerate(places, 1):
-        there = location_3d_to_region_2d(context.region, context.region_data, obj.matrix_world @ Vector(place))
-        if there and np.linalg.norm(mouse - np.array(there)) < 15.0 * context.preferences.system.ui_scale:
-            return drawing, plane, number
-    return None
+    there, _, in_front = projected(context.region, Placement.from_matrix(obj.matrix_world).to_world(places))
+    near = in_front & (np.linalg.norm(mouse - there, axis=1) < 15.0 * context.preferences.system.ui_scale)
+    return (drawing, plane, int(near.argmax()) + 1) if near.any() else None
 
 
 def _length(stroke: Sequence[FloatArray]) -> float:

@@ -1,23 +1,23 @@
 """What is drawn over the 3D views: the energy of the run that the panel shows, places of trouble, and pinned points."""
 
 import logging
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import blf
 import bpy
 import gpu
-import mathutils
 import numpy as np
-from bpy_extras.view3d_utils import location_3d_to_region_2d
 from gpu_extras.batch import batch_for_shader
 
 from ...core.base import FloatArray
 from ...core.keys.colours import Colour, legible
+from ...core.keys.placement import Placement
 from ..curves import pins
 from ..engine.rest import plot
 from ..translations import iface_
 from . import registry
+from .drag import projected
 from .run import LiveRun
 from .selection import curves_at_hand
 
@@ -51,12 +51,11 @@ def _draw() -> None:
             curve = run.session.in_view if run.drag is not None else None
             if run.drag is not None and curve is not None:
                 # mark the strand that is held, and draw a line from there to the place it is pulled to
-                places = run.drag.held(curve), run.drag.target
-                held, target = (_in_region(context, place.tolist()) for place in places)
+                ends, _, in_front = projected(context.region, np.stack([run.drag.held(curve), run.drag.target]))
                 scale = context.preferences.system.ui_scale
-                if held is not None and target is not None:
-                    line(held + scale * _ring(7.0), GOLD, scale * _LINE)
-                    line(np.stack([held, target]), GOLD, scale * _LINE)
+                if in_front.all():
+                    line(ends[0] + scale * _ring(7.0), GOLD, scale * _LINE)
+                    line(ends, GOLD, scale * _LINE)
             if context.scene.mobius_flow_panel.show_plot and run.energies:
                 _plot(context, run)
     except Exception:  # whatever happens to windows, files and graphics cards must not interrupt anybody
@@ -120,10 +119,8 @@ def _plot(context: bpy.types.Context, run: LiveRun) -> None:
 
 def _marks(context: bpy.types.Context, run: LiveRun) -> None:
     scale = context.preferences.system.ui_scale
-    ring = scale * _ring(14.0)
-    marks = [(obj, mark) for obj, spot in run.spots.items() for mark in spot.marks]
-    for there in _seen(context, marks):
-        line(there + ring, (0.95, 0.25, 0.2), scale * _LINE)
+    for there in _seen(context, [(obj, spot.marks) for obj, spot in run.spots.items()]):
+        line(there + scale * _ring(14.0), (0.95, 0.25, 0.2), scale * _LINE)
 
 
 def _ring(radius: float) -> FloatArray:
@@ -134,22 +131,16 @@ def _ring(radius: float) -> FloatArray:
 def _pins(context: bpy.types.Context) -> None:
     """Mark the pinned points of the curves at hand, all in one batch: there may be thousands."""
     scale = context.preferences.system.ui_scale
-    pinned = [(obj, place) for obj in curves_at_hand(context) for place in pins.places(obj.data)]
+    there = _seen(context, [(obj, pins.places(obj.data)) for obj in curves_at_hand(context)])
     corners = scale * np.stack([_DIAMOND, np.roll(_DIAMOND, -1, axis=0)], axis=1).reshape(-1, 2)
-    diamonds = [there + corners for there in _seen(context, pinned)]
-    line(np.reshape(diamonds, (-1, 2)), GOLD, scale * _LINE, kind="LINES")
+    line((there[:, None] + corners).reshape(-1, 2), GOLD, scale * _LINE, kind="LINES")
 
 
-def _seen(context: bpy.types.Context, places: Iterable[tuple[bpy.types.Object, FloatArray]]) -> Iterator[FloatArray]:
-    """Yield the positions of objects' places in the current view, if they are in it; shape (2,)."""
-    for obj, place in places:
-        if (there := _in_region(context, obj.matrix_world @ mathutils.Vector(place))) is not None:
-            yield there
-
-
-def _in_region(context: bpy.types.Context, place: Sequence[float]) -> FloatArray | None:
-    there = location_3d_to_region_2d(context.region, context.region_data, place)
-    return None if there is None else np.array(there)
+def _seen(context: bpy.types.Context, places: Sequence[tuple[bpy.types.Object, FloatArray]]) -> FloatArray:
+    """The positions of objects' places, (k, 3) each, in the current view, of those that are in front; (n, 2)."""
+    world = [Placement.from_matrix(obj.matrix_world).to_world(each.astype(np.float64)) for obj, each in places]
+    there, _, in_front = projected(context.region, np.concatenate([np.empty((0, 3)), *world]))
+    return there[in_front]
 
 
 def area(low: tuple[float, float], high: tuple[float, float], colour: Colour) -> None:

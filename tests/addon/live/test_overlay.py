@@ -90,14 +90,20 @@ def test_marks_are_where_the_trouble_is(operator, drawn, monkeypatch):
     operator.start()
     operator.until(lambda: False)
     places = []
-    monkeypatch.setattr(overlay, "location_3d_to_region_2d", lambda *where: places.append(where[2]) or (100.0, 50.0))
+    front = np.ones(1, dtype=bool)
+
+    def projected(_region, points):
+        places.extend(points)
+        return np.array([[100.0, 50.0]]), None, front
+
+    monkeypatch.setattr(overlay, "projected", projected)
     obj.location = (7, 0, 0)
     bpy.context.view_layer.update()
     overlay._marks(view(), operator.run)
     np.testing.assert_allclose(np.array(places), [[8, 1, 0]], atol=0.01)
     np.testing.assert_allclose(corners(drawn).mean(axis=0), [100, 50], atol=1)
     drawn.clear()
-    monkeypatch.setattr(overlay, "location_3d_to_region_2d", lambda *_: None)  # behind the viewer
+    front[:] = False
     overlay._marks(view(), operator.run)
     assert drawn == []
 
@@ -119,7 +125,7 @@ def test_pinned_points_are_marked(drawn, monkeypatch):
     obj.location.x = 2
     bpy.context.view_layer.update()
     pins.pin(obj.data.splines[0], np.arange(12) < 2)
-    monkeypatch.setattr(overlay, "location_3d_to_region_2d", lambda _region, _data, place: place[:2])
+    monkeypatch.setattr(overlay, "projected", lambda _, points: (points[:, :2], None, points[:, 0] < np.inf))
     here = view()
     here.mode, here.selected_objects = "OBJECT", [obj]
     overlay._pins(here)
