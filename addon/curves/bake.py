@@ -44,7 +44,12 @@ def remember(
     record = data[_RECORD]
     record["frames"], record["course"] = frames.tolist(), np.concatenate(course).tolist()
     record["sizes"] = [float(value) for size in shown for value in (size.factor, *size.shift)]
-    update(data, timing)
+    record["fingerprint"], record["shapes"] = _fingerprint(data), _digest(data)
+    for name in ("forces", "struts"):  # are about points that were there before
+        record.pop(name, None)
+    # the rest before the first key of all is the one that was baked; a loop begins again at the first frame
+    after = timing.hold_start - 1 if timing.loop else timing.hold_end
+    record["bevel_depth"], record["holds"] = data.bevel_depth, [record["holds"][0], after]
 
 
 def key_count(data: bpy.types.Curve) -> int:
@@ -97,17 +102,6 @@ def retime(data: bpy.types.Curve, timing: Timing) -> bool:
 
 def original(data: bpy.types.Curve) -> bpy.types.Curve:
     return data[_RECORD]["original"]
-
-
-def update(data: bpy.types.Curve, timing: Timing | None = None) -> None:
-    """Record how the keys are after a change made here or, with a timing, after more keys were written."""
-    record = data[_RECORD]
-    record["fingerprint"], record["shapes"] = _fingerprint(data), _digest(data)
-    for name in ("forces", "struts"):  # are about points that were there before
-        record.pop(name, None)
-    if timing is not None:  # the rest before the first key of all is the one that was baked
-        after = timing.hold_start - 1 if timing.loop else timing.hold_end  # a loop begins again at the first frame
-        record["bevel_depth"], record["holds"] = data.bevel_depth, [record["holds"][0], after]
 
 
 def rope(data: bpy.types.Curve) -> float:

@@ -40,7 +40,9 @@ class Recorded:
         data = obj.data
         if not bake.is_baked(data):
             mesh, points = (each := Strands.of(obj)).mesh, np.concatenate(each.components)[None]
-            return cls(mesh, np.zeros(1), points, _radii(data, mesh)[None], points)
+            pieces = zip(data.splines, mesh.component_sizes, strict=True)
+            thickness = np.concatenate([along(radii(each), size, each.use_cyclic_u) for each, size in pieces])
+            return cls(mesh, np.zeros(1), points, thickness[None], points)
         mesh = mesh_of(data)
         (curve,) = fcurves_of(data.shape_keys)
         # frames between which it runs straight: those of its keys, or all where somebody has bent it
@@ -74,12 +76,6 @@ def in_world(objects: Sequence[bpy.types.Object], recorded: Sequence[Recorded], 
         said = in_blenders_words(str(error), spline_names([obj.name for obj in objects], counts))
         raise CurveError(said) from error
     return link
-
-
-def _radii(data: bpy.types.Curve, mesh: Mesh) -> FloatArray:
-    """Radii at the points drawn for all splines."""
-    pieces = zip(data.splines, mesh.component_sizes, strict=True)
-    return np.concatenate([along(radii(spline), size, spline.use_cyclic_u) for spline, size in pieces])
 
 
 def world_motion(
