@@ -43,7 +43,6 @@ from mobius_flow.core.collision import is_rope
 from mobius_flow.core.keys.key_options import Playing
 from mobius_flow.core.keys.motion import recorded
 from mobius_flow.core.keys.placement import Measure
-from mobius_flow.core.keys.tube import rope_radii
 from mobius_flow.core.knots import knot, overhand
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from PIL import Image
@@ -211,7 +210,7 @@ def untangle() -> None:
     frames = playing.timing.frames(motion.course(keys))
     scene = empty_scene()
     use_workbench(scene, 480, 360)
-    compose(scene, keys, frames, mesh, playing, radii=rope_radii(mesh, keys))
+    compose(scene, keys, frames, mesh, playing)
     first, last = playing.timing.scene_range(frames)
     with tempfile.TemporaryDirectory() as room:
         paths = [Path(room, f"{frame}.png") for frame in range(first, last + 1, 2)]

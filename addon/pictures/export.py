@@ -100,18 +100,11 @@ def _played(
     timing = playing.timing
     keys = motion.keys(is_rope, timing.length, timing)
     frames = timing.frames(motion.course(keys))
-    mesh, keys, radii = _drawn(motion.start.mesh, keys, in_place)
     scene = rendering.empty_scene()
     set_up(scene)
-    compose(scene, keys, frames, mesh, playing, origin if in_place else None, radii=radii)
+    certified = compose(scene, keys, frames, motion.start.mesh, playing, origin if in_place else None)
     scene.frame_start, scene.frame_end = timing.scene_range(frames)
-    return scene, keys.certified
-
-
-def _drawn(mesh: Mesh, keys: Keys, cornered: bool = False) -> tuple[Mesh, Keys, FloatArray | None]:
-    """Keys and radii of a tube that is the rope; where there is none it is any, around corners that are rounded."""
-    radii = rope_radii(mesh, keys)
-    return (*(rounded(mesh, keys, is_rope) if radii is None and not cornered else (mesh, keys)), radii)
+    return scene, certified
 
 
 def compose(
@@ -122,12 +115,12 @@ def compose(
     playing: Playing,
     origin: Origin | None = None,
     cut_out: bool = False,
-    radii: FloatArray | None = None,
-) -> None:
+) -> bool:
     """Put a keyed curve on a look's stage, by default near the scene's origin, and fit the scene's frames to it.
 
-    ``radii``: of its tube, (keys, n), by default where there is room; ``cut_out``: it is seen down the third axis, and
-    nothing of the floor is in the picture but shadows.
+    Its tube is the rope, or else as thick as there is room, and its corners are rounded unless there is an origin.
+    ``cut_out``: it is seen down the third axis, and nothing of the floor is in the picture but shadows.  Returns
+    whether all that is shown is proved.
     """
     import bpy
 
@@ -137,6 +130,9 @@ def compose(
     from . import stage
     from .materials import colour_components
 
+    radii = rope_radii(mesh, keys)
+    if radii is None and origin is None:
+        mesh, keys = rounded(mesh, keys, is_rope)
     points, look = [key.points for key in keys.keys], playing.look or DEFAULT
     if radii is None:
         radii = tube_radii(mesh, [each.astype(np.float64) for each in points], frames)
@@ -186,6 +182,7 @@ def compose(
                 each.data.dof.aperture_fstop /= origin.scale
     scene.frame_start, scene.frame_end = round(frames[0]), int(np.ceil(frames[-1]))
     scene.frame_set(scene.frame_start)
+    return keys.certified
 
 
 def write_still(path: Target, iterates: Sequence[Iterate], look: str | None = None) -> bool:
@@ -227,12 +224,11 @@ def _render(
     require_blender()
     from . import rendering
 
-    mesh, keys, radii = _drawn(mesh, keys)
     scene = rendering.empty_scene()
     rendering.use_cycles(scene, LOOKS[look or DEFAULT], *size, samples)
-    compose(scene, keys, np.ones(1), mesh, Playing(look), cut_out=cut_out, radii=radii)
+    certified = compose(scene, keys, np.ones(1), mesh, Playing(look), cut_out=cut_out)
     _make(path, lambda temporary: rendering.render_still(scene, temporary))
-    return keys.certified
+    return certified
 
 
 def _make(path: Target, write: Callable[[Path], None]) -> None:
