@@ -21,7 +21,7 @@ from ..core.descent.line_searches import NOTHING, Armijo, FirstTrial, NormalStep
 from ..core.descent.step import Rejected, judged
 from ..core.energies import Objective
 from ..core.solve.constraints import ConstraintDerivative, Constraints
-from ..core.solve.metrics import METRICS, InnerProduct, Metric, MoebiusMetric
+from ..core.solve.metrics import METRICS, DenseInnerProduct, InnerProduct, Metric, MoebiusMetric
 from ..core.solve.saddle import TangentSpace
 
 
@@ -179,7 +179,8 @@ class BackwardEuler:
         own, flow = point.inner_product, point.tangent_space
         preconditioner, share, limited_by = self.preconditioner.at(point.curve), 1.0, None
         for _ in range(self.armijo.max_trials):
-            space = preconditioner.plus(own, 1.0 / tau).tangent_space(flow.constraints)
+            both = DenseInnerProduct(preconditioner.dense() + 1.0 / tau * own.dense())
+            space = both.tangent_space(flow.constraints)
             normal = NormalStep.at(point, space)
             base = point.vertices + share * normal.longest * normal.full
             level = (1.0 - share * normal.longest) * point.residual

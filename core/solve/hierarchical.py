@@ -24,7 +24,7 @@ from ..energies import Rule
 from ..energies.hierarchy import BlockList
 from ..energies.quadrature import MIDPOINT
 from .constraints import ConstraintDerivative
-from .metrics import DenseInnerProduct, FractionalMetric, InnerProduct, Metric, MoebiusMetric, SparseInnerProduct
+from .metrics import FractionalMetric, InnerProduct, Metric, MoebiusMetric, SparseInnerProduct
 from .metrics.local import lumped_mass, mass, stiffness
 from .metrics.moebius import pair_kernels
 from .saddle import TangentSpace
@@ -162,13 +162,10 @@ class CompressedInnerProduct:
             product += running.apply_transpose(form @ running.apply(u))
         return np.asarray(product + self.vectors @ (self.vectors.T @ u))
 
-    def plus(self, other: InnerProduct, weight: float = 1.0) -> InnerProduct:
-        """The sum: compressed with a sparse one, otherwise dense."""
-        if isinstance(other, SparseInnerProduct):
-            indicators = _indicators(self.curve)
-            coupling = indicators.T @ other.matrix @ indicators
-            return replace(self, local=self.local + weight * other.matrix, coupling=self.coupling + weight * coupling)
-        return DenseInnerProduct(self.dense() + weight * other.dense())
+    def plus(self, other: SparseInnerProduct) -> InnerProduct:
+        indicators = _indicators(self.curve)
+        coupling = indicators.T @ other.matrix @ indicators
+        return replace(self, local=self.local + other.matrix, coupling=self.coupling + coupling)
 
     def dense(self) -> FloatArray:
         matrix = self.apply(np.eye(len(self.curve)))

@@ -3,7 +3,6 @@
 On R^m-valued functions they act coordinate by coordinate, J = A ⊗ Id_m.
 """
 
-from functools import cached_property
 from typing import ClassVar, Protocol, runtime_checkable
 
 import numpy as np
@@ -11,7 +10,7 @@ import scipy.sparse as sp
 from scipy.linalg import lapack
 
 from ...base import FloatArray, IntArray, checked
-from ...curve import NOWHERE, Curve
+from ...curve import Curve
 from ...energies import Rule
 from ..constraints import ConstraintDerivative
 from ..saddle import TangentSpace
@@ -25,8 +24,8 @@ class InnerProduct(Protocol):
     def apply(self, u: FloatArray) -> FloatArray:
         """A u; shape (n, k)."""
 
-    def plus(self, other: "InnerProduct", weight: float = 1.0) -> "InnerProduct":
-        """⟨u, v⟩ + weight ⟨u, v⟩_other."""
+    def plus(self, other: "SparseInnerProduct") -> "InnerProduct":
+        """⟨u, v⟩ + ⟨u, v⟩_other."""
 
     def dense(self) -> FloatArray:
         """A, shape (n, n), for tests and for other dense matrices."""
@@ -36,41 +35,35 @@ class InnerProduct(Protocol):
 
 
 class DenseInnerProduct:
-    """A as an array (n, n), of which only the lower triangle counts; functions solved for vanish at the pins."""
+    """A as an array (n, n), of which only the lower triangle counts."""
 
     most_rows: ClassVar[int] = 12_000  # some six such matrices make 7 GB
 
     @checked
-    def __init__(self, matrix: FloatArray, pins: IntArray = NOWHERE) -> None:
-        self._matrix, self._pins = np.asfortranarray(matrix), pins
-        self._pinned: DenseInnerProduct | None = None
+    def __init__(self, matrix: FloatArray) -> None:
+        self._matrix = np.asfortranarray(matrix)
+        self._inverse: tuple[IntArray, FloatArray] | None = None  # kept, as a metric outlives tangent spaces
 
     def apply(self, u: FloatArray) -> FloatArray:
         return symmetric_product(self._matrix, u)
 
-    def plus(self, other: InnerProduct, weight: float = 1.0) -> InnerProduct:
-        if not isinstance(other, SparseInnerProduct):
-            return DenseInnerProduct(self._matrix + weight * other.dense())
+    def plus(self, other: "SparseInnerProduct") -> InnerProduct:
         matrix, more = self._matrix.copy(order="F"), other.matrix.tocoo()
-        np.add.at(matrix, more.coords, weight * more.data)
+        np.add.at(matrix, more.coords, more.data)
         return DenseInnerProduct(matrix)
 
     def dense(self) -> FloatArray:
         return _filled(self._matrix.copy(order="F"))
 
     def tangent_space(self, constraints: ConstraintDerivative, weights: FloatArray | None = None) -> TangentSpace:
-        # on functions that vanish at pins; kept, with its inverse, as a metric outlives tangent spaces
-        pins, own = constraints.pins, self
-        if not np.array_equal(pins, self._pins):
-            if self._pinned is None or not np.array_equal(pins, self._pinned._pins):
-                self._pinned = DenseInnerProduct(self._matrix, pins)
-            own = self._pinned
-        return DenseTangentSpace(own._matrix, own.inverse, constraints, weights)
+        pins = constraints.pins
+        if self._inverse is None or not np.array_equal(pins, self._inverse[0]):
+            self._inverse = pins, self._inverted(pins)
+        return DenseTangentSpace(self._matrix, self._inverse[1], constraints, weights)
 
-    @cached_property
-    def inverse(self) -> FloatArray:
-        """A⁻¹, in full; with pins that of their complement's block, continued by 0."""
-        matrix, pins = self._matrix.copy(order="F"), self._pins
+    def _inverted(self, pins: IntArray) -> FloatArray:
+        """A⁻¹ of functions that vanish at pins, in full, continued by 0."""
+        matrix = self._matrix.copy(order="F")
         matrix[pins], matrix[:, pins] = 0.0, 0.0
         matrix[pins, pins] = 1.0
         inverse, info = lapack.dpotri(cholesky(matrix), lower=1, overwrite_c=1)
@@ -93,10 +86,8 @@ class SparseInnerProduct:
     def apply(self, u: FloatArray) -> FloatArray:
         return np.asarray(self.matrix @ u)
 
-    def plus(self, other: InnerProduct, weight: float = 1.0) -> InnerProduct:
-        if isinstance(other, SparseInnerProduct):
-            return SparseInnerProduct(self.matrix + weight * other.matrix)
-        return DenseInnerProduct(self.dense() + weight * other.dense())
+    def plus(self, other: "SparseInnerProduct") -> InnerProduct:
+        return SparseInnerProduct(self.matrix + other.matrix)
 
     def dense(self) -> FloatArray:
         return np.asarray(self.matrix.toarray())
