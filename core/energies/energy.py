@@ -48,14 +48,6 @@ class Stiff(Term, Protocol):
         """A quadratic form on functions along the curve, of about the size of the second derivative; shape (n, n)."""
 
 
-@runtime_checkable
-class Confining(Term, Protocol):
-    """A term that comes from the curve's surroundings."""
-
-    def clearance(self, curve: Curve) -> FloatArray:
-        """The distance from each edge of a wall that would act on it as strongly; shape (edges,)."""
-
-
 def scale_exponent(term: object) -> float | None:
     """s of E(λ P) = λˢ E(P), 0 for terms that do not depend on size; None for a term that does not say."""
     exponent = getattr(term, "scale_exponent", None)

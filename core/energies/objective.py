@@ -10,7 +10,7 @@ import scipy.sparse as sp
 from ..base import FloatArray, OptionError, checked_fields
 from ..curve import Curve, Obstacle
 from .barrier import Barrier, replaced_pairs
-from .energy import Approximate, Confining, Energy, LocalTerm, Stiff, Term, scale_exponent
+from .energy import Approximate, Energy, LocalTerm, Stiff, Term, scale_exponent
 from .moebius import MoebiusEnergy
 from .pull import Pull
 from .repulsion import Repulsion
@@ -30,15 +30,13 @@ class Objective:
     """A sum of terms: a C² function of the vertices, infinite where edges touch each other or an obstacle.
 
     A term has a name, a value and a derivative (`Term`). Other features of the objective depend on the abilities of its
-    terms: a second derivative (`LocalTerm`), stiffness for the metric (`Stiff`), a clearance (`Confining`), an
-    attribute ``scale_exponent`` or ``moebius_invariant``.
+    terms: a second derivative (`LocalTerm`), stiffness for the metric (`Stiff`), an attribute ``scale_exponent`` or
+    ``moebius_invariant``.
     """
 
     energy: Energy = field(default_factory=MoebiusEnergy)  #: of the curve alone
     barrier: Barrier | None = field(default_factory=Barrier)  #: infinite where edges touch; None for none
     further: tuple[Weighted, ...] = ()  #: all other terms with their weights, such as the repulsion of obstacles
-
-    name = "objective"
 
     @classmethod
     def of(
@@ -130,7 +128,7 @@ class Objective:
     def clearance(self, curve: Curve) -> FloatArray:
         """The distance from each edge of a wall that would act as the nearest obstacle does; shape (edges,)."""
         nowhere = np.full(curve.mesh.edges, np.inf)
-        walls = (term.clearance(curve) for term in self.terms if isinstance(term, Confining))
+        walls = (term.clearance(curve) for term in self.terms if isinstance(term, Repulsion))
         return np.asarray(np.min([nowhere, *walls], axis=0))
 
     def _summands(self, curve: Curve) -> tuple[Weighted, ...]:

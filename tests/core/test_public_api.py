@@ -64,7 +64,7 @@ FINE: dict[str, tuple[Callable[..., object], dict[str, object]]] = {
     "Rule.gauss": (energies.Rule.gauss, {"points": 2}),
     "moebius_kpoint": (moebius_kpoint, {"points": 2}),
     "MoebiusMetric": (metrics.MoebiusMetric, {"rule": RULE}),
-    "DenseInnerProduct": (metrics.DenseInnerProduct, {"matrix": np.eye(3), "pins": np.array([0])}),
+    "DenseInnerProduct": (metrics.DenseInnerProduct, {"matrix": np.eye(3)}),
     "SparseInnerProduct": (metrics.SparseInnerProduct, {"matrix": sp.csr_array(np.eye(3))}),
     "Task": (core.Task, {"curve": TREFOIL, "obstacles": (WALL,), "pins": (0, 5), "pin_tangents": True}),
     "RelaxOptions": (RelaxOptions, vars(SHORT)),
