@@ -35,7 +35,7 @@ class Solver:
     def objective(self, obstacles: Iterable[Obstacle] = ()) -> Objective:
         """The objective to minimise among obstacles, which are in the units of curves."""
         energy = self._energy
-        if self.hierarchical and isinstance(energy, MoebiusEnergy):
+        if self.hierarchical and type(energy) is MoebiusEnergy:
             energy = HierarchicalMoebiusEnergy(without=energy.without)
         terms = []
         for given, weight in self.options.terms:
