@@ -18,7 +18,7 @@ from mobius_flow.core.proof import checker
 from mobius_flow.core.proof.filter import doubtful_pairs
 from motions import gaussian, placed
 
-COUNT = int(os.environ.get("MOBIUS_FLOW_MOTIONS", "30"))
+COUNT = int(os.environ.get("MOBIUS_FLOW_MOTIONS", "20"))
 QUADRILATERAL = Mesh((4,))
 
 

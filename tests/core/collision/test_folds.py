@@ -34,7 +34,7 @@ def test_random_motions_of_arcs(tmp_path, size, dimension):
     """On a small lattice, where edges fold and shrink exactly, and in general position."""
     mesh, rng = Mesh((size,), (False,)), np.random.default_rng(100 * size + dimension)
     found = {True: 0, False: 0}
-    for k in range(36):
+    for k in range(30):
         start, end = rng.integers(-1, 2, (2, size, dimension)) * 1.0
         if k % 3 == 0:
             start = np.cumsum(rng.normal(size=(size, dimension)), axis=0)

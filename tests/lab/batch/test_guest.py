@@ -28,11 +28,21 @@ OTHERWISE = ["--vertices", "24", "--max-iterations", "0"]  # by which results ar
 
 
 @pytest.fixture(scope="module")
-def results(tmp_path_factory):
+def relax_into(scheduler):
+    """Run a batch on a file, into a directory; its exit status."""
+
+    def run(source, out, *words):
+        return main(["batch", str(source), "-o", str(out), "--scheduler", scheduler, *words])
+
+    return run
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory, relax_into):
     """A directory of results, and the input beside it."""
     place = tmp_path_factory.mktemp("results")
     write_curve(place / "ring.txt", regular_polygon(12))
-    assert main(["batch", str(place / "ring.txt"), "-o", str(place / "out"), "--quiet", *QUICK]) == 0
+    assert relax_into(place / "ring.txt", place / "out", "--quiet", *QUICK) == 0
     return place
 
 
@@ -115,12 +125,12 @@ def test_what_is_not_its_own_is_refused_before_any_work(path, spoil, place, refu
     assert everything(place) == before
 
 
-def test_results_are_replaced_and_other_files_are_left_alone(place):
+def test_results_are_replaced_and_other_files_are_left_alone(place, relax_into):
     (place / "out/notes").mkdir()
     for name in ("notes/thesis.tex", "notes.md", ".mobius-flow-mine.partial"):
         (place / "out" / name).write_text("mine")
     mine = {name: each for name, each in everything(place).items() if "/ring" not in name and "results." not in name}
-    assert main(["batch", str(place / "ring.txt"), "-o", str(place / "out"), "--quiet", *OTHERWISE]) == 0
+    assert relax_into(place / "ring.txt", place / "out", "--quiet", *OTHERWISE) == 0
     assert json.loads((place / "out/ring/report.json").read_text())["options"]["vertices"] == 24
     assert mine.items() <= everything(place).items()
     assert len(everything(place)) == len(mine) + 7  # ring.txt, ring, its three files, and the tables
@@ -136,25 +146,25 @@ def test_what_arrives_during_the_work_survives(place):
     assert sorted(os.listdir(place / "out")) == ["results.csv", "results.parquet", "ring"]
 
 
-def test_a_table_that_is_edited_during_the_work_survives(place, monkeypatch, capsys):
+def test_a_table_that_is_edited_during_the_work_survives(place, relax_into, monkeypatch, capsys):
     table = place / "out/results.csv"
     monkeypatch.setattr(campaign, "live", lambda *_: nullcontext(lambda _: table.write_text("mine")))
-    words = ["batch", str(place / "ring.txt"), "-o", str(place / "out"), *OTHERWISE]
-    assert main(words) == 2
+    words = [place / "ring.txt", place / "out", *OTHERWISE]
+    assert relax_into(*words) == 2
     assert f"{table}: was not written by" in capsys.readouterr().err
     assert table.read_text() == "mine"
     table.unlink()
     monkeypatch.setattr(campaign, "live", lambda *_: nullcontext(lambda _: pytest.fail("done twice")))
-    assert main(words) == 0
+    assert relax_into(*words) == 0
     assert "ring,1," in table.read_text()
 
 
-def test_no_cell_is_a_formula(results, tmp_path, rows_of):
+def test_no_cell_is_a_formula(results, relax_into, tmp_path, rows_of):
     names = ["=1+1", "-2", "+3", "@SUM(A1)", "\t=1", "＝1"]
     for name in names:
         shutil.copy(results / "ring.txt", tmp_path / f"{name}.txt")
         (tmp_path / f"{name}2.txt").write_text("=1+1\n")  # is refused
-    assert main(["batch", str(tmp_path), "-o", str(tmp_path / "out"), "--quiet", *QUICK]) == 0
+    assert relax_into(tmp_path, tmp_path / "out", "--quiet", *QUICK) == 0
     rows = rows_of(tmp_path / "out")
     texts = [text for row in rows for text in row.values() if text and not re.fullmatch(r"-?[0-9.e+-]+", text)]
     assert not [text for text in texts if text[0] in "=+-@\t\r\n＝"]
