@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from commands import PROGRAM, SHORT
-from curve_formats import OF_VERTICES
 from families import crossed, family
 from mobius_flow.core.proof import verify
 from shapes import torus_trefoil
@@ -41,19 +40,6 @@ def give(monkeypatch):
 def trajectory(run):
     assert run("relax", "trefoil.txt", "o.txt", "--trajectory", "t.npz", "--quiet", *SHORT)[0] == 0
     return Path("t.npz")
-
-
-@pytest.mark.parametrize("name", [suffix[1:] for suffix in OF_VERTICES])
-def test_curves_go_through_standard_streams(name, run, give):
-    text = run("knot", "3_1", "-", "--format", name)[1]
-    run("knot", "3_1", f"k.{name}")
-    assert text == Path(f"k.{name}").read_text()
-    give(text.encode())
-    energy = float(run("energy", "-", "--format", name)[1])
-    give(text.encode())
-    relaxed = run("relax", "-", "-", "--format", name, "--max-iterations", "2", "--quiet")[1]
-    give(relaxed.encode())
-    assert float(run("energy", "-", "--format", name)[1]) < energy
 
 
 def test_a_suffix_wins_names_without_one_need_the_format_and_columns_are_the_default(run, give):

@@ -96,23 +96,6 @@ def test_vertices_are_counted_as_the_file_does(run):
     assert tuple(BENT.vertices[0]) in vertices_of("out.obj")
 
 
-@pytest.mark.parametrize("suffix", [".txt", ".obj", ".json"])
-def test_overhand_arcs_stay_open_and_files_of_closed_curves_say_nothing_of_it(suffix, run):
-    arc, out = f"arc{suffix}", f"out{suffix}"
-    assert run("knot", "overhand", arc, "--vertices", 50)[0] == 0
-    for start, closed in ((arc, False), ("trefoil.txt", True)):
-        limits = "--vertices", 60, "--max-iterations", 1
-        assert run("relax", start, out, *BOTH, "--quiet", *limits)[0] == 0
-        assert read_curve(out).mesh.closed == (closed,)
-        assert report()["certified"]
-        assert run("verify", "t.npz")[0] == 0
-        with np.load("t.npz") as arrays:
-            said = {name: arrays[name].tolist() for name in arrays if "closed" in name}
-        assert said == ({} if closed else {"component_closed_000": [False]})
-    assert suffix != ".json" or set(json.loads(Path(out).read_text())) == {"components"}
-    assert "#" not in Path("trefoil.txt").read_text()
-
-
 @pytest.mark.parametrize(
     ("words", "said"),
     [

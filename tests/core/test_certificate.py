@@ -62,8 +62,6 @@ def test_rounding_that_matters():
 
 
 SQUARE = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0]]
-AWAY = [[9.0, 0.0, 0.0], [9.0, 2.0, 0.0], [9.0, 0.0, 2.0]]
-CROSSED = [[0.0, 0.0, 0.0], [2.0, 2.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]]
 
 
 def place(*components):
@@ -71,23 +69,6 @@ def place(*components):
     with pytest.raises(CurveError) as error:
         relax(Curve.from_components(components))
     return error.value.place
-
-
-@pytest.mark.parametrize(
-    ("component", "vertices", "position"),
-    [
-        ([*SQUARE, SQUARE[3]], (6, 7), (0, 2, 0)),
-        ([*SQUARE[1:], SQUARE[0], SQUARE[0]], (6, 7), (0, 0, 0)),
-        ([*SQUARE, [0.0, -1.0, 0.0]], (7,), (0, -1, 0)),
-        (CROSSED, (3, 4, 5, 6), (1, 1, 0)),
-        ([*SQUARE[:3], [0.0, 2e41, 0.0]], (6,), (0, 2e41, 0)),
-    ],
-    ids=["the same point", "the same point, across the end", "doubled back", "crossing", "too far"],
-)
-def test_a_refusal_points_at_its_vertices(component, vertices, position):
-    found = place(AWAY, component)
-    assert found.vertices == vertices
-    np.testing.assert_allclose(found.position, position, rtol=1e-6, atol=1e-2)
 
 
 def test_strands_that_are_too_near_are_found_on_the_refined_curve():

@@ -108,26 +108,6 @@ def test_the_gradients_norm_is_that_of_the_gradient_at_a_minimum_too(minimum):
     assert point.gradient_norm == pytest.approx(point.tangent_space.norm(point.gradient), rel=0.01)
 
 
-@pytest.mark.parametrize(
-    ("method", "tolerance", "relative"),
-    [
-        ("lbfgs", 1e-5, 1e-6),
-        ("cg", 1e-4, 1e-4),
-        ("flow-moebius", 1e-3, 1e-3),
-        pytest.param("flow-h3-2", 1e-3, 1e-3, marks=pytest.mark.slow),
-        pytest.param("implicit-moebius", 1e-3, 1e-3, marks=pytest.mark.slow),
-        ("penalty-lbfgs", 1e-4, 1e-3),
-        pytest.param("penalty-cg", 1e-2, 1e-3, marks=pytest.mark.slow),
-        ("penalty-nesterov", 1e-2, 1e-3),
-    ],
-)
-def test_methods_agree_on_the_minimum(minimum, method, tolerance, relative):
-    options = RelaxOptions(method=method, tolerance=tolerance, vertices=120, max_iterations=800)
-    result = minimize(torus_trefoil(120), options)
-    assert result.status is Status.CONVERGED
-    assert result.energies[-1] == pytest.approx(minimum.energies[-1], rel=relative)
-
-
 def test_lagrangian_hessian_has_slope_three_on_the_constraint_set():
     """E along the feasible curve Q(t) = restore(P + t v), v tangent: E' = DE·v and E'' = ⟨v, D²L v⟩ at t = 0.
 

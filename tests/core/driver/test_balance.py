@@ -4,7 +4,7 @@ import itertools
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, Hand, MoebiusEnergy, RelaxOptions, Status, minimize, relax
+from mobius_flow.core import Curve, MoebiusEnergy, RelaxOptions, Status, minimize
 from mobius_flow.core.collision import thickness
 from mobius_flow.core.curve.measures import bending
 from mobius_flow.core.driver.moves import balance
@@ -215,21 +215,3 @@ def test_every_geometry_goes_there(method):
     assert result.status is Status.CONVERGED
     assert result.certified
     assert bending(result.curve) < 0.95 * bending(start)
-
-
-def test_what_a_hand_has_pulled_is_balanced_again_but_for_its_pins():
-    """A trefoil is pulled far out as soon as it is at rest, and let go, and once more, when a pin is left there."""
-    options = RelaxOptions(vertices=60, mesh="fixed", balance=True, tolerance=1e-3)
-    least = bending(minimize(torus_knot(2, 3, 60), options).curve)
-    hand, bent = Hand(stays=True), []
-    for iterate in relax(unbalanced(torus_knot(2, 3, 60), 0.5, 0.2, 0.1), options, hand):
-        if hand.rests:
-            bent.append(bending(iterate.curve) / least)
-            if len(bent) in (1, 3):
-                hand.grab(0, 0.1)
-                hand.move(10.0 * iterate.curve.vertices[6])
-            elif len(bent) in (2, 4):
-                hand.release(pin=len(bent) == 4)
-    assert max(bent[0], bent[2]) < 1.05
-    assert bent[-1] > 1.1
-    assert len(bent) == 5

@@ -1,19 +1,17 @@
 """Growth: lengths become a multiple of those of the start, by proved motions, as far as there is room for that."""
 
 import json
-from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, Mesh, OptionError, RelaxOptions, Status, minimize, relax
+from mobius_flow.core import Curve, Mesh, OptionError, Status, minimize, relax
 from mobius_flow.core.collision import thickness
 from mobius_flow.core.curve.pins import Pins
 from mobius_flow.core.curve.refine import SPLIT
 from mobius_flow.core.driver.prepare import start_problem
-from mobius_flow.core.knots import knot, torus_knot
+from mobius_flow.core.knots import torus_knot
 from mobius_flow.core.solve.constraints import Constraints
-from shapes import regular_polygon, torus_trefoil
+from shapes import regular_polygon
 from solids import box, plate, rod
 from tasks import proved, wanted
 
@@ -68,17 +66,6 @@ def test_a_rope_grows_twentyfold_and_shrinks_until_it_is_in_its_own_way():
     assert shrunk.outcome.place is not None
 
 
-def test_edges_are_split_as_strands_come_near_unless_the_mesh_is_fixed():
-    """Each mesh has the vertices of the one before it."""
-    result = minimize(*wanted(**in_the_box(3.0, mesh="fixed", max_iterations=40)))
-    assert (len(result.curve), result.last.grown) == (32, pytest.approx(3.0, rel=1e-12))
-    vertices = [iterate.curve.vertices for iterate in relax(*wanted(**in_the_box(6.0)))]
-    assert len(vertices[-1]) > 32
-    for before, after in pairwise(vertices):
-        if len(before) != len(after):
-            assert {tuple(v) for v in before} <= {tuple(v) for v in after}
-
-
 def test_edges_are_split_as_walls_come_near():
     """In the end, too: a curve that has grown bends as narrowly as walls are near."""
     result = minimize(*wanted(**in_the_box(3.0, mesh="finer", max_iterations=60)))
@@ -88,25 +75,6 @@ def test_edges_are_split_as_walls_come_near():
     assert 0.5 < coarse.max() < 1.1 * SPLIT
     above = {"pins": (0, 8, 16, 24), "avoid": [plate(-0.05)], "vertices": 32, "max_iterations": 16}
     assert len(minimize(*wanted(regular_polygon(32), mesh="adaptive", **above)).curve) > 64
-
-
-@pytest.mark.parametrize("factor", [20.0, 0.05])
-def test_with_nothing_in_the_way_a_curve_is_scaled_at_once(factor):
-    """Energy, which does not see size, and shape are those of the curve that does not grow."""
-    curve = torus_trefoil(40)
-    loose = RelaxOptions(vertices=40, mesh="fixed", tolerance=1e-3)  # so coarse a mesh has several minima
-    plain = minimize(curve, loose)
-    result = minimize(curve, replace(loose, grow=factor))
-    assert result.status is Status.CONVERGED
-    assert result.certified
-    assert result.curve.length == pytest.approx(factor * curve.length, rel=1e-9)
-    assert result.final_energy == pytest.approx(plain.final_energy, rel=1e-4)
-    assert len(result.energies) <= len(plain.energies) + 3
-    centers = [each.barycenter for each in (curve, result.curve)]
-    assert centers[0] == pytest.approx(centers[1], abs=1e-9 * factor)
-    link = knot("L2a1", vertices=60)
-    result = minimize(link, RelaxOptions(grow=factor, vertices=60, mesh="fixed", max_iterations=5))
-    assert lengths(result.curve) == pytest.approx(factor * lengths(link), rel=1e-9)
 
 
 def test_what_has_no_room_stops_and_says_how_far_it_has_come():

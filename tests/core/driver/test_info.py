@@ -31,18 +31,6 @@ def test_circles_and_arcs(curve, kind, thickness, energy):
     assert found.open or found.rest.sentence == "at rest at a minimum"
 
 
-def test_a_relaxed_trefoil_is_at_rest_and_its_start_is_not():
-    start = knot("3_1", 80)
-    result = minimize(start, EXACT)
-    before, after = info(start), info(result.curve)
-    assert after.rest is not None
-    assert before.rest.sentence == "not at rest"
-    assert before.rest.index is None
-    assert after.rest.index == 0
-    assert result.outcome.negative_eigenvalues == 0
-    assert after.type.names == before.type.names == ("3_1",)
-
-
 def test_a_saddle_has_its_index():
     """Some torus knots are critical points by their symmetry, and no minima."""
     result = minimize(torus_knot(3, 4, 120), EXACT)

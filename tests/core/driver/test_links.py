@@ -130,18 +130,6 @@ def test_parts_are_said_to_be_held_where_they_are(curve, options, held):
     assert ("unlinked parts" in result.message) is held
 
 
-@pytest.mark.parametrize("method", ["lbfgs", *SLOW])
-def test_strands_a_billionth_apart_come_apart(method):
-    t = 2 * np.pi * np.arange(40) / 40
-    eight = Curve(np.column_stack([np.sin(2 * t), np.cos(t), 0.5e-9 * np.sin(t)]))
-    circles = Curve.from_components([ring([0, 0, 0], size=24), ring([0, 0, 1e-9], size=24)])
-    for curve, vertices, energy in ((eight, 40, 4.02), (circles, 48, 15.0)):
-        result = minimize(curve, RelaxOptions(method=method, vertices=vertices))
-        assert result.status is Status.CONVERGED
-        assert result.certified
-        assert result.energies[-1] < energy
-
-
 # -- composite -------------------------------------------------------------------------------------------------------
 
 

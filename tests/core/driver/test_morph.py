@@ -22,7 +22,6 @@ from mobius_flow.core import (
     relax,
 )
 from mobius_flow.core.driver.meeting import meeting, prove_legs, run_back
-from mobius_flow.core.driver.morph import morphing
 from mobius_flow.core.knots import knot, overhand, smooth_knot
 from tasks import check
 
@@ -68,15 +67,6 @@ def test_it_leads_from_one_to_the_other(a, b):
     assert result.curve.mesh == b.mesh
     assert [each.index for each in iterates] == list(range(len(iterates)))
     assert result.final_energy > 0
-
-
-def test_a_component_is_run_through_backwards_only_where_it_must_be():
-    link = knot("L4a1", 60)
-    first, second = link.components
-    other = Curve.from_components([first, second[::-1]])  # the linking number has another sign
-    result, _, _ = proved(link, other)
-    assert "another order or direction" in result.message
-    assert {tuple(p) for p in result.curve.vertices.tolist()} == {tuple(p) for p in other.vertices.tolist()}
 
 
 def test_a_mirror_image_is_refused_before_anything_moves():
@@ -177,13 +167,6 @@ def test_legs_are_those_of_the_rope():
         assert (legs is not None) is free
 
 
-def test_a_corner_too_sharp_for_a_rope_is_told():
-    result, _, verdict = proved(Curve(SQUARE), Curve([[5.0, 5], [6, 6 - 1e-8], [7, 7], [6, 6], [5, 7]]), COARSE)
-    assert "the second curve is no rope, as a corner is too sharp" in result.message
-    assert result.last.radius is None
-    assert not verdict.radius
-
-
 def test_every_leg_is_run_back():
     start = next(relax(Curve(RECTANGLE), QUICK))
     legs = tuple(start.curve.vertices + 0.1 * k for k in range(1, 4))
@@ -209,16 +192,6 @@ def test_arcs_are_held_at_their_ends():
     assert verdict.pins == 2
     assert np.array_equal(result.curve.vertices, arcs[1].vertices)
     assert all(np.array_equal(each.curve.vertices[[0, -1]], arcs[0].vertices[[0, -1]]) for each in iterates)
-
-
-def test_a_chain_leads_over_all_curves():
-    curves = [Curve(RECTANGLE), Curve(ZIGZAG), moved(Curve(RECTANGLE))]
-    iterates = list(morphing([Task(curve=each) for each in curves], COARSE, "ABC"))
-    check(iterates)
-    passed = [each.curve.vertices.tolist() for each in iterates]
-    places = [passed.index(each.vertices.tolist()) for each in curves]
-    assert places == sorted(places)
-    assert passed[-1] == curves[-1].vertices.tolist()
 
 
 WALL = Obstacle([[9.0, 0, 0], [9, 1, 0], [9, 0, 1]], [[0, 1, 2]])

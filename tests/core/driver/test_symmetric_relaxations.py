@@ -3,15 +3,11 @@
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError, OptionError, RelaxOptions, Task, minimize
-from mobius_flow.core.curve.measures import bending
 from mobius_flow.core.curve.symmetry import Symmetry, symmetries
 from mobius_flow.core.driver.moves.balance import moebius_image
 from mobius_flow.core.knots import knot, smooth_knot, torus_knot
-from mobius_flow.lab.atlas.entries import standing
-from mobius_flow.lab.extrapolation import extrapolated
 from shapes import half_circle, regular_polygon
 from tasks import proved
-from torus_energies import torus_knot_minimum
 
 EXACT = 1e-10  # shortest edges, of rounded coordinates
 
@@ -33,18 +29,6 @@ def test_a_motion_to_a_symmetric_curve_comes_first():
     assert all(each.symmetry == "D3" for each in [meshed, *others])
     assert error(result.last, meshed, *others) < EXACT
     assert result.report()["symmetry"] == "D3"
-
-
-def test_finer_meshes_and_second_derivatives_keep_a_rotary_reflection():
-    iterates = []
-    shape = smooth_knot("4_1")
-    flat = shape.with_vertices(shape.vertices @ standing(shape, symmetries(shape)).T * [1.0, 1.0, 0.6])
-    result = minimize(flat, RelaxOptions(symmetry="auto", vertices=None), iterates.append)
-    assert len({len(each.curve) for each in iterates[2:]}) > 1
-    assert error(result.last) < EXACT
-    assert result.outcome.negative_eigenvalues == result.outcome.symmetric_negative_eigenvalues == 0
-    assert "a minimum among curves of symmetry S4, a minimum among all; " in result.message
-    assert "symmetry S4 was kept, which the start missed by 0.000" in result.message
 
 
 def test_links_are_symmetric_across_components():
@@ -69,29 +53,6 @@ def test_torus_knots_are_saddles_that_only_broken_symmetry_leaves(p, q, index):
     assert part.outcome.symmetric_negative_eigenvalues == 0
     assert part.energies[-1] < symmetric.energies[-1] - 2.0
     assert error(part.last) < EXACT
-
-
-@pytest.mark.parametrize(("p", "q"), [(2, 3), pytest.param(3, 4, marks=pytest.mark.slow)])
-def test_energies_are_those_of_kim_and_kusner(p, q):
-    options = RelaxOptions(symmetry="auto", vertices=32 * q, mesh="fixed", tolerance=1e-7)
-    found = extrapolated(minimize(torus_knot(p, q), options).curve, options)
-    assert found.energy == pytest.approx(torus_knot_minimum(p, q), rel=1e-6)
-    assert found.order == pytest.approx(2.0, abs=0.05)
-
-
-def test_balance_takes_images_of_the_same_symmetry():
-    """There are such maps along the axis of C2, which meets the curve; D3 leaves none."""
-    curve = minimize(torus_knot(2, 3), RelaxOptions(symmetry="D3", vertices=120, mesh="fixed")).curve
-    pole = 0.7 * curve.vertices[0] / np.linalg.norm(curve.vertices[0])  # where a two-fold axis is
-    image = curve.with_vertices(moebius_image(curve.vertices / 2.0, np.array([1.0, *pole])))
-    # that it has uneven edges keeps the flow from balancing it by itself
-    options = RelaxOptions(symmetry="C2", mesh="fixed", edge_lengths="keep", balance=True, tolerance=0.1)
-    balanced = minimize(image, options)
-    assert "balanced: bending reduced" in balanced.message
-    assert error(balanced.last) < EXACT
-    assert bending(balanced.curve) < 0.95 * bending(image)
-    rigid = minimize(curve, RelaxOptions(symmetry="D3", mesh="fixed", balance=True))
-    assert "no other shape of the same energy that can be reached bends less" in rigid.message
 
 
 def test_lengths_reach_their_targets_where_the_barycenter_moves():

@@ -143,38 +143,11 @@ def test_seconds_of_all_moves_are_counted(easy):
     assert len(seconds) > 1
 
 
-def test_interrupted_runs_say_where_they_stand():
-    def interrupt(iterate):
-        if iterate.strand_moves and iterate.strand_moves.moves > 0:
-            raise KeyboardInterrupt
-
-    result = minimize(EASY, RelaxOptions(untangle="always"), interrupt)
-    moves = result.last.strand_moves
-    assert 0 < moves.left == result.report()["strand_moves"]["left"] < moves.before
-    assert result.status is Status.INTERRUPTED
-    assert result.message.endswith(f"strands were being moved, and {moves.left} of {moves.before} crossings are left")
-    assert np.isfinite(result.energies).all()
-    assert (result.iterations, [phase.iterations for phase in result.phases]) == (0, [0])
-
-
 def test_components_have_their_own_lengths_again():
     curve = scramble(knot("L2a1", 40), 2, moves=800)
     result, _ = proved(curve, untangle="always", max_iterations=2)
     assert result.last.strand_moves.left == 2
     np.testing.assert_allclose(result.curve.component_lengths, curve.component_lengths, rtol=1e-6)
-
-
-def test_arcs_between_pins_have_their_lengths_again():
-    curve = scramble(knot("3_1", 30), 1, moves=600)
-    result, iterates = proved(curve, pins=(0, 12), untangle="always", max_iterations=40)
-    shortest = min(each.curve.length for each in iterates)
-    assert shortest < 0.8 * curve.length
-    assert result.last.strand_moves.left <= 4
-    assert result.curve.length == pytest.approx(curve.length)
-    at = [int(np.flatnonzero((result.curve.vertices == curve.vertices[pin]).all(axis=1))[0]) for pin in (0, 12)]
-    begin, end = at[0], at[1] + len(result.curve) * (at[1] < at[0])
-    edges = np.arange(begin, end) % len(result.curve)
-    assert result.curve.edge_lengths[edges].sum() == pytest.approx(curve.edge_lengths[:12].sum())
 
 
 @pytest.mark.parametrize(

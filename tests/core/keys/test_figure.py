@@ -62,15 +62,6 @@ def test_views_are_those_of_fewest_crossings_with_room_between():
         assert all(stroke.width == Pen().width for stroke in sheet.strokes)
 
 
-def test_one_view_serves_a_motion():
-    first = knot("3_1")
-    views = seen([first, first.with_vertices(0.5 * first.vertices)])
-    np.testing.assert_allclose(views[1].curve.vertices, 0.5 * views[0].curve.vertices, atol=1e-9)
-    for unit in (1e-250, 1e200):
-        (other,) = seen([first.with_vertices(unit * first.vertices)])
-        assert len(other.passes) == 3
-
-
 def test_frames_that_one_view_does_not_serve_have_their_own():
     t = 2.0 * np.pi * np.arange(24) / 24
     lying = np.column_stack([np.cos(t), np.sin(t), 0.0 * t])

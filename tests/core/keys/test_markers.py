@@ -8,7 +8,6 @@ from mobius_flow.core.curve.refine import subdivide
 from mobius_flow.core.keys.markers import Markers
 from mobius_flow.core.keys.motion import Recording
 from mobius_flow.core.keys.placement import Link, Placement
-from mobius_flow.core.knots import knot
 from recorded_motions import assert_proved, at_rest, followed, iterate
 from shapes import lattice_knot, regular_polygon, torus_trefoil
 
@@ -44,33 +43,6 @@ def test_points_that_are_added_are_on_the_edges_of_all_keys(finer, limit):
     other.add(finer[-1])
     with pytest.raises(MobiusFlowError, match="keyframes cannot follow a change to another curve: only 0 vertices"):
         other.add(finer[0])
-
-
-UNEVEN = subdivide(torus_trefoil(60), np.where(np.arange(60) < 12, 20, 2))
-RUNS = {
-    "strand moves": (knot("goeritz"), {"untangle": "always", "max_iterations": 4}, [None, 40]),
-    "an adaptive mesh": (UNEVEN, {"mesh": "adaptive", "max_iterations": 8}, [None]),
-}
-
-
-@pytest.mark.parametrize("name", RUNS)
-def test_strand_moves_are_keyed(name):
-    """Every vertex of every shape is a point of its key, and the others are on its edges; no change is a motion."""
-    curve, values, limits = RUNS[name]
-    iterates = list(relax(curve, RelaxOptions(**values)))
-    assert "untangle" in values or len({len(each.curve) for each in iterates}) > 1
-    motion, curves = followed(iterates), {each.index: each.curve for each in iterates}
-    assert len(motion.start) < 2 * max(map(len, curves.values()))
-    for limit in limits:
-        keys = motion.keys(is_rope, limit)
-        assert_proved(keys, motion.start.mesh)
-        for key in (key for key in keys.keys if key.time in curves):
-            curve, points = curves[key.time], Curve(key.points.astype(np.float64))
-            assert {tuple(vertex) for vertex in curve.vertices.astype(np.float32)} <= {tuple(p) for p in key.points}
-            assert points.length == pytest.approx(curve.length, rel=1e-5)
-    keys = motion.keys(lambda *_: True)
-    way = dict(zip([key.time for key in keys.keys], motion.course(keys).distance, strict=True))
-    assert all(way[each.index] == way[each.index - 1] for each in iterates[1:] if not each.path)
 
 
 def test_the_first_marker_may_come_to_lie_between_new_vertices():

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, RelaxOptions, relax
+from mobius_flow.core import Curve
 from mobius_flow.core.collision import is_free, is_rope
 from mobius_flow.core.io.trajectory import StrandMoves
 from mobius_flow.core.keys.key_options import Pace, Timing
@@ -64,21 +64,6 @@ def test_thinning_spreads_keys_and_inserts_iterates_where_chords_collide(limit):
     assert len(keys.keys) == limit
     np.testing.assert_allclose([key.time for key in keys.keys], np.linspace(0, 20, limit), atol=0.5 + 1e-9)
     assert_proved(keys, curves[0].mesh)
-
-
-@pytest.mark.parametrize("limit", [None, 2, 6])
-def test_a_real_run_is_proved_and_timing_decides_when_and_not_what(limit):
-    iterates = list(relax(torus_trefoil(48), RelaxOptions(max_iterations=40, vertices=48, mesh="fixed")))
-    motion = followed(iterates)
-    keys = motion.keys(is_rope, limit)
-    assert_proved(keys, iterates[0].curve.mesh)
-    assert keys.keys[-1].time == iterates[-1].index
-    np.testing.assert_array_equal(keys.keys[-1].points, iterates[-1].curve.vertices.astype(np.float32))
-    passed = motion.course(motion.keys(lambda *_: True)).flow_time
-    np.testing.assert_allclose(passed, np.cumsum([0.0, *(each.step_size for each in iterates[1:])]))
-    found = [motion.keys(is_rope, limit, Timing(pace=pace, length=30)) for pace in Pace]
-    kept = [[key.time for key in keys.keys if key.kind is Kind.STEP] for keys in found]
-    assert kept[0] == kept[1] == kept[2] == kept[3]
 
 
 @pytest.mark.parametrize("still", [(0.0, 1.0), (1.0, 1.0), (0.0, 0.0)])
