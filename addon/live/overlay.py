@@ -12,7 +12,7 @@ from gpu_extras.batch import batch_for_shader
 
 from ...core.base import FloatArray
 from ...core.keys.colours import Colour, legible
-from ...core.keys.placement import Placement
+from ...core.keys.placement import Frame, Placement
 from ..curves import pins
 from ..engine.rest import plot
 from ..translations import iface_
@@ -136,11 +136,11 @@ def _pins(context: bpy.types.Context) -> None:
     line((there[:, None] + corners).reshape(-1, 2), GOLD, scale * _LINE, kind="LINES")
 
 
-def _seen(context: bpy.types.Context, places: Sequence[tuple[bpy.types.Object, FloatArray]]) -> FloatArray:
+def _seen(context: bpy.types.Context, places: Sequence[tuple[bpy.types.Object, Frame | FloatArray]]) -> FloatArray:
     """The positions of objects' places, (k, 3) each, in the current view, of those that are in front; (n, 2)."""
     world = [Placement.from_matrix(obj.matrix_world).to_world(each.astype(np.float64)) for obj, each in places]
     there, _, in_front = projected(context.region, np.concatenate([np.empty((0, 3)), *world]))
-    return there[in_front]
+    return np.asarray(there[in_front])
 
 
 def area(low: tuple[float, float], high: tuple[float, float], colour: Colour) -> None:
