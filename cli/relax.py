@@ -16,7 +16,6 @@ from ..core.io import CurveFile, written_formats
 from ..core.keys.figure import contact_map
 from ..core.keys.key_options import Playing
 from ..core.keys.paper import PAPERS
-from ..core.ropes import Tightened
 from . import curves, signals
 from . import options as relax_options
 from .options import DEFAULT, LOOKS
@@ -160,6 +159,7 @@ def write_results(
     end, so that these can be interrupted; they are not begun after an interrupt.
     """
     origin = {**origin, **result.outcome.facts}
+    struts = getattr(result.outcome, "struts", None)  # of a rope that was pulled tight to the end
 
     def report_as_json(path: str) -> None:
         text = json.dumps(result.report() | origin, indent=1) + "\n"
@@ -172,9 +172,7 @@ def write_results(
         made.save(path)
 
     def contacts(path: str) -> None:
-        if isinstance(result.outcome, Tightened):
-            drawn = contact_map(result.curve, result.outcome.struts)
-            write_file(path, PAPERS[Path(path).suffix.lower()](drawn))
+        write_file(path, PAPERS[Path(path).suffix.lower()](contact_map(result.curve, struts)))
 
     def output(path: str) -> None:
         playing, suffix = Playing(options.look, options.loop, options.constant_radius), Path(path).suffix.lower()
@@ -201,8 +199,8 @@ def write_results(
     scene, name = is_scene(options.output), None
     if scene or options.output == curves.STREAM:  # of what is kept
         name = f"{Path(options.output).stem}.obj" if scene else f"curve.{options.format or 'txt'}"
-    pressed = options.contacts if isinstance(result.outcome, Tightened) else None  # or else nothing is known of it
-    extras = (options.report, report_as_json), (options.trajectory, trajectory), (pressed, contacts)
+    extras = [(options.report, report_as_json), (options.trajectory, trajectory)]
+    extras += [] if struts is None else [(options.contacts, contacts)]
     jobs: list[tuple[str, Write, str | None]]
     jobs = [(path, write, None) for path, write in extras if path is not None]
     jobs.append((options.output, output, name))  # of a film that is not written the curve is kept, by the name's suffix

@@ -164,12 +164,11 @@ class Filming:
         try:
             with rendering.quiet():
                 bpy.ops.render.render(animation=True, scene=self._scene)
-        except BaseException as error:
-            self.finish()
-            if isinstance(error, RuntimeError):
-                raise OutputError(self.path, error) from error
-            raise
-        if not self.finish():
+        except RuntimeError as error:
+            raise OutputError(self.path, error) from error
+        finally:
+            whole = self.finish()
+        if not whole:
             sentence = "{path}: Blender did not finish rendering the film; is the disk full?"
             raise MobiusFlowError(Message(sentence, path=self.path))
 
