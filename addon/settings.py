@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from contextlib import suppress
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 import bpy
@@ -22,7 +22,6 @@ from .properties import FURTHER, QUALITIES, Further, Quality, settings, timing
 # since 5.0 Blender marks relative paths as wrong unless a property declares that it supports them
 _RELATIVE = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (5, 0) else set()
 _LEVELS = {**QUALITIES, "CUSTOM": Quality("Custom", "Options as they are set in Expert", {})}  # which all options match
-_knot_items: dict[str, list[tuple[str, str, str, int, int]]] = {}  # Blender needs the strings to stay alive
 
 
 def _quality(panel: Any) -> int:
@@ -125,16 +124,14 @@ class MobiusFlowSurroundings(bpy.types.PropertyGroup):
     )
 
 
-def _knots(settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> list[tuple[str, str, str, int, int]]:
-    """The knots of the chosen group, with icons; each keeps its number in files."""
-    chosen = settings.group
-    if chosen not in _knot_items:
-        _knot_items[chosen] = [
-            (name, label, f"Knot {label}" if chosen != "LINKS" else f"Link {label}", icons.icon(name), number)
-            for number, (name, label) in enumerate(labels().items())
-            if group(name) == chosen
-        ]
-    return _knot_items[chosen]
+@cache  # Blender needs the strings to stay alive
+def _knots(chosen: str) -> list[tuple[str, str, str, int, int]]:
+    """The knots of a group, with icons; each keeps its number in files."""
+    return [
+        (name, label, f"Knot {label}" if chosen != "LINKS" else f"Link {label}", icons.icon(name), number)
+        for number, (name, label) in enumerate(labels().items())
+        if group(name) == chosen
+    ]
 
 
 class MobiusFlowKnots(bpy.types.PropertyGroup):
@@ -149,7 +146,7 @@ class MobiusFlowKnots(bpy.types.PropertyGroup):
     knot: EnumProperty(
         name="Knot",
         description="Knot to add",
-        items=_knots,
+        items=lambda knots, _: _knots(knots.group),
         default=list(labels()).index("3_1"),  # where items are made by a function, the default is a number
     )
 
@@ -172,5 +169,5 @@ def unregister() -> None:
     """Take them away, and forget icons and what refers to them."""
     for name in GROUPS_OF_SCENE:
         delattr(bpy.types.Scene, name)
-    _knot_items.clear()
+    _knots.cache_clear()
     icons.forget()
