@@ -5,7 +5,7 @@ The objects show what has been reached; their originals come back unless the run
 
 import time
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from enum import Enum
 from functools import cached_property
 from typing import Any
@@ -184,6 +184,8 @@ class LiveRun:
 
     def recover(self) -> None:
         """Keep what a cancelled run had reached; raises MobiusFlowError if the curves have changed since."""
+        if self._keys is not None:
+            wait([self._keys])  # a thread that still chooses keys ends at its next proof
         self.session.reopen()
         self.state, self.message, self.failed, self.shown = RunState.RUNNING, "", False, None
         self.trouble, self._left = [], None
