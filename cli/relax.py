@@ -5,6 +5,7 @@ import json
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from ..core import Curve, Iterate, MobiusFlowError, RelaxOptions, Result, Status, Task, Trajectory, relax
 from ..core.base import counted, write_file
@@ -159,7 +160,7 @@ def write_results(
     end, so that these can be interrupted; they are not begun after an interrupt.
     """
     origin = {**origin, **result.outcome.facts}
-    struts = getattr(result.outcome, "struts", None)  # of a rope that was pulled tight to the end
+    struts: Any = getattr(result.outcome, "struts", None)  # of a rope that was pulled tight to the end
 
     def report_as_json(path: str) -> None:
         text = json.dumps(result.report() | origin, indent=1) + "\n"

@@ -1,7 +1,7 @@
 """Curve objects that are relaxed together: they show stand-ins, and form one link in the world."""
 
-from collections.abc import Sequence
-from contextlib import ExitStack
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 
 import bpy
 import numpy as np
@@ -67,6 +67,15 @@ class Group:
             for member in self.members:  # each of them, even if one fails
                 everything.callback(lambda each: restored.append(each.discard()), member)
         return all(restored)
+
+    @contextmanager
+    def all_or_nothing(self) -> Iterator[None]:
+        """Put all back, as `discard` does, if a block fails."""
+        try:
+            yield
+        except BaseException:
+            self.discard()
+            raise
 
     def move(self, start: Curve, frame: Frame, radius: float | None) -> None:
         """Move all points, (n, 3) in each object's own coordinates; ``start``: the start with as many vertices.

@@ -71,7 +71,7 @@ class Session(Group):
         self.outcome: Outcome | None = None
         self._too_thick = False  # whether a bevel of the artist's meets itself at the start
         self._repinned = False  # whether a hand has left pins
-        try:
+        with self.all_or_nothing():
             self.begin(objects, self._key_options, self._continues)
             self.goals = Goals(goals, self.curve)
             held = tuple(sorted({*pinned, *pins.pinned_vertices(objects, self.curve.mesh)}))
@@ -94,9 +94,6 @@ class Session(Group):
                 self.options = self.job = replace(options, vertices=len(self.curve), mesh="fixed", untangle="never")
                 first = np.concatenate([coordinates(spline) for obj in objects for spline in obj.data.splines])
                 size = self.members[0].size
-        except BaseException:
-            self.discard()
-            raise
         # what of the size stays constant, or changes evenly between goals
         stays = held or obstacles or self.options.grow != 1.0
         animated = key_options.animated
@@ -114,14 +111,12 @@ class Session(Group):
         if len(objects) < len(self.members) or self.surroundings.lost():
             raise MobiusFlowError(changed)
         try:
-            self.begin(objects, self._key_options, self._continues)
-            placed = zip(link.placements, self.link.placements, strict=False)
-            same = link.counts == self.link.counts and all(a.equals(b) for a, b in placed)
-            if not (same and self.curve.mesh == curve.mesh and np.array_equal(self.curve.vertices, curve.vertices)):
-                raise MobiusFlowError(changed)
-        except BaseException:
-            self.discard()
-            raise
+            with self.all_or_nothing():
+                self.begin(objects, self._key_options, self._continues)
+                placed = zip(link.placements, self.link.placements, strict=False)
+                same = link.counts == self.link.counts and all(a.equals(b) for a, b in placed)
+                if not (same and self.curve.mesh == curve.mesh and np.array_equal(self.curve.vertices, curve.vertices)):
+                    raise MobiusFlowError(changed)
         finally:
             self.curve, self.link = curve, link
 
@@ -130,7 +125,7 @@ class Session(Group):
 
         ``drag`` gets a hand, and the iterates in the world, between which it may tell the hand what to do.
         """
-        try:
+        with self.all_or_nothing():
             hand = Hand()
             try:
                 relaxation = WithOutcome(begun(self.task, self.job, self.goals.curves, hand))
@@ -146,9 +141,6 @@ class Session(Group):
             if reason := self.lost():
                 raise MobiusFlowError(Message("{reason} during the relaxation; nothing was written", reason=reason))
             return self.bake(prepared)
-        except BaseException:
-            self.discard()
-            raise
 
     def lost(self) -> Message | None:
         """Say what was done to one of the objects, or to what they avoid, that makes it impossible to go on.

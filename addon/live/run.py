@@ -61,11 +61,8 @@ class LiveRun:
         self.session, self._refresh = session, refresh
         self.avoided = session.surroundings.names
         self.time_left = TimeLeft(session.options)
-        try:
+        with session.all_or_nothing():
             self._worker = Worker(session.task, session.job, stays, session.goals.curves)
-        except BaseException:
-            self.session.discard()
-            raise
         self._keys: Future[Prepared] | None = None  # chosen and proved in a thread, while Blender stays usable
 
     @property
