@@ -72,7 +72,17 @@ def test_only_what_blender_runs_is_in_the_zip(archive):
 
 def reviewed(path):
     """What in a module reviewers of extensions look for."""
-    modules = {"ctypes", "multiprocessing", "pickle", "signal", "socket", "subprocess", "threading", "urllib"}
+    modules = {
+        "concurrent",
+        "ctypes",
+        "multiprocessing",
+        "pickle",
+        "signal",
+        "socket",
+        "subprocess",
+        "threading",
+        "urllib",
+    }
     found = set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         match node:
