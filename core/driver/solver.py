@@ -10,7 +10,7 @@ from ..curve import Curve, Obstacle
 from ..descent import METHODS, Method
 from ..energies import ENERGIES, TERMS, Energy, MoebiusEnergy, Objective, Rule, Stiff, Weighted
 from ..energies.hierarchy import HierarchicalMoebiusEnergy
-from ..solve.hierarchical import CompressedMetric, block_count, compressed
+from ..solve.hierarchical import CompressedMetric, block_list, compressed
 from ..solve.metrics import METRICS, Metric
 from ..solve.saddle.iterative import Tolerances
 from .options import RelaxOptions
@@ -132,4 +132,5 @@ def _pays(curve: Curve) -> bool:
     n = len(curve)
     if not Solver.dense_up_to < n <= Solver.hierarchical_from:
         return n > Solver.hierarchical_from
-    return 1700 * block_count(curve) < n * n  # pairs take as long, by `benchmarks/speed.py` on knots and tangles
+    # pairs take as long, by `benchmarks/speed.py` on knots and tangles
+    return 1700 * len(block_list(curve).first) < n * n

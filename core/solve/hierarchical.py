@@ -12,19 +12,17 @@ and for values they are differences of a running sum z: either way a sparse matr
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
 
-from ..base import BoolArray, FloatArray, IntArray, OptionError
+from ..base import BoolArray, FloatArray, IntArray
 from ..curve import Curve, Mesh, arc_distance_of_pairs
-from ..energies import Rule
 from ..energies.hierarchy import BlockList
-from ..energies.quadrature import MIDPOINT
 from .constraints import ConstraintDerivative
-from .metrics import FractionalMetric, InnerProduct, Metric, MoebiusMetric, SparseInnerProduct
+from .metrics import FractionalMetric, InnerProduct, Metric, MoebiusMetric, SparseInnerProduct, WithoutRule
 from .metrics.local import lumped_mass, mass, stiffness
 from .metrics.moebius import pair_kernels
 from .saddle import TangentSpace
@@ -185,11 +183,14 @@ class CompressedInnerProduct:
         return TwoLevel(mesh, along(mesh, ell, self.apply), self.coupling, _indicators(self.curve).T @ self.vectors)
 
 
-def moebius_inner_product(
-    curve: Curve, tolerances: Tolerances | None = None, theta: float = 0.5, leaf: int = 4
-) -> CompressedInnerProduct:
+def block_list(curve: Curve) -> BlockList:
+    """The blocks of these inner products."""
+    return BlockList.of(curve, theta=0.5, leaf=4)
+
+
+def moebius_inner_product(curve: Curve, tolerances: Tolerances | None = None) -> CompressedInnerProduct:
     """J_C by the midpoint rule, as in `MoebiusMetric`, compressed."""
-    blocks = BlockList.of(curve, theta, leaf)
+    blocks = block_list(curve)
     forms, order = PairForms(curve, blocks), blocks.tree.order
     near, far = (pair_kernels(curve, *pairs) for pairs in (blocks.near, blocks.middles))
     values, sums = forms.of_values(near.density, far.density)
@@ -206,11 +207,9 @@ def moebius_inner_product(
     )
 
 
-def fractional_inner_product(
-    curve: Curve, tolerances: Tolerances | None = None, theta: float = 0.5, leaf: int = 4
-) -> CompressedInnerProduct:
+def fractional_inner_product(curve: Curve, tolerances: Tolerances | None = None) -> CompressedInnerProduct:
     """W^{3/2,2}, as in `FractionalMetric`, compressed."""
-    blocks = BlockList.of(curve, theta, leaf)
+    blocks = block_list(curve)
     forms = PairForms(curve, blocks)
     near, far = (1.0 / arc_distance_of_pairs(curve, i, j, 0.5) ** 2 for i, j in (blocks.near, blocks.middles))
     n, indicators, weight = len(curve), _indicators(curve), mass(curve, 1.5)
@@ -224,45 +223,31 @@ def fractional_inner_product(
     )
 
 
-Compress = Callable[[Curve, Tolerances | None, float, int], CompressedInnerProduct]
+Compress = Callable[[Curve, Tolerances], CompressedInnerProduct]
 _COMPRESS: Mapping[type, Compress] = {MoebiusMetric: moebius_inner_product, FractionalMetric: fractional_inner_product}
 
 
 @dataclass(frozen=True)
-class CompressedMetric:
+class CompressedMetric(WithoutRule):
     """A nonlocal metric by products in O(N log N), midpoint rule."""
 
-    # name, description, extends_penalty, rule: those of the dense one
+    # name, description, extends_penalty: those of the dense one
     name: str
     description: str
     extends_penalty: bool
-    rule: Rule | None
     compress: Compress
-    tolerances: Tolerances = field(default_factory=Tolerances)  # for what is solved with it
-    theta: float = 0.5  # separation parameter of blocks
-    leaf: int = 4  # edges up to which clusters are not halved
+    tolerances: Tolerances  # for what is solved with it
     most_vertices = 200_000  # some 3 GB, and half a minute a step
 
-    def with_rule(self, rule: Rule) -> "CompressedMetric":
-        """The metric itself; OptionError if another rule is asked for: there is none."""
-        if self.rule is not None and rule != MIDPOINT:
-            raise OptionError("metrics for so many vertices use one Gauss point per edge; leave quadrature_points out")
-        return self
-
     def at(self, curve: Curve) -> InnerProduct:
-        return self.compress(curve, self.tolerances, self.theta, self.leaf)
+        return self.compress(curve, self.tolerances)
 
 
 def compressed(metric: Metric, tolerances: Tolerances) -> Metric:
     """A metric in its form for many vertices: local ones are already sparse."""
     compress = _COMPRESS.get(type(metric))
-    own = metric.name, metric.description, metric.extends_penalty, metric.rule
+    own = metric.name, metric.description, metric.extends_penalty
     return metric if compress is None else CompressedMetric(*own, compress, tolerances)
-
-
-def block_count(curve: Curve) -> int:
-    """Number of blocks of these inner products."""
-    return len(BlockList.of(curve, CompressedMetric.theta, CompressedMetric.leaf).first)
 
 
 def _indicators(curve: Curve) -> sp.csr_array:

@@ -90,7 +90,7 @@ def test_small_and_large_curves_are_not_looked_at(monkeypatch):
     def counted(curve):
         raise AssertionError("blocks are counted")
 
-    monkeypatch.setattr("mobius_flow.core.driver.solver.block_count", counted)
+    monkeypatch.setattr("mobius_flow.core.driver.solver.block_list", counted)
     assert not is_hierarchical(torus_trefoil(Solver.dense_up_to))
     assert is_hierarchical(torus_trefoil(Solver.hierarchical_from + 1))
     with pytest.raises(AssertionError):
