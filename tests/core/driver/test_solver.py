@@ -86,6 +86,11 @@ def test_the_solver_is_the_one_that_was_measured_to_be_faster(name, vertices, fa
     assert not is_hierarchical(curve, method="trust-region")
 
 
+def test_a_hierarchical_energy_that_is_given_keeps_its_settings():
+    given = RelaxOptions(energy=HierarchicalMoebiusEnergy(order=6), solver="hierarchical")
+    assert start_problem(torus_trefoil(60), given).objective.energy.order == 6
+
+
 def test_small_and_large_curves_are_not_looked_at(monkeypatch):
     def counted(curve):
         raise AssertionError("blocks are counted")

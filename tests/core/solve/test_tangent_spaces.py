@@ -155,6 +155,15 @@ def test_the_derivative_has_slope_two_an_adjoint_and_full_rank(name):
         assert np.linalg.matrix_rank(matrix, tol=1e-8 * np.abs(matrix).max()) == derivative.count
 
 
+def test_an_inverse_is_kept_only_for_the_pins_that_it_is_for():
+    kept = INNER_PRODUCTS["moebius"](TREFOIL)
+    for name in ("some", "trefoil"):
+        derivative = case(name)[1].derivative(TREFOIL)
+        eta = rough_field(TREFOIL, derivative.pins)
+        afresh = INNER_PRODUCTS["moebius"](TREFOIL).tangent_space(derivative)
+        assert np.array_equal(kept.tangent_space(derivative).solve(eta, None)[0], afresh.solve(eta, None)[0])
+
+
 @NAMES
 def test_small_corrections_leave_pins_alone(name):
     """u = −Lᵀ (L Lᵀ)⁻¹ Φ, L the rows of the lengths without the columns of pins, and translations of free parts."""
