@@ -299,23 +299,6 @@ def test_layers_without_an_attribute_have_its_usual_value():
     assert points(copy_of(bpy.context.object), "opacity", "value", 1)[-1] == pytest.approx(1.0)
 
 
-def test_kinds_go_together_and_are_filmed():
-    objects = [add_hair(), add_trefoil(), add_edges()]
-    for k, obj in enumerate(objects):
-        obj.location.x = 8 * k
-    report = Relaxation(*objects).relax(**FEW)
-    assert report.certified
-    assert report.names == ("Source Keys", "Knot", "Source.001 Keys")
-    for obj in bpy.data.objects:
-        obj.select_set(copy_of(obj) is not None)
-    other = add_trefoil()
-    other.select_set(False)
-    bpy.ops.curve.mobius_flow_set_up_stage()
-    copies = [copy_of(obj) for obj in bpy.data.objects if copy_of(obj) is not None]
-    assert (len(copies), other.hide_render) == (2, True)
-    assert not any(copy.hide_render for copy in copies)
-
-
 def test_modifiers_come_after_the_motion():
     source = add_edges()
     source.modifiers.new("Skin", "SKIN")

@@ -8,8 +8,7 @@ from blender_scenes import add_curve, contents, evaluated, place, relax, stored
 from mobius_flow import Relaxation
 from mobius_flow.addon.curves import pins
 from mobius_flow.addon.curves.recorded import BakedKeys
-from mobius_flow.addon.live.requirements import RELAXABLE
-from mobius_flow.core import Curve, Mesh, MobiusFlowError, RelaxOptions, minimize
+from mobius_flow.core import MobiusFlowError
 from mobius_flow.core.knots import overhand
 from shapes import regular_polygon
 
@@ -158,19 +157,6 @@ def add_both():
 
 def cyclic(obj):
     return [spline.use_cyclic_u for spline in obj.data.splines]
-
-
-@pytest.mark.usefixtures("defaults")
-def test_the_result_is_the_librarys_and_a_spline_that_is_closed_later_is_another():
-    obj = add_arc()
-    start = Curve(stored(obj.data).astype(np.float64), Mesh((60,), (False,)))
-    result = minimize(start, RelaxOptions(max_iterations=5)).curve
-    relax(max_iterations=5)
-    np.testing.assert_array_equal(stored(obj.data), result.vertices.astype(np.float32))
-    assert cyclic(obj) == [False]
-    obj.data.splines[0].use_cyclic_u = True
-    bpy.context.view_layer.update()
-    assert "has other keys or points than it was baked with" in RELAXABLE(bpy.context).sentence
 
 
 def test_a_segment_is_a_curve():

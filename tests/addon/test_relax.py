@@ -3,8 +3,7 @@
 import bpy
 import numpy as np
 import threadpoolctl
-from blender_scenes import add_curve, add_hopf_link, add_trefoil, evaluated, in_world, relax, stored, values
-from mathutils import Euler, Matrix, Vector
+from blender_scenes import add_curve, add_trefoil, relax, stored, values
 from mobius_flow.addon.curves import pins
 from mobius_flow.addon.curves.recorded import BakedKeys
 from mobius_flow.addon.curves.splines import box
@@ -14,8 +13,6 @@ from mobius_flow.core import Curve, MoebiusEnergy, RelaxOptions, minimize
 from mobius_flow.core.collision.embedded import clears
 from mobius_flow.core.knots import torus_knot
 from shapes import regular_polygon
-
-BOTTOM = {"max_iterations": 25}
 
 
 def expected(components, **options):
@@ -50,21 +47,6 @@ def test_settings_come_from_the_scene_and_the_operators_own_win():
     assert bpy.context.scene.mobius_flow.method == "flow-l2"
 
 
-def test_any_transform():
-    obj = add_trefoil()
-    obj.parent = parent = bpy.data.objects.new("Parent", None)
-    bpy.context.scene.collection.objects.link(parent)
-    parent.matrix_world = Matrix.LocRotScale(Vector((5, -3, 2)), Euler((0.3, -0.8, 1.1)), Vector((0.5, 2, 1)))
-    obj.matrix_world = Matrix.LocRotScale(Vector((1, 2, -7)), Euler((1.2, 0.4, -0.5)), Vector((2, -0.3, 1.5)))
-    bpy.context.view_layer.update()
-    placed = obj.matrix_world.copy()
-    result = expected([in_world(obj, stored(obj.data))], **BOTTOM)
-    relax(**BOTTOM)
-    assert obj.matrix_world == placed
-    shown = in_world(obj, evaluated(obj, 1 + BOTTOM["max_iterations"]))
-    np.testing.assert_allclose(shown, result, atol=2e-5)
-
-
 def test_refinement_interpolates_what_points_have():
     obj = add_trefoil(30)
     (spline,) = obj.data.splines
@@ -84,29 +66,6 @@ def test_refinement_interpolates_what_points_have():
         along = np.concatenate([[0], np.cumsum(lengths)])
         linear = np.interp(along[:-1], [*along[old], along[-1]], [*array, array[0]])
         np.testing.assert_allclose(refined, linear, atol=1e-5)
-
-
-def test_a_link_keeps_its_splines_and_everything_else():
-    obj = add_hopf_link()
-    data = obj.data
-    for name in ("Red", "Blue"):
-        data.materials.append(bpy.data.materials.new(name))
-    data.splines[1].material_index = 1
-    data.splines[0].use_smooth = False
-    data.bevel_depth, data.bevel_resolution, data.resolution_u = 0.125, 3, 5
-    start = stored(data).astype(np.float64)
-    relax(vertices=60, radius="keep", **BOTTOM)
-    wanted = RelaxOptions(vertices=60, radius=(0.125, 0.125), **BOTTOM)
-    result = minimize(Curve.from_components([start[:24], start[24:]]), wanted).curve
-    np.testing.assert_array_equal(stored(obj.data), result.vertices.astype(np.float32))
-    data = obj.data
-    assert [len(spline.points) for spline in data.splines] == [*result.mesh.component_sizes]
-    assert [slot.name for slot in data.materials] == ["Red", "Blue"]
-    assert [spline.material_index for spline in data.splines] == [0, 1]
-    assert [spline.use_smooth for spline in data.splines] == [False, True]
-    assert all(spline.use_cyclic_u and spline.type == "POLY" for spline in data.splines)
-    assert (data.bevel_depth, data.bevel_resolution, data.resolution_u) == (0.125, 3, 5)
-    assert data.name == obj.name == "Knot"
 
 
 def add_ring():

@@ -55,23 +55,6 @@ def test_length_and_rests_and_pace_act_at_once(film, settings):
     assert not bake.is_edited(film.data)
 
 
-def test_there_and_back_at_once(capfd):
-    obj, settings = add_trefoil(), bpy.context.scene.mobius_flow
-    relax(**EVEN, loop=True)
-    assert "up to frame 40, " in capfd.readouterr().out
-    relax(**EVEN)
-    shown, count = evaluated(obj, 15.0), len(frames_of(obj.data))
-    settings.length, settings.loop = 79, True
-    assert bake.scene_range([obj]) == (1, 79)
-    assert len(frames_of(obj.data)) == 2 * count - 1
-    np.testing.assert_allclose(evaluated(obj, 1), evaluated(obj, 80), atol=1e-6)
-    with pytest.raises(RuntimeError, match="switch Loop off first"):
-        bpy.ops.curve.mobius_flow_continue(max_iterations=1)
-    settings.loop, settings.length = False, 40
-    assert len(frames_of(obj.data)) == count
-    np.testing.assert_allclose(evaluated(obj, 15.0), shown, atol=1e-6)
-
-
 def test_others_are_not_retimed_nor_keys_that_somebody_has_moved(settings):
     obj = add_trefoil()
     relax(**EVEN)

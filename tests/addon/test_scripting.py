@@ -4,34 +4,15 @@ import bpy
 import mobius_flow
 import numpy as np
 import pytest
-from blender_scenes import add_curve, add_trefoil, relax, stored
+from blender_scenes import add_curve, add_trefoil, stored
 from mobius_flow import Relaxation
-from mobius_flow.addon.curves import bake
 from mobius_flow.addon.pictures import staging
 from mobius_flow.addon.properties import SETTINGS
 from mobius_flow.addon.scripting import complete
 from mobius_flow.core import MobiusFlowError
-from mobius_flow.core.keys.recording import Kind
 from shapes import hopf_link, regular_polygon
 
 SHORT = {"max_iterations": 5, "vertices": 100, "length": 10, "timing": "DISTANCE"}
-
-
-@pytest.mark.usefixtures("defaults")
-def test_a_script_and_the_button_do_the_same():
-    bpy.context.scene.mobius_flow.max_iterations = 1  # which scripts do not look at
-    bpy.context.scene.mobius_flow.length = 77
-    by_script = add_trefoil()
-    bpy.ops.object.select_all(action="DESELECT")
-    bpy.context.view_layer.objects.active = None
-    report = Relaxation(by_script).relax(**SHORT)
-    assert report.certified
-    assert report.kinds[Kind.STEP] == 6
-    assert not bpy.context.selected_objects
-    by_button = add_trefoil()
-    relax(**{"keep_size": "AUTO"} | SHORT)
-    np.testing.assert_array_equal(stored(by_script.data), stored(by_button.data))
-    assert bake.scene_range([by_script]) == bake.scene_range([by_button]) == (1, 10)
 
 
 def test_defaults_are_those_of_a_new_scene():

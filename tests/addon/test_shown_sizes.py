@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_curve, add_trefoil, contents, drawn, evaluated, in_world, place, relax
+from blender_scenes import add_curve, add_trefoil, contents, drawn, evaluated, in_world, relax
 from mobius_flow.addon.curves import bake, sizes
 from mobius_flow.addon.curves.moving import what_moves
 from mobius_flow.addon.curves.recorded import BakedKeys
@@ -49,23 +49,6 @@ def test_keys_are_iterates_bit_for_bit_and_the_film_begins_with_the_given_curve(
     start = shown(lattice, 1).vertices
     np.testing.assert_allclose(start, expected[0], atol=1e-6)
     assert BakedKeys([lattice]).unproved == 0
-
-
-@pytest.mark.parametrize("parented", [False, True])
-def test_the_size_stays_at_every_frame_and_the_place_too(lattice, parented):
-    place(lattice)
-    if parented:
-        lattice.parent = parent = bpy.data.objects.new("Parent", None)
-        bpy.context.scene.collection.objects.link(parent)
-        place(parent)
-    relax(**FILM)
-    natural = [Measure.RADIUS.of(Curve(points.astype(float))) for points in BakedKeys([lattice]).frames]
-    assert max(natural) > 1.5 * min(natural)
-    curves = [shown(lattice, frame) for frame in np.linspace(1, 24, 8)]
-    sizes = [Measure.RADIUS.of(curve) for curve in curves]
-    np.testing.assert_allclose(sizes, sizes[0], rtol=0.02)
-    centers = [curve.edge_lengths @ curve.midpoints / curve.length for curve in curves]
-    assert np.ptp(centers, axis=0).max() < 0.1 * sizes[0]
 
 
 def test_an_object_can_still_be_moved_and_gives_all_back(lattice):

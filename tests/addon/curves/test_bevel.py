@@ -1,7 +1,6 @@
 """An artist's bevel is changed only if somebody asks for that; a fitted one is kept fitting."""
 
 import bpy
-import numpy as np
 import pytest
 from blender_scenes import add_curve, add_hopf_link, add_trefoil, in_world, stored
 from families import crossed
@@ -13,14 +12,9 @@ from mobius_flow.core.curve.distances import nearest_strands
 from mobius_flow.core.keys.recording import Kind
 from mobius_flow.core.keys.tube import free_radius, thickest_radius
 from mobius_flow.core.knots import knot
-from shapes import hopf_link, torus_trefoil
+from shapes import hopf_link
 
 SHORT = {"max_iterations": 4}
-
-
-def add_tight():
-    """A trefoil that gets more room when it is relaxed."""
-    return add_curve([torus_trefoil(30).vertices * np.array([1.0, 1.0, 0.3])])
 
 
 def relax(**options):
@@ -74,29 +68,6 @@ def test_ones_own_never_meets_itself(share, kept, capfd):
     assert (nearest >= (1.0 - 1e-5) * 2.0 * depth) is kept
     assert nearest >= 1.7 * thickness(curve)
     assert ("the bevel is too thick" in capfd.readouterr().out) is not kept
-
-
-def test_a_fitted_one_is_kept_fitting_also_in_a_file_that_is_opened_again(tmp_path):
-    add_tight()
-    fit()
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "a.blend"))
-    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "a.blend"))
-    data = bpy.context.object.data
-    assert bevel.is_fitted(data)
-    fitted = data.bevel_depth
-    assert bevel.own_radii([bpy.context.object]) == (), "it is no rope of the artist's"
-
-    def relaxed(**options):
-        relax(**options)
-        return bpy.context.object.data.bevel_depth
-
-    again = relaxed()
-    assert again != fitted
-    assert relaxed(fit_bevel=False) == fitted, "Bake Again begins with what was there before the keys"
-    assert relaxed() == again
-    bpy.context.object.data.bevel_depth = 0.0625
-    bpy.ops.curve.mobius_flow_clear()
-    assert relaxed() == 0.0625, "it is the artist's own now"
 
 
 def test_it_fits_in_the_world():

@@ -53,23 +53,6 @@ def relax_trefoil(**options):
     return relax(max_iterations=5, **options)
 
 
-def test_shape_keys_are_absolute_with_one_fcurve():
-    obj = relax_trefoil()
-    keys = obj.data.shape_keys
-    assert not keys.use_relative
-    assert obj.data.animation_data is None
-    (curve,) = fcurves(keys)
-    assert (curve.data_path, len(curve.keyframe_points)) == ("eval_time", len(keys.key_blocks))
-    assert {point.interpolation for point in curve.keyframe_points} == {"LINEAR"}
-    assert [block.frame for block in keys.key_blocks] == [point.co[1] for point in curve.keyframe_points]
-    assert {block.interpolation for block in keys.key_blocks} == {"KEY_LINEAR"}
-    assert len(bpy.data.actions) == 1
-    last = evaluated(obj, 6)
-    obj.shape_key_clear()
-    np.testing.assert_array_equal(evaluated(obj, 1), last)
-    np.testing.assert_array_equal(stored(obj.data), last)
-
-
 def test_the_result_alone_has_no_keys():
     obj = relax_trefoil(keyframes="RESULT")
     assert obj.data.shape_keys is obj.data.animation_data is None

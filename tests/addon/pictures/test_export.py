@@ -13,7 +13,7 @@ from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, relax
 from mobius_flow.core.keys.key_options import Playing
 from mobius_flow.core.knots import knot
 from processes import finished
-from shapes import hopf_link, regular_polygon, torus_trefoil
+from shapes import regular_polygon, torus_trefoil
 
 TINY = (64, 36)
 WRITERS = [export.write_blend, export.write_still, export.write_movie]
@@ -96,15 +96,6 @@ def test_a_scene_plays_the_relaxation_in_its_place_and_size(tmp_path, scale, shi
     for frame, iterate in ((scene.frame_start, iterates[0]), (scene.frame_end, iterates[-1])):
         points = in_world(obj, evaluated(obj, frame))
         np.testing.assert_allclose(points, iterate.curve.vertices, atol=scale * (1e-5 + 1e-7 * shift))
-
-
-def test_a_link_has_a_colour_for_each_component(tmp_path):
-    export.write_blend(tmp_path / "a.blend", iterates_of(hopf_link(100), max_iterations=1))
-    data = bpy.data.objects["Curve"].data
-    assert [spline.material_index for spline in data.splines] == [0, 1]
-    assert len(data.materials) == 2
-    flat = Curve(regular_polygon(50).vertices[:, :2])
-    assert export.write_blend(tmp_path / "flat.blend", iterates_of(flat, max_iterations=0))
 
 
 def test_a_film(tmp_path, tiny, iterates, capfd):
