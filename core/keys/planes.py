@@ -31,9 +31,6 @@ class Turn:
         turned = [(sign * wanted).T @ axes for sign in signs]
         return cls(max([each for each in turned if np.linalg.det(each) > 0.0], key=np.trace), curve.barycenter)
 
-    def of(self, points: FloatArray) -> FloatArray:
-        return np.asarray(self.center + (points - self.center) @ self.rotation.T)
-
     @property
     def matrix(self) -> FloatArray:
         """The same in homogeneous coordinates; shape (4, 4)."""
