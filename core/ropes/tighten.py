@@ -137,11 +137,8 @@ def tightening(task: Task, options: TightenOptions) -> Relaxation:
     away = float(np.abs(start.curve.vertices.mean(axis=0)).max())
     if away > 1e3 * unit:  # of such coordinates too few digits are left for strands that touch
         size = float(np.ptp(start.curve.vertices, axis=0).max())
-        if size > away:
-            raise CurveError(f"the curve is {size:.3g} wide, but no rope thicker than {unit:.3g}; smooth or relax it")
-        raise CurveError(
-            f"the curve is {away:.3g} from the origin, too far for ropes of radius {unit:.3g}; move it there"
-        )
+        where = f"{size:.3g} wide and {away:.3g} from the origin"
+        raise CurveError(f"the curve, {where}, is no rope thicker than {unit:.3g}; move it there, smooth or relax it")
     if unknot := knot_type(start.curve).names == ("0_1",):  # the flow that undoes it needs its own mesh
         start, unit = task.refined(), math.inf
     if unknot or not start.curve.mesh.all_closed:  # which are not scaled until they fit
@@ -152,15 +149,10 @@ def tightening(task: Task, options: TightenOptions) -> Relaxation:
 def _spread(start: Task, unit: float, unknot: bool, number: int) -> tuple[PulledRope, Iterable[Iterate]]:
     """The rope of a start, and its way along a flow that spreads it out; none if it is tight already."""
     # knots take up to a hundred, parts that are not linked would part for ever; with less drawings differ more
-    most = 2000 if unknot else 40 if number % 2 else 300
+    most, n = 2000 if unknot else 40 if number % 2 else 300, len(start.curve)
+    barrier = "off" if number else "on"  # drawings' strands are apart, and their rope keeps them so
     options = RelaxOptions(
-        barrier="off" if number else "on",  # drawings' strands are apart, and their rope keeps them so
-        max_iterations=most,
-        mesh="fixed",
-        radius=unit,
-        tolerance=1e-2,
-        untangle="never",
-        vertices=len(start.curve),
+        barrier=barrier, max_iterations=most, mesh="fixed", radius=unit, tolerance=1e-2, untangle="never", vertices=n
     )
     if unknot:  # forces may balance wherever it is packed, but the flow and its moves bring it to the circle
         flow = relax(start, options)
@@ -208,7 +200,7 @@ def _tightened(
             else:
                 trials.append((rope, way := [rope.last]))
                 way += steps
-        several = trials[:1]  # with the given curve the shortest others, as starts often come to the same shape
+        several = trials[:1]  # the given curve and three others, as starts often come to the same shape
         for trial in sorted(trials, key=rank):
             if len(several) < 4 and all(abs(trial[0].promise / rope.promise - 1.0) > 2e-4 for rope, _ in several):
                 several.append(trial)
