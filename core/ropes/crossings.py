@@ -31,11 +31,10 @@ class Crossing:
     @property
     def sentence(self) -> Message:
         over, under = (Message(COMPONENT, number=each + 1) for each in (self.over, self.under))
+        place = written(np.array(self.place))
         if over == under:
-            return Message("{over} went over itself near {place}", over=over, place=written(np.array(self.place)))
-        return Message(
-            "{over} went over {under} near {place}", over=over, under=under, place=written(np.array(self.place))
-        )
+            return Message("{over} went over itself near {place}", over=over, place=place)
+        return Message("{over} went over {under} near {place}", over=over, under=under, place=place)
 
 
 def lead_apart(

@@ -82,11 +82,6 @@ class Ropes:
         """The largest relative change of a length that is to be kept."""
         return 0.0 if not self.keep else float(np.abs(curve.edge_lengths / self.given.edge_lengths - 1.0).max())
 
-    def pull_back(self, curve: Curve) -> None:
-        """Let the multipliers take over the tension of kept lengths."""
-        if self.keep:
-            self.pull = self.stretches(curve)[1]
-
     def value(self, curve: Curve, near: Clearances, share: float, begins: float) -> float:
         """What is minimised; infinite where ropes meet."""
         total = self.energy(curve) + self.weight * float(near.barrier(share, begins)[0].sum())

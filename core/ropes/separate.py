@@ -157,7 +157,8 @@ def _separated(ropes: Ropes, now: Curve, index: int, crossings: tuple[Crossing, 
                 break
             now, index = end, index + 1
             yield ropes.iterate(index, now, size, decrement)
-        ropes.pull_back(now)
+        if ropes.keep:  # multipliers take over the tension of kept lengths
+            ropes.pull = ropes.stretches(now)[1]
 
     shares = list[float]()
     while len(shares) < 12 or ropes.share > 1.01 * shares[-12]:
