@@ -54,6 +54,12 @@ class PulledRope:
         """About how short the rope becomes, compared to others of as many vertices."""
         return self.point.merit if self.point else np.inf
 
+    @property
+    def shape(self) -> FloatArray:
+        """How far it reaches along its three axes, the root mean squares."""
+        x = self.curve.vertices - self.curve.vertices.mean(axis=0)
+        return np.linalg.svd(x, compute_uv=False) / len(x) ** 0.5
+
     def proves(self, vertices: FloatArray) -> bool:
         return is_rope(self.curve.mesh, self.curve.vertices, vertices, np.array(self.last.radius))
 

@@ -32,6 +32,7 @@ from ..knots import knot_type
 from ..knots.planar import redrawn
 from .pulled_rope import COARSE, GAP, PER_CONTROL, PulledRope
 
+Trial = tuple[PulledRope, list[Iterate]]  # and the way it went
 ELSEWHERE = "it begins at another drawing of the same type; no motion from the given curve is recorded"
 
 
@@ -99,9 +100,9 @@ def tighten(
 
     In the end there are ``vertices`` or up to twice as many, by default 800, and 400 of open ropes.  What is tight is
     only refined.  Of several ``starts`` all but the first are drawn anew from other diagrams (`redrawn`), in the same
-    place, with handedness and components as they are, but no motion there is recorded.  The given curve
-    and three that are shortest on few vertices are compared on twice as many, those that are nearly equal in the end,
-    and the best is the result, whose way begins at its start.  Open ropes, unknots and links that come apart have one.
+    place, with handedness and components as they are, but no motion there is recorded.  Those that are
+    nearly the shortest on few vertices are compared on twice as many, and those that still are to the end; the best is
+    the result, whose way begins at its start.  Open ropes, unknots and links that come apart have one.
     ``energy`` of iterates is length over radius, ``gradient_norm`` the residual.  The result's outcome is a
     `Tightened`, unless it was cut short.
 
@@ -149,7 +150,7 @@ def tightening(task: Task, options: TightenOptions) -> Relaxation:
 def _spread(start: Task, unit: float, unknot: bool, number: int) -> tuple[PulledRope, Iterable[Iterate]]:
     """The rope of a start, and its way along a flow that spreads it out; none if it is tight already."""
     # knots take up to a hundred, parts that are not linked would part for ever; with less drawings differ more
-    most, n = 2000 if unknot else 40 if number % 2 else 300, len(start.curve)
+    most, n = 2000 if unknot else 20 if number % 2 else 300, len(start.curve)
     barrier = "off" if number else "on"  # drawings' strands are apart, and their rope keeps them so
     options = RelaxOptions(
         barrier=barrier, max_iterations=most, mesh="fixed", radius=unit, tolerance=1e-2, untangle="never", vertices=n
@@ -172,7 +173,7 @@ def _tightened(
     start: Task, unit: float, coarse: int, vertices: int, unknot: bool, wanted: TightenOptions
 ) -> Relaxation:
     alone = wanted.starts == 1 or unknot or not start.curve.mesh.all_closed
-    trials, fine = list[tuple[PulledRope, list[Iterate]]](), vertices // PER_CONTROL
+    trials, fine = list[Trial](), vertices // PER_CONTROL
 
     def starts() -> Iterator[Task]:
         yield start
@@ -183,9 +184,16 @@ def _tightened(
                 x = start.curve.vertices.mean(axis=0) + (1.0 + 1e-6) * unit / thick.min() * (x - x.mean(axis=0))
                 yield Task.of(task.curve.with_vertices(x))
 
-    def rank(trial: tuple[PulledRope, list[Iterate]]) -> tuple[int, float]:
-        """Those of about as many vertices are compared, the others are last."""
-        return round(len(trial[0].curve) / coarse), trial[0].promise
+    def near(several: list[Trial], width: float) -> list[Trial]:
+        """The first and others, of other shapes, by a little longer than the shortest of about as many vertices."""
+        found = list[Trial]()
+        for trial in several[:1] + sorted(several[1:], key=lambda each: each[0].promise):
+            rope, n = trial[0], len(trial[0].curve)
+            least = min(other.promise for other, _ in several if abs(len(other.curve) - n) < 0.1 * n)
+            differs = [np.abs(other.shape / rope.shape - 1.0).max() > 5e-3 for other, _ in found]
+            if rope.promise < width * least and all(differs):
+                found.append(trial)
+        return found
 
     try:
         for number, each in enumerate(starts()):
@@ -200,16 +208,12 @@ def _tightened(
             else:
                 trials.append((rope, way := [rope.last]))
                 way += steps
-        several = trials[:1]  # the given curve and three others, as starts often come to the same shape
-        for trial in sorted(trials, key=rank):
-            if len(several) < 4 and all(abs(trial[0].promise / rope.promise - 1.0) > 2e-4 for rope, _ in several):
-                several.append(trial)
-        for rope, way in several if coarse < vertices and len(several) > 1 else ():
+        several = near(trials, 1.01)
+        for rope, way in several if coarse < vertices else ():
             way += chain(rope.refined(vertices), rope.pulled())
-        ranks = [rank(trial) for trial in several]
-        for (count, promise), (rope, way) in zip(ranks, several, strict=True):
-            if all(promise < 1.001 * other for others, other in ranks if others == count):  # it may be the shortest
-                way += rope.finished(vertices)
+        several = near(several, 1.0015)[:4]  # by so much promises of one shape differ on so many vertices
+        for rope, way in several:
+            way += rope.finished(vertices)
         if several:  # of the same shapes that to which a motion leads
             least = min(rope.last.energy for rope, _ in several)
             rope, way = next(each for each in several if each[0].last.energy <= (1.0 + 1e-5) * least)
