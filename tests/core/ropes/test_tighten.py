@@ -132,19 +132,19 @@ def test_open_ropes_end_on_fewer_vertices(monkeypatch):
 
 
 def test_of_starts_that_come_to_the_same_shape_the_given_curve_goes_on(monkeypatch):
-    refined, ropes, done = PulledRope.refined, {}, set()
+    thinned, refined, lengths, done = PulledRope.thinned, PulledRope.refined, {}, set()
+
+    def numbered(rope, count):
+        lengths[id(rope)] = 26.0 - 0.05 * len(lengths)  # the later starts are a little shorter
+        return thinned(rope, count)
 
     def noted(rope, vertices):
         done.add(id(rope))
         return refined(rope, vertices)
 
-    def promise(rope):
-        """The later starts are a little shorter."""
-        ropes.setdefault(id(rope), (rope, 26.0 - 0.05 * len(ropes)))
-        return ropes[id(rope)][1]
-
+    monkeypatch.setattr(PulledRope, "thinned", numbered)
     monkeypatch.setattr(PulledRope, "refined", noted)
-    monkeypatch.setattr(PulledRope, "promise", property(promise))
+    monkeypatch.setattr(PulledRope, "promise", property(lambda rope: lengths[id(rope)]))
     monkeypatch.setitem(tightening.__wrapped__.__globals__, "redrawn", lambda *_: [HOPF, HOPF])
     iterates, outcome = run(HOPF, vertices=200, starts=3)
     assert len(iterates[-1].curve) == 200
