@@ -67,8 +67,8 @@ class Curve:
     def of(cls, other: object) -> "Curve":
         """A curve from objects of other programs: a link of SnapPy or spherogram, or arrays of vertices.
 
-        Links, and whatever else has a ``PD_code()``, are drawn from above as `mobius_flow.core.knots.diagram_knot`
-        draws them.  Raises CurveError for objects that are none of these.
+        Links, and whatever else has a ``PD_code()``, are drawn from above as `mobius_flow.core.knots.knot` draws codes.
+        Raises CurveError for objects that are none of these.
 
         >>> Curve.of([[0, 0, 0], [1, 0, 0], [0, 1, 0]])
         <Curve: 1 closed polygon, 3 vertices in R^3>

@@ -6,6 +6,5 @@ from .formulas import FORMULAS, cable, double, freedman, lissajous_knot, overhan
 from .inscribed import rounded
 from .knot_type import Effort, KnotType, knot_type
 from .names import ALIASES, HARD_UNKNOTS, KNOTS, UnknownKnotError, braid_word, knot, knot_names
-from .planar import diagram_knot
 from .scrambles import scramble
 from .shapes import smooth_knot

@@ -8,31 +8,18 @@ rectangles: in these it is enough that all lines have length 1 or more.
 """
 
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from itertools import islice, pairwise
 
 import numpy as np
 import scipy.sparse as sp
 
-from ..base import CurveError, FloatArray, checked
+from ..base import CurveError, FloatArray
 from ..collision import check_embedded
 from ..curve import MAKERS, Curve, refine
-from .diagrams import Diagram, PlanarCrossing, diagram_of, views
+from .diagrams import Diagram, diagram_of, views
 from .diagrams.rerouting import rearranged, without_nugatory
 from .inscribed import MAX_VERTICES
-
-
-@checked
-def diagram_knot(code: Sequence[PlanarCrossing], vertices: int | None = None) -> Curve:
-    """Make the knot or link of a planar diagram code as a polygon with vertices at its crossings and bends, or more.
-
-    The code has for each crossing its four edges, counterclockwise from the one that comes in below; nugatory crossings
-    are left out.  Raises CurveError if there is no such diagram, or the vertices are too few or too many.
-
-    >>> len(diagram_knot([(1, 5, 2, 4), (3, 1, 4, 6), (5, 3, 6, 2)]))
-    22
-    """
-    return refined(drawn(diagram_of(code)), vertices)
 
 
 def redrawn(curve: Curve, count: int, seed: int) -> Iterator[Curve]:

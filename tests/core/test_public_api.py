@@ -121,7 +121,6 @@ FINE: dict[str, tuple[Callable[..., object], dict[str, object]]] = {
     ),
     "braid_closure": (knots.braid_closure, {"word": (1, 1, 1), "vertices": 20, "strands": 2}),
     "braid_word": (knots.braid_word, {"name": "3_1"}),
-    "diagram_knot": (knots.diagram_knot, {"code": [(1, 5, 2, 4), (3, 1, 4, 6), (5, 3, 6, 2)], "vertices": 30}),
     "cable": (knots.cable, {"companion": torus_trefoil(60), "p": 2, "q": 1, "vertices": 200}),
     "double": (knots.double, {"companion": torus_trefoil(60), "twists": 0, "clasp": 1, "vertices": 200}),
     "scramble": (

@@ -8,11 +8,11 @@ from knot_diagrams import diagram
 from knot_type import UNKNOT, knot_invariants
 from mobius_flow.core import Curve, CurveError
 from mobius_flow.core.collision import check_embedded, minimal_gap
-from mobius_flow.core.knots import HARD_UNKNOTS, diagram_knot, knot, knot_type
+from mobius_flow.core.knots import HARD_UNKNOTS, knot, knot_type
 from mobius_flow.core.knots.braids import braid_diagram
 from mobius_flow.core.knots.diagrams import diagram_of, linking_numbers, quick_invariants, views
 from mobius_flow.core.knots.diagrams.rerouting import without_nugatory
-from mobius_flow.core.knots.planar import grid_drawing, redrawn
+from mobius_flow.core.knots.planar import drawn, grid_drawing, redrawn
 
 RIGHT_TREFOIL = [(1, 5, 2, 4), (3, 1, 4, 6), (5, 3, 6, 2)]
 CODES = {
@@ -21,6 +21,10 @@ CODES = {
     "4_1": [(4, 2, 5, 1), (8, 6, 1, 5), (6, 3, 7, 4), (2, 7, 3, 8)],
     **{name: diagram([knot(name).vertices]).pd_code() for name in ("5_2", "6_3", "7_7", "8_19", "9_42")},
 }
+
+
+def diagram_knot(code):
+    return drawn(diagram_of(code))
 
 
 @pytest.mark.parametrize("name", CODES)
@@ -41,7 +45,7 @@ def test_drawings_of_other_diagrams_keep_the_type_and_a_seed_tells_which(name):
 
 
 def test_nothing_is_drawn_of_what_comes_apart():
-    circle = diagram_knot([(1, 1, 2, 2)], 30)
+    circle = diagram_knot([(1, 1, 2, 2)])
     for curve in (circle, Curve.from_components([circle.vertices, circle.vertices + 5.0])):
         assert not list(redrawn(curve, 3, 5))
 
