@@ -72,17 +72,8 @@ def test_only_what_blender_runs_is_in_the_zip(archive):
 
 def reviewed(path):
     """What in a module reviewers of extensions look for."""
-    modules = {
-        "concurrent",
-        "ctypes",
-        "multiprocessing",
-        "pickle",
-        "signal",
-        "socket",
-        "subprocess",
-        "threading",
-        "urllib",
-    }
+    processes = {"concurrent", "multiprocessing", "signal", "subprocess", "threading"}
+    modules = processes | {"ctypes", "pickle", "socket", "urllib"}
     found = set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         match node:
