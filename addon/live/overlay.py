@@ -2,7 +2,6 @@
 
 import logging
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import blf
 import bpy
@@ -62,59 +61,47 @@ def _draw() -> None:
         _log.debug("nothing was drawn over the view", exc_info=True)
 
 
-@dataclass(frozen=True, eq=False)
-class _Style:
-    """Sizes in pixels and colours of the plot, from the interface's scale and the theme."""
-
-    scale: float
-    font: float
-    ground: Colour
-    words: Colour
-    accent: Colour
-
-    @classmethod
-    def of(cls, preferences: bpy.types.Preferences) -> "_Style":
-        theme, scale = preferences.themes[0], preferences.system.ui_scale
-        ground, words = theme.user_interface.wcol_tooltip.inner, theme.user_interface.wcol_tooltip.text
-        font = 0.9 * scale * preferences.ui_styles[0].widget.points
-        return cls(scale, font, ground, words, legible(theme.view_3d.object_active, ground))
+def _tooltip(preferences: bpy.types.Preferences) -> tuple[float, float, Colour, Colour]:
+    """The interface's scale, and the font's size, the ground and the words' colour as tooltips have them."""
+    scale, colours = preferences.system.ui_scale, preferences.themes[0].user_interface.wcol_tooltip
+    return scale, 0.9 * scale * preferences.ui_styles[0].widget.points, colours.inner, colours.text
 
 
 def label(words: str, place: FloatArray) -> None:
     """Write words right of a place in the region, on the ground that tooltips have."""
-    style = _Style.of(bpy.context.preferences)
-    blf.size(_FONT, style.font)
-    gap, size = style.scale * 10.0, np.array(blf.dimensions(_FONT, words))
+    scale, font, ground, ink = _tooltip(bpy.context.preferences)
+    blf.size(_FONT, font)
+    gap, size = scale * 10.0, np.array(blf.dimensions(_FONT, words))
     low = place + gap
-    area(tuple(low), tuple(low + size + 2 * gap), (*style.ground[:3], 0.85))
-    text(words, tuple(low + gap), style.words, style.font)
+    area(tuple(low), tuple(low + size + 2 * gap), (*ground[:3], 0.85))
+    text(words, tuple(low + gap), ink, font)
 
 
 def _plot(context: bpy.types.Context, run: LiveRun) -> None:
     """Draw the plot in the lower right corner, unless the view is too small for anything else."""
-    style = _Style.of(context.preferences)
-    size, padding, caption = style.scale * np.array([280.0, 120.0]), style.scale * 10.0, style.scale * 18.0
+    scale, font, ground, ink = _tooltip(context.preferences)
+    size, padding, caption = scale * np.array([280.0, 120.0]), scale * 10.0, scale * 18.0
     outer = size + 2 * padding + np.array([0.0, caption])
     region = context.region
     sidebars = [each for each in context.area.regions if each.type == "UI" and each.width > 1]  # may lie over the view
     right = min([region.width, *(each.x - region.x for each in sidebars if each.x > region.x)])
-    low = style.scale * 16.0 * np.array([-1.0, 1.0]) + np.array([right - outer[0], 0.0])
+    low = scale * 16.0 * np.array([-1.0, 1.0]) + np.array([right - outer[0], 0.0])
     if low[0] < 0 or 2 * outer[1] > region.height:
         return
-    area(tuple(low), tuple(low + outer), (*style.ground[:3], 0.85))
+    area(tuple(low), tuple(low + outer), (*ground[:3], 0.85))
     origin, (way, level) = low + padding, plot(run.energies, run.target, *size)
     if run.target is not None and level is not None:
         # draw a dashed line with its label above it, at the left, where the energy is still high
-        start, ends = origin + np.array([0.0, level]), np.arange(0.0, size[0], style.scale * 4.0)
+        start, ends = origin + np.array([0.0, level]), np.arange(0.0, size[0], scale * 4.0)
         across = ends[: len(ends) // 2 * 2]
-        pale = [0.5 * (a + b) for a, b in zip(style.ground[:3], style.words[:3], strict=True)]
-        line(start + np.column_stack([across, np.zeros(len(across))]), pale, style.scale, kind="LINES")
-        text(iface_(run.target.label), (start[0], start[1] + 4 * style.scale), style.words, style.font)
-    line(origin + way, style.accent, style.scale * _LINE)
+        pale = [0.5 * (a + b) for a, b in zip(ground[:3], ink[:3], strict=True)]
+        line(start + np.column_stack([across, np.zeros(len(across))]), pale, scale, kind="LINES")
+        text(iface_(run.target.label), (start[0], start[1] + 4 * scale), ink, font)
+    line(origin + way, legible(context.preferences.themes[0].view_3d.object_active, ground), scale * _LINE)
     assert run.last is not None, "it has energies"
     x, y = (origin + np.array([0.0, size[1] + 0.5 * caption])).tolist()
-    text(iface_("Energy {energy:.4f}", energy=run.energies[-1]), (x, y), style.words, style.font)
-    text(iface_("Step {index}", index=run.last.index), (x + size[0], y), style.words, style.font, share=1.0)
+    text(iface_("Energy {energy:.4f}", energy=run.energies[-1]), (x, y), ink, font)
+    text(iface_("Step {index}", index=run.last.index), (x + size[0], y), ink, font, share=1.0)
 
 
 def _marks(context: bpy.types.Context, run: LiveRun) -> None:
