@@ -54,14 +54,9 @@ def set_up(
     style = LOOKS[look]
     collection[STAGE], collection[_LOOK] = _aspect(scene), look
     # what renders would show besides curves, their tubes and what they avoid
-    around, tubes = scene.mobius_flow_surroundings, (tube for obj in objects for tube in _tubes(obj))
-    spared = {
-        *objects,
-        *tubes,
-        *map(copy_of, objects),
-        around.container,
-        *(around.avoid.all_objects if around.avoid is not None else ()),
-    }
+    around = scene.mobius_flow_surroundings
+    spared = {*objects, *map(copy_of, objects), *(tube for obj in objects for tube in _tubes(obj)), around.container}
+    spared |= set(around.avoid.all_objects) if around.avoid is not None else set()
     for k, obj in enumerate(scene.objects if hide_others else ()):
         if not (obj.hide_render or obj in spared or obj.type in {*WITHOUT_SHAPE, "EMPTY"}):
             collection[f"{HIDDEN}{k}"], obj.hide_render = obj, True
@@ -118,16 +113,10 @@ def renew(scene: bpy.types.Scene, look: str = "") -> None:
     if collection is None or look == collection.get(_LOOK):
         return
     objects = [obj for obj in kept(collection, _SHOWN) if obj.name in scene.objects]
+    look, hidden = look or collection.get(_LOOK, ON_STAGE), bool(kept(collection, HIDDEN))
     camera_used, world_used = (block is not None and STAGE in block for block in (scene.camera, scene.world))
     with suppress(CurveError):
-        set_up(
-            scene,
-            objects,
-            camera_used,
-            world_used,
-            look or collection.get(_LOOK, ON_STAGE),
-            bool(kept(collection, HIDDEN)),
-        )
+        set_up(scene, objects, camera_used, world_used, look, hidden)
 
 
 def kept(collection: bpy.types.Collection, which: str) -> list[bpy.types.Object]:
