@@ -18,7 +18,7 @@ from ...core.keys.placement import Link, Placement
 from .assets import add_nodes, drop_nodes
 from .moving import what_deforms
 from .sizes import placement
-from .splines import coordinates, read, sampled, smooth_splines
+from .splines import coordinates, read, sampled, shape, smooth_splines
 
 KINDS = {"CURVES", "GREASEPENCIL", "MESH"}  # of objects that are read besides curve objects
 _MOST = 1000  # strands of one of them: a relaxation would never get anywhere with a fur of 100,000 hairs
@@ -66,10 +66,7 @@ class Strands:
         """
         if obj.type == "CURVE":
             frames = sampled(obj) if smooth_splines(obj.data) else [coordinates(each) for each in obj.data.splines]
-            found = cls(
-                [each.astype(np.float64) for each in frames],
-                tuple(bool(spline.use_cyclic_u) for spline in obj.data.splines),
-            )
+            found = cls([each.astype(np.float64) for each in frames], tuple(flag for *_, flag in shape(obj.data)))
         else:
             found = cls((), ()) if what_deforms(obj) else _read(obj, True)
             found = found if found.components else _read(obj, False)
