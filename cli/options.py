@@ -71,10 +71,9 @@ def from_arguments(arguments: argparse.Namespace, owner: type = RelaxOptions) ->
     for option in declared(owner):
         if option.name in arguments.offered:
             value = getattr(arguments, option.name)
-            words = (item for word in value for item in option.read(word)) if option.repeated else ()
-            wanted[option.name] = (
-                tuple(words) if option.repeated else option.read(value) if isinstance(value, str) else value
-            )
+            if option.repeated:
+                value = tuple(item for word in value for item in option.read(word))
+            wanted[option.name] = option.read(value) if isinstance(value, str) else value
     return owner(**wanted)
 
 
