@@ -104,12 +104,13 @@ def kept(path: str, write: Write, rescue: Write | None = None, name: str | None 
     except MemoryError:
         reason = f"{path}: there is not enough memory to write it"
     try:
-        place = Path(tempfile.mkdtemp(prefix="mobius-flow-"), os.path.basename(name or path))
+        room = tempfile.mkdtemp(prefix="mobius-flow-")
+        place = Path(room, os.path.basename(name or path))  # the room itself where the path ends in no name
         try:
             (rescue or write)(str(place))
             reason += f" (the result is kept as {place})"
         except (MobiusFlowError, OSError, MemoryError):
-            shutil.rmtree(place.parent, ignore_errors=True)
+            shutil.rmtree(room, ignore_errors=True)
     except OSError:  # there is no temporary directory either
         pass
     if interrupt is not None:

@@ -36,6 +36,8 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[Path]:
     temporary: Path | None = None
     try:
         found = status_of(path)
+        if not os.fspath(path):  # which would be the working directory's
+            raise MobiusFlowError("the name of a file to be written is empty; name a file")
         if found is not None and stat.S_ISDIR(found.st_mode):
             raise MobiusFlowError(f"{path}: is a directory; name a file")
         if found is None and not Path(os.path.realpath(path)).parent.is_dir():

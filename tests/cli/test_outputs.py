@@ -2,6 +2,7 @@
 
 import os
 import re
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -63,6 +64,19 @@ def test_places_where_no_file_can_be(output, place, said, refused):
     before = sorted(os.listdir())
     assert said in refused(*words(output, place.replace(".txt", suffix)))
     assert sorted(os.listdir()) == before
+
+
+def test_what_cannot_be_kept_leaves_the_temporary_directory_alone(refused, tmp_path, monkeypatch):
+    monkeypatch.setattr(tempfile, "tempdir", str(room := tmp_path / "temporary"))
+    room.mkdir()
+    (room / "others.txt").touch()
+    assert "name a file" in refused("relax", "trefoil.txt", "o.txt", "--report", "")
+
+    def failing(_path):
+        raise MobiusFlowError("no")
+
+    assert [places.kept(path, failing) for path in ("", "no/such/")] == [["no"], ["no"]]
+    assert os.listdir(room) == ["others.txt"]
 
 
 @pytest.mark.parametrize("output", ["atlas", "list", "batch"])
