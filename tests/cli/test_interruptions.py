@@ -109,6 +109,27 @@ def test_a_signal_keeps_curve_report_and_trajectory():
     check_results("interrupted")
 
 
+@BOTH
+def test_signals_while_results_are_written_cost_nothing(number, terminated, on_iterate, monkeypatch, run):
+    save = Trajectory.save
+
+    def interrupted(iterate):
+        if iterate.index == 3:
+            terminated(number)
+            terminated()
+
+    def interrupted_save(self, path):
+        terminated(number)
+        save(self, path)
+        terminated(number)
+
+    on_iterate(interrupted)
+    monkeypatch.setattr(Trajectory, "save", interrupted_save)
+    monkeypatch.setattr(signals._State, "together", 0.0)
+    assert run(*COMMAND, *ENDLESS)[0] == 130
+    check_results("interrupted")
+
+
 @pytest.fixture
 def interrupted_at_the_end(terminated, monkeypatch):
     """A signal comes after the last step, before the results are written."""

@@ -1,5 +1,6 @@
 """Outputs are looked at before the work, and kept elsewhere when writing fails after it."""
 
+import json
 import os
 import re
 import tempfile
@@ -13,6 +14,7 @@ from mobius_flow.core import read_curve, write_curve
 from mobius_flow.core.base import OutputError, atomic_write
 from mobius_flow.core.base.errors import MobiusFlowError
 from mobius_flow.core.io import FORMATS
+from mobius_flow.core.proof import verify
 from shapes import regular_polygon
 
 OUTPUTS = {
@@ -26,6 +28,11 @@ OUTPUTS = {
     "batch": "batch 3_1 -o {}",
 }
 FILES = [*OUTPUTS][:4]
+ALL = [
+    *["relax", "trefoil.txt", "place/o.txt", "--report", "place/r.json", "--trajectory", "place/t.npz", "--quiet"],
+    *SHORT,
+]
+
 pytestmark = pytest.mark.usefixtures("room")
 
 
@@ -188,6 +195,22 @@ def test_copying_that_fails_brings_the_old_contents_back(tmp_path, monkeypatch):
         temporary.write_text("new and longer")
     assert target.read_text() == "old"
     assert sorted(os.listdir(tmp_path)) == before
+
+
+def test_results_without_room_are_kept_elsewhere(refused, monkeypatch):
+    os.mkdir("place")
+    finish = relax_command.finish
+
+    def disappearing(*arguments):
+        result = finish(*arguments)
+        os.rmdir("place")
+        return result
+
+    monkeypatch.setattr(relax_command, "finish", disappearing)
+    report, trajectory, curve = re.findall(r"the result is kept as ([^)]+)\)", refused(*ALL))
+    assert json.loads(Path(report).read_text())["vertices"] == 60
+    assert verify(trajectory).accepted
+    assert len(read_curve(curve)) == 60
 
 
 def test_of_a_film_that_fails_the_curve_is_kept_and_how_it_is_played_reaches_it(refused, monkeypatch):
