@@ -58,7 +58,7 @@ class PulledRope:
     def shape(self) -> FloatArray:
         """How far it reaches along its three axes, the root mean squares."""
         x = self.curve.vertices - self.curve.vertices.mean(axis=0)
-        return np.linalg.svd(x, compute_uv=False) / len(x) ** 0.5
+        return np.asarray(np.linalg.svd(x, compute_uv=False) / len(x) ** 0.5)
 
     def proves(self, vertices: FloatArray) -> bool:
         return is_rope(self.curve.mesh, self.curve.vertices, vertices, np.array(self.last.radius))
