@@ -191,7 +191,7 @@ def _tightened(
             rope, n = trial[0], len(trial[0].curve)
             least = min(other.promise for other, _ in several if abs(len(other.curve) - n) < 0.1 * n)
             differs = [np.abs(other.shape / rope.shape - 1.0).max() > 5e-3 for other, _ in found]
-            if rope.promise < width * least and all(differs):
+            if not found or (rope.promise < width * least and all(differs)):
                 found.append(trial)
         return found
 
@@ -208,11 +208,12 @@ def _tightened(
             else:
                 trials.append((rope, way := [rope.last]))
                 way += steps
-        several = near(trials, 1.01)
-        for rope, way in several if coarse < vertices else ():
-            way += chain(rope.refined(vertices), rope.pulled())
-        several = near(several, 1.0015)[:4]  # by so much promises of one shape differ on so many vertices
-        for rope, way in several:
+        several = near(trials, 1.01)  # with the given curve's, so that more starts never end longer than one
+        if 4 * coarse < vertices:  # finer meshes, which are not the last ones, tell more
+            for rope, way in several:
+                way += chain(rope.refined(vertices), rope.pulled())
+            several = near(several, 1.0015)  # by so much promises of one shape differ
+        for rope, way in several[:4]:
             way += rope.finished(vertices)
         if several:  # of the same shapes that to which a motion leads
             least = min(rope.last.energy for rope, _ in several)
