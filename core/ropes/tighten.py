@@ -218,14 +218,15 @@ def _tightened(
         if several:  # of the same shapes that to which a motion leads
             least = min(rope.last.energy for rope, _ in several)
             rope, way = next(each for each in several if each[0].last.energy <= (1.0 + 1e-5) * least)
-            yield from way
-    except TimeIsUp as up:
+    except (TimeIsUp, KeyboardInterrupt, MemoryError) as stop:
         if trials:  # the shortest so far
             rope, way = min(trials, key=lambda trial: trial[0].last.energy)
             yield from way
             if rope is not trials[0][0]:
-                up.add_note(Message(ELSEWHERE))
+                stop.add_note(Message(ELSEWHERE))
         raise
+    if trials:
+        yield from way
     return _ended(rope, elsewhere=bool(trials) and rope is not trials[0][0])
 
 

@@ -71,6 +71,7 @@ def test_a_trefoil_is_written_with_report_and_proof(room, run):
         ("tighten trefoil.txt o.txt --vertices 7", "vertices is 7"),
         ("tighten trefoil.txt o.txt --starts 0", "starts is 0"),
         ("tighten trefoil.txt o.txt --contacts map.txt", ".svg"),
+        ("tighten trefoil.txt o.txt --contacts map.svg --report map.svg", "are the same file"),
     ],
 )
 def test_bad_input_is_one_line(refused, words, said):

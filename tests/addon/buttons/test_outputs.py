@@ -187,6 +187,8 @@ def test_too_few_points_are_not_proved(capfd):
 def test_smooth_curves_have_the_bevels_and_the_materials():
     pair = [add_curve([part], name) for part, name in zip(hopf_link(80).components, "AB", strict=True)]
     pair[0].data.bevel_depth, pair[0].data.bevel_resolution, pair[0].data.extrude = 0.125, 3, 0.25
+    pair[0].data.driver_add("bevel_depth")
+    pair[0].data[splines.SOURCE] = {"object": pair[1], "rendered": True}
     bpy.ops.curve.mobius_flow_color_components()
     smooth()
     assert {obj.name for obj in bpy.context.selected_objects} == {"A Smooth", "B Smooth"}
@@ -197,6 +199,8 @@ def test_smooth_curves_have_the_bevels_and_the_materials():
         assert list(data.materials) == list(obj.data.materials)
         assert [spline.material_index for spline in data.splines] == [0]
         assert not bevel.is_fitted(data)
+        assert data.animation_data is None
+        assert splines.SOURCE not in data
     bpy.ops.object.select_all(action="DESELECT")
     add_trefoil()
     bpy.ops.curve.mobius_flow_fit_tube()

@@ -296,6 +296,21 @@ def test_when_the_time_is_up_the_shortest_start_so_far_is_kept():
     assert energies[-1] < 0.95 * energies[0]
 
 
+def test_of_an_interrupted_comparison_the_shortest_start_so_far_is_kept():
+    ticks = count()
+
+    def interrupted():
+        if next(ticks) == 100:
+            raise KeyboardInterrupt
+        return 0.0
+
+    several = tightening(Task(curve=HOPF), TightenOptions(vertices=100, starts=3))
+    limited, energies = within(TimeLimit(1.0, interrupted), several), []
+    with pytest.raises(KeyboardInterrupt):
+        energies.extend(each.energy for each in limited)
+    assert energies[-1] < 0.95 * energies[0]
+
+
 def test_an_open_rope_beside_a_closed_one_keeps_its_length():
     result = tighten(BESIDE, vertices=200)
     assert result.status is Status.CONVERGED
