@@ -198,7 +198,7 @@ keyframes. Tube Mesh then shows where they press on each other"""
 
     starts: IntProperty(
         name="Starts",
-        description="Starts on few vertices, all but the first drawn anew; the best three go on to the end",
+        description="Starts on few vertices, all but the first drawn anew; the shortest go on to the end",
         default=1,
         min=1,
         options={"SKIP_SAVE"},

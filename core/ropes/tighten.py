@@ -51,7 +51,7 @@ class TightenOptions:
     starts: int = option(
         1,
         "Starts",
-        "starts on few vertices, all but the first drawn anew; the best three go on to the end",
+        "starts on few vertices, all but the first drawn anew; the shortest go on to the end",
         low=1,
         high=20_000,
         metavar="K",
@@ -138,8 +138,10 @@ def tightening(task: Task, options: TightenOptions) -> Relaxation:
     away = float(np.abs(start.curve.vertices.mean(axis=0)).max())
     if away > 1e3 * unit:  # of such coordinates too few digits are left for strands that touch
         size = float(np.ptp(start.curve.vertices, axis=0).max())
-        where = f"{size:.3g} wide and {away:.3g} from the origin"
-        raise CurveError(f"the curve, {where}, is no rope thicker than {unit:.3g}; move it there, smooth or relax it")
+        where, remedy = f"{away:.3g} from the origin, too far for ropes", "move it there"
+        if size > away:
+            where, remedy = f"{size:.3g} wide, too much for ropes", "smooth or relax it"
+        raise CurveError(f"the curve is {where} of radius {unit:.3g}; {remedy}")
     if unknot := knot_type(start.curve).names == ("0_1",):  # the flow that undoes it needs its own mesh
         start, unit = task.refined(), math.inf
     if unknot or not start.curve.mesh.all_closed:  # which are not scaled until they fit
@@ -185,7 +187,7 @@ def _tightened(
                 yield Task.of(task.curve.with_vertices(x))
 
     def near(several: list[Trial], width: float) -> list[Trial]:
-        """The first and others, of other shapes, by a little longer than the shortest of about as many vertices."""
+        """The first, and of each other shape the shortest, if little longer than any of about as many vertices."""
         found = list[Trial]()
         for trial in several[:1] + sorted(several[1:], key=lambda each: each[0].promise):
             rope, n = trial[0], len(trial[0].curve)

@@ -319,7 +319,14 @@ def test_an_open_rope_beside_a_closed_one_keeps_its_length():
     assert result.curve.component_lengths[1] < 0.9 * BESIDE.component_lengths[1]
 
 
-@pytest.mark.parametrize("away", [1e4, 1e9])
-def test_what_is_too_far_away_is_refused_at_once(away):
-    with pytest.raises(CurveError, match=r"from the origin|no rope"):
-        tighten(Curve(CIRCLE + away))
+@pytest.mark.parametrize(
+    ("vertices", "said"),
+    [
+        (CIRCLE + 1e4, r"1e\+04 from the origin, too far for ropes of radius 0\..*; move it there"),
+        (CIRCLE + 1e9, r"1e\+09 from the origin, too far .*; move it there"),
+        ([[0, 0, 0], [1e5, 0, 0], [1e5, 1e-3, 0], [0, 1e5, 0]], r"1e\+05 wide, too much for .*; smooth or relax it"),
+    ],
+)
+def test_what_has_too_few_digits_for_its_thickness_is_refused_at_once(vertices, said):
+    with pytest.raises(CurveError, match=said):
+        tighten(Curve(vertices))
