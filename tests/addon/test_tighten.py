@@ -25,6 +25,8 @@ def test_a_button_pulls_a_trefoil_tight_and_clear_undoes_it():
     assert last.length < 0.7 * first.length
     assert thickness(last) == pytest.approx(0.9 * thickness(first), rel=1e-5)
     check_contacts(obj, last)
+    assert bpy.ops.curve.mobius_flow_continue(max_iterations=1) == {"FINISHED"}
+    assert len(bake.contacts(obj.data)[0]) == 0, "points have moved since"
     before.clear()
     assert len(bake.contacts(obj.data)[0]) == 0
 
@@ -48,5 +50,5 @@ def check_contacts(obj, curve):
     assert radii.min() == pytest.approx(thickness(curve), rel=1e-2), "it is the rope, without a bevel"
     for each in (struts, bpy.context.object):
         bpy.data.objects.remove(each)
-    obj.select_set(True)
     obj.hide_set(False)
+    obj.select_set(True)
