@@ -42,10 +42,13 @@ def _is_a(protocol: type, value: object) -> bool:
     return isinstance(value, protocol) and not isinstance(value, type)
 
 
-def radii(text: str, words: Sequence[str] = ()) -> str | tuple[float, ...]:
-    """Numbers with commas between, or one of some words."""
+def radii(text: str, words: Sequence[str] = ()) -> str | float | tuple[float, ...]:
+    """One of some words, a number, or numbers with commas between."""
     try:
-        return text if text in words else tuple(map(float, text.split(",")))
+        if text in words:
+            return text
+        numbers = tuple(map(float, text.split(",")))
+        return numbers if len(numbers) > 1 else numbers[0]
     except ValueError:
         allowed = ", ".join([*words, "a number such as 0.1, or several: 0.1,0.2"])
         raise OptionError(f"radius is {text!r:.40}; give {allowed}") from None

@@ -64,7 +64,7 @@ def test_a_trefoil_is_written_with_report_and_proof(room, run):
     ("words", "said"),
     [
         ("separate cross.txt o.txt --radius thick", "radius is 'thick'; give a number"),
-        ("separate cross.txt o.txt --radius -1", "a number above 0"),
+        ("separate cross.txt o.txt --radius -1", "radius is -1.0; it must be a number above 0"),
         ("separate cross.txt o.txt --radius 1 --over w", "over is 'w'"),
         ("separate cross.txt o.txt --radius 1 --lengths keep", "line 4: component 1 and component 2 are both held"),
         ("separate cross.txt o.txt --radius 1,2,3", "3 numbers for 2 components"),
