@@ -90,9 +90,9 @@ def main() -> int:
         with TemporaryDirectory() as room:
             trajectory.save(Path(room, "path.npz"))
             verdict = verify(Path(room, "path.npz"))
-        ends, parts = curve.mesh.ends.ravel(), list(result.curve.components)
+        ends, parts = [each.vertices[each.mesh.ends] for each in (curve, result.curve)], list(result.curve.components)
         apart = least_distance(parts) / 2.0
-        still = np.array_equal(result.curve.vertices[ends], curve.vertices[ends])
+        still = np.array_equal(*ends)  # long edges are cut, so that numbers differ
         good = result.outcome.converged and still and apart >= 1.0 and verdict.accepted
         failed += not good
         numbers = f"{seed:4} {strands:7} {points:6} {packing:7.2f} {height:6.1f} {len(result.outcome.crossings):9}"

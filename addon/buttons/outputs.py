@@ -51,6 +51,9 @@ class _Output(Button):
             if self.hide_curve:
                 obj.hide_set(True)
                 obj.hide_render = True
+        layer = context.view_layer.objects
+        if layer.active is None or not layer.active.select_get():
+            layer.active = made
 
     def read(self, obj: bpy.types.Object) -> Recorded:
         return Recorded.of(obj)

@@ -78,6 +78,7 @@ def test_it_moves_with_the_curve(place):
 
 def test_it_is_as_thick_as_the_curve_is_drawn_or_as_fits_a_line():
     curve = add_trefoil(60)
+    bpy.context.view_layer.objects.active = None  # what is made becomes active even so
     made = tube(hide_curve=False)
     line = radii(made, 1).min()
     made.select_set(False)
