@@ -7,7 +7,7 @@ import numpy as np
 from bpy_extras.view3d_utils import region_2d_to_location_3d
 
 from ...core import Curve
-from ...core.base import FloatArray
+from ...core.base import FloatArray, dot
 from ...core.curve.distances import points_along
 
 
@@ -31,7 +31,7 @@ class Drag:
         flat, depth, seen = projected(region, curve.vertices)
         tails, heads = curve.mesh.tails, curve.mesh.heads
         along, way = flat[heads] - flat[tails], mouse - flat[tails]
-        t = np.einsum("ij,ij->i", way, along) / np.maximum(np.einsum("ij,ij->i", along, along), 1e-12)
+        t = dot(way, along) / np.maximum(dot(along, along), 1e-12)
         t = np.clip(t, 0.0, 1.0)
         distance = np.linalg.norm(way - t[:, None] * along, axis=1)
         distance[~(seen[tails] & seen[heads])] = np.inf

@@ -167,7 +167,7 @@ def distance(pairs: EdgePairs) -> Jet:
 def closest(pairs: EdgePairs) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Δ + s e − t f between closest points of k pairs of edges, shape (k, m), and s, t ∈ [−½, ½], shape (k,)."""
     delta, e, f = pairs
-    ee, ff, ef, de, df = (np.einsum("km,km->k", *each) for each in ((e, e), (f, f), (e, f), (delta, e), (delta, f)))
+    ee, ff, ef, de, df = (dot(*each) for each in ((e, e), (f, f), (e, f), (delta, e), (delta, f)))
     sine = ee * ff - ef * ef
     oblique = sine.real > 1e-12 * (ee * ff).real  # where edges are parallel any s will do
     s = np.where(oblique, _clip((ef * df - de * ff) / np.where(oblique, sine, 1.0)), 0.0)

@@ -22,7 +22,7 @@ from itertools import accumulate, pairwise
 import numpy as np
 import numpy.typing as npt
 
-from ..base import FloatArray, Place
+from ..base import TINY, FloatArray, Place
 from ..curve import Curve, Mesh
 
 Frame = npt.NDArray[np.float32]
@@ -249,7 +249,7 @@ def framed(curve: Curve, across: float = 0.9, curled: float = 1.2, most: int = 6
     some = np.unique(np.concatenate([mesh.ends.ravel(), np.arange(0, len(points), 1 + len(points) // most)]))
     at, own, inner = points[some], mesh.component[some], ~np.isin(some, mesh.ends)
     along = np.roll(at, -1, axis=0) - np.roll(at, 1, axis=0)
-    along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), np.finfo(float).tiny)
+    along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), TINY)
     apart = np.linalg.norm(at[:, None] - at, axis=2)
     least = (abs(along @ along.T) < across) & inner[:, None] & inner & (apart > 0.0)
     for axis in (0, 1):

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy.sparse as sp
 
-from ..base.types import FloatArray, IntArray
+from ..base import TINY, FloatArray, IntArray, dot
 from ..collision import BoxTree, near_edges, nearer_than, scaled_points, still_triangles
 from ..curve import Curve, Obstacle, arc_distance_of_pairs, bending_radii
 from ..energies.edge_pairs import CORNERS, EdgePairs
@@ -106,23 +106,23 @@ def _with_obstacles(
     p, q = curve.vertices[ends].swapaxes(0, 1)
     chords, places = [], []
     for y, z in (corners[[0, 1]], corners[[1, 2]], corners[[2, 0]]):
-        f = z - y + np.finfo(np.float64).tiny ** 0.5  # segments are triangles with an edge of no length
+        f = z - y + TINY**0.5  # segments are triangles with an edge of no length
         chord, s, _ = closest(EdgePairs(0.5 * ((p - y) + (q - z)), q - p, f))
         chords.append(chord)
         places.append(s)
     f, g = corners[1] - corners[0], corners[2] - corners[0]
     normal = np.cross(f, g)
-    whole = np.maximum(np.einsum("km,km->k", normal, normal), np.finfo(np.float64).tiny)
+    whole = np.maximum(dot(normal, normal), TINY)
     for end, place in ((p, -0.5), (q, 0.5)):  # above the inside of the triangle
         D = end - corners[0]
-        r, t = (np.einsum("km,km->k", np.cross(*each), normal) for each in ((D, g), (f, D)))
+        r, t = (dot(np.cross(*each), normal) for each in ((D, g), (f, D)))
         inside = (r > 0.0) & (t > 0.0) & (r + t < whole)
-        chord = normal * (np.einsum("km,km->k", D, normal) / whole)[:, None]
+        chord = normal * (dot(D, normal) / whole)[:, None]
         chords.append(np.where(inside[:, None], chord, np.inf))
         places.append(np.full(len(edge), place))
-    which = np.argmin([np.einsum("km,km->k", each, each) for each in chords], axis=0)
+    which = np.argmin([dot(each, each) for each in chords], axis=0)
     chord, s = (np.stack(each)[which, np.arange(len(edge))] for each in (chords, places))
-    d = np.sqrt(np.einsum("km,km->k", chord, chord))
+    d = np.sqrt(dot(chord, chord))
     unit = chord / np.where(d == 0.0, 1.0, d)[:, None]
     kept = d < within * radius[edge]
     edge, unit, s, need = edge[kept], unit[kept], s[kept], radius[edge[kept]]

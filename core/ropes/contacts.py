@@ -13,7 +13,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
-from ..base.types import FloatArray, IntArray
+from ..base import FloatArray, IntArray, dot
 from ..curve import Curve, Mesh
 from ..curve.distances import arc_distance_of_points
 from ..energies.edge_pairs import E, EdgePairs, F, Jet, change, scatter_first, scatter_second
@@ -36,7 +36,7 @@ class Contacts:
         i, j = cKDTree(curve.midpoints).query_pairs(reach + float(ell.max()), output_type="ndarray").T
         chord, s, t = closest(EdgePairs.of(mesh, curve.vertices, i, j))
         arc = arc_distance_of_points(curve, i, (s + 0.5) * ell[i], j, (t + 0.5) * ell[j])
-        kept = (np.einsum("km,km->k", chord, chord) < reach * reach) & (arc >= np.pi)
+        kept = (dot(chord, chord) < reach * reach) & (arc >= np.pi)
         i, j, before, after = i[kept], j[kept], mesh.incoming[mesh.inner], mesh.outgoing[mesh.inner]
         return cls(mesh, np.concatenate([i, before, before]), np.concatenate([j, after, after]), len(i))
 

@@ -150,12 +150,18 @@ def tightening(task: Task, options: TightenOptions) -> Relaxation:
 
 
 def _spread(start: Task, unit: float, unknot: bool, number: int) -> tuple[PulledRope, Iterable[Iterate]]:
-    """The rope of a start, and its way along a flow that spreads it out; none if it is tight already."""
-    # knots take up to a hundred, parts that are not linked would part for ever; with less drawings differ more
-    most, n = 2000 if unknot else 20 if number % 2 else 300, len(start.curve)
-    barrier = "off" if number else "on"  # drawings' strands are apart, and their rope keeps them so
+    """The rope of a start, by its number, and its way along a flow that spreads it out; none if it is tight already."""
+    most = 2000 if unknot else 300  # knots take up to a hundred, parts that are not linked would part for ever
+    if number % 2:  # every second drawing is spread a little only, as those that are spread out come to one shape
+        most = 20
     options = RelaxOptions(
-        barrier=barrier, max_iterations=most, mesh="fixed", radius=unit, tolerance=1e-2, untangle="never", vertices=n
+        barrier="off" if number else "on",  # drawings' strands are apart, and their rope keeps them so
+        max_iterations=most,
+        mesh="fixed",
+        radius=unit,
+        tolerance=1e-2,
+        untangle="never",
+        vertices=len(start.curve),
     )
     if unknot:  # forces may balance wherever it is packed, but the flow and its moves bring it to the circle
         flow = relax(start, options)

@@ -1,6 +1,7 @@
 """Curves drawn by hand, and diagrams drawn of curves."""
 
 import re
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
@@ -103,6 +104,18 @@ def test_it_lies_over_the_drawing_wherever_that_is(place, turn):
     assert abs(flat[:, 2]).max() < 0.3
     assert abs(flat[:, 2]).max() > 0.02
     assert abs(flat[:, :2]).max() == pytest.approx(abs(scribble()).max(), rel=0.02)
+
+
+def test_a_click_swaps_the_crossing_that_is_under_it(monkeypatch):
+    """Crossings are numbered along the curve, here seen as drawn, a hundred pixels to the unit; none is elsewhere."""
+    obj = add_curve([scribble()])
+    obj.data[drawing._PLANE] = [0.0, 0.0, 0.0, *np.eye(3).ravel()]
+    monkeypatch.setattr(drawing, "projected", lambda _, at: (100.0 * at[:, :2], None, np.ones(len(at), dtype=bool)))
+    system = SimpleNamespace(ui_scale=1.0)
+    context = SimpleNamespace(object=obj, region=None, preferences=SimpleNamespace(system=system))
+    places, aside = 100.0 * Drawing.seen(Curve(scribble())).crossings, np.array([10.0, 0.0])
+    assert [drawing._crossing(context, place + aside)[2] for place in places] == [1, 2, 3]
+    assert drawing._crossing(context, places[0] + 1.6 * aside) is None
 
 
 def test_several_curves_make_a_link():

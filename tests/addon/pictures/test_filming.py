@@ -1,7 +1,9 @@
 """Films of a scene: whole or not at all, and the scene is not touched."""
 
 import bpy
+import numpy as np
 import pytest
+from blender_scenes import add_trefoil
 from mobius_flow.addon.pictures import movie, rendering
 from mobius_flow.addon.pictures.movie import Filming, length_of
 from mobius_flow.core import MobiusFlowError
@@ -94,6 +96,16 @@ def test_names_of_films_and_looks(scene, tmp_path):
         Filming(scene, str(tmp_path / "film.mp4"), "quick")
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "a.blend"))
     assert movie.target("//film") == tmp_path / "film.mp4"
+
+
+def test_quick_films_are_lit_from_where_the_stages_first_light_is(scene, tmp_path):
+    add_trefoil().data.bevel_depth = 0.1
+    bpy.ops.curve.mobius_flow_set_up_stage()
+    film = Filming(scene, str(tmp_path / "film.mp4"), "QUICK")
+    (copy,) = set(bpy.data.scenes) - {scene}
+    light = next(each for each in scene.objects if each.type == "LIGHT").matrix_world.col[2]
+    np.testing.assert_allclose(copy.display.light_direction, [light[0], light[2], -light[1]], atol=1e-6)
+    film.finish()
 
 
 def test_a_quick_film(scene, tmp_path):

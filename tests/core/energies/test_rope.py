@@ -53,7 +53,9 @@ def test_thin_ropes_cost_nothing_and_thick_ones_everything():
     assert Rope(np.array([0.4 * thick])).value(curve) == 0.0
     costs = [Rope(np.array([share * thick])).value(curve) for share in (0.8, 0.9, 0.99)]
     assert 0.0 < costs[0] < costs[1] < costs[2] < np.inf
-    assert Rope(np.array([1.001 * thick])).value(curve) == np.inf
+    value, derivative = Rope(np.array([1.001 * thick])).value_and_derivative(curve)
+    assert value == np.inf
+    assert not derivative.any()  # rather than NaN
 
 
 def test_straight_pieces_feel_nothing():
@@ -66,6 +68,17 @@ def test_straight_pieces_feel_nothing():
         back = straight[::-1] + np.array([0.0, z, 0.0])
         costs.append(Rope(np.array([0.3, 0.3])).value(Curve.from_components([straight, back], closed=(False, False))))
     assert costs[0] > costs[1] == 0.0
+
+
+def test_it_is_the_sum_of_its_formula():
+    """Two straight strands side by side, of which pairs of edges k apart are as far apart as closest ends, or sides."""
+    n, h, z, r = 40, 0.1, 0.8, 0.3
+    line = h * np.arange(n + 1)[:, None] * [1.0, 0.0, 0.0]
+    curve = Curve.from_components([line, line + np.array([0.0, z, 0.0])], closed=(False, False))
+    gap = h * (abs(np.subtract.outer(np.arange(n), np.arange(n))) - 1).clip(0)
+    share = ((np.hypot(z, gap) - 2.0 * r) / (2.0 * r)).clip(None, 1.0)  # of the way from 2r to 4r
+    wanted = 0.05 * (h / r) ** 2 * np.sum(-((1.0 - share) ** 2) * np.log(share))
+    assert Rope(np.array([r, r])).value(curve) == pytest.approx(wanted, rel=1e-9)
 
 
 def test_it_does_not_depend_on_the_unit():

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from families import family
 from mobius_flow.core import Curve, Iterate, Task
+from mobius_flow.core.base.deadline import TimeIsUp, TimeLimit
 from mobius_flow.core.knots import knot, knot_type, scramble
 from mobius_flow.core.untangle import Legs, untangled, worth
 from solids import plate
@@ -104,3 +105,9 @@ def test_strands_too_near_to_tell_and_too_many_crossings_are_left_alone(vertices
     assert said in ended(untangled(curve), stages)
     assert not stages
     assert worth(curve) == (0, 0)
+
+
+def test_a_time_limit_ends_the_search_for_views():
+    limit = TimeLimit(1e-9)
+    with pytest.raises(TimeIsUp), limit:
+        worth(knot("3_1", 40))
