@@ -69,9 +69,12 @@ class Contacts:
     def second(
         self, vertices: FloatArray, first: FloatArray, z: FloatArray, k: FloatArray
     ) -> tuple[sp.csr_array, sp.csr_array]:
-        """Σ k ∇c ∇cᵀ and −Σ z D²c, sparse (n·m, n·m)."""
-        pairs = EdgePairs.of(self.mesh, vertices, self.i, self.j)
-        second = np.stack([change(self.jet(each).first) for each in pairs.along_coordinates()], axis=2)
-        curved = -0.5 * z[:, None, None] * (second + second.transpose(0, 2, 1))
-        stiff = k[:, None, None] * first[:, :, None] * first[:, None, :]
-        return tuple(scatter_second(self.mesh, self.i, self.j, each) for each in (stiff, curved))
+        """Σ k ∇c ∇cᵀ and −Σ z D²c, sparse (n·m, n·m), from those constraints that are felt."""
+        felt = (z != 0.0) | (k != 0.0)
+        felt[self.strands :] = np.tile(felt[self.strands :].reshape(2, -1).any(axis=0), 2)  # both edges of a corner
+        own = Contacts(self.mesh, self.i[felt], self.j[felt], int(felt[: self.strands].sum()))
+        first, z, k = first[felt], z[felt, None, None], k[felt, None, None]
+        pairs = EdgePairs.of(self.mesh, vertices, own.i, own.j)
+        second = np.stack([change(own.jet(each).first) for each in pairs.along_coordinates()], axis=2)
+        curved, stiff = -0.5 * z * (second + second.transpose(0, 2, 1)), k * first[:, :, None] * first[:, None, :]
+        return tuple(scatter_second(self.mesh, own.i, own.j, stiff, curved))

@@ -6,7 +6,7 @@ Few vertices find the shape, more of them the length: the error of a polygon fal
 import math
 import time
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import chain
 from typing import NamedTuple
 
@@ -84,7 +84,7 @@ class Tightened(Outcome):
     ropelength: float = 0.0
     gap: float = math.inf
     residual: float = math.inf
-    struts: tuple[Strut, ...] = ()
+    struts: tuple[Strut, ...] = field(default=(), repr=False)  # thousands
 
 
 @checked

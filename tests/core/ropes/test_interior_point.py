@@ -29,7 +29,7 @@ def test_contacts_have_first_and_second_derivatives(loose):
     contacts = Contacts.near(loose, 0.5)
     assert contacts.strands > 5
     rng, x = np.random.default_rng(2), loose.vertices
-    v, z = rng.normal(size=x.shape), rng.random(len(contacts.i))
+    v, (z, k) = rng.normal(size=x.shape), rng.random((2, len(contacts.i))) * (rng.random((2, len(contacts.i))) < 0.5)
     v /= 100.0 * np.abs(v).max()
 
     def jet(t):
@@ -37,11 +37,11 @@ def test_contacts_have_first_and_second_derivatives(loose):
 
     first = jet(0.0).first
     assert taylor_slope(lambda t: jet(t).value, [jet(0.0).value, contacts.along(first, v)]) >= 1.95
-    outer, curved = contacts.second(x, first, z, z)
+    outer, curved = contacts.second(x, first, z, k)
     second = -(curved @ v.ravel()).reshape(v.shape)
     slope = taylor_slope(lambda t: contacts.sum_of(jet(t).first, z), [contacts.sum_of(first, z), second])
     assert slope >= 1.95
-    assert np.allclose(v.ravel() @ (outer @ v.ravel()), z @ contacts.along(first, v) ** 2)
+    assert np.allclose(v.ravel() @ (outer @ v.ravel()), k @ contacts.along(first, v) ** 2)
 
 
 def test_constraints_are_those_of_the_thickness(loose):
