@@ -152,7 +152,7 @@ def tightening(task: Task, options: TightenOptions) -> Relaxation:
 def _spread(start: Task, unit: float, unknot: bool, number: int) -> tuple[PulledRope, Iterable[Iterate]]:
     """The rope of a start, by its number, and its way along a flow that spreads it out; none if it is tight already."""
     most = 2000 if unknot else 300  # knots take up to a hundred, parts that are not linked would part for ever
-    if number % 2:  # every second drawing is spread a little only, as those that are spread out come to one shape
+    if number and number % 3 == 0:  # spread a little only: those that are spread out are shorter, but of fewer shapes
         most = 20
     options = RelaxOptions(
         barrier="off" if number else "on",  # drawings' strands are apart, and their rope keeps them so

@@ -35,8 +35,9 @@ def test_small_codes_and_codes_read_off_other_polygons(name):
 @pytest.mark.parametrize("name", ["m8_20", "L6n1"])
 def test_drawings_of_other_diagrams_keep_the_type_and_a_seed_tells_which(name):
     given = knot(name)
-    curves, again = (list(redrawn(given, 3, 5)) for _ in range(2))
+    curves, again, others = (list(redrawn(given, 3, seed)) for seed in (5, 5, 6))
     assert [each.vertices.tolist() for each in curves] == [each.vertices.tolist() for each in again]
+    assert curves[0].vertices.tolist() != others[0].vertices.tolist()
     assert len({round(each.length, 6) for each in curves}) == 3
     for each in curves:
         assert knot_type(each).names == (name,)
