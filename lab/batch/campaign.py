@@ -154,11 +154,12 @@ def campaign(options: argparse.Namespace) -> int:
         _run(plan, rows, directory, options)
     if options.quiet:
         return 0
+    measure, digits = ("ropelength", 7) if options.tighten else ("energy", 5)
     cells = [
         (
             folder_name(row.name, row.start),
             row.type_after or "",
-            "" if row.energy is None else f"{row.energy:.5g}",
+            "" if (found := getattr(row, measure)) is None else f"{found:.{digits}g}",
             "" if row.certified is None else "yes" if row.certified else "NO",
             "" if row.seconds is None else f"{row.seconds:.1f}",
             row.message if row.failed else row.status.replace("_", " "),
@@ -173,8 +174,8 @@ def campaign(options: argparse.Namespace) -> int:
         ("wrote", [quoted(os.path.join(options.output, name)) for name in (CSV, PARQUET)]),
         ("next", [command("gallery", options.output, "-o", "gallery.png")]),
     ]
-    found = table(("name", "type", "energy", "certified", "s", "how it ended"), cells, sys.stdout)
-    emit(f"{found}\n\n{report(head, below, sys.stdout, colour)}")
+    shown = table(("name", "type", measure, "certified", "s", "how it ended"), cells, sys.stdout)
+    emit(f"{shown}\n\n{report(head, below, sys.stdout, colour)}")
     return 0
 
 

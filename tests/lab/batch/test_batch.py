@@ -107,6 +107,7 @@ def test_links_are_pulled_tight_from_starts_that_compete(batch, tmp_path, capsys
     assert (row["kind"], row["verified"], row["energy"], row["status"]) == ("tight", "True", "", "converged")
     assert 8.0 * np.pi < float(row["ropelength"]) < 8.0 * np.pi * 1.002
     assert "ropelength 25.1" in (tmp_path / "out/L2a1/curve.txt").read_text().splitlines()[0]
+    assert f"{float(row['ropelength']):.7g}" in capsys.readouterr().out
     batch("L2a1", "--tighten", "--extrapolate", status=2)
     assert "leave one of both out" in capsys.readouterr().err
 
