@@ -112,18 +112,17 @@ def scatter_first(mesh: Mesh, i: IntArray, j: IntArray, first: FloatArray) -> Fl
     return mesh.scatter(0.5 * by_midpoint - by_edge, 0.5 * by_midpoint + by_edge)
 
 
-def scatter_second(mesh: Mesh, i: IntArray, j: IntArray, *second: FloatArray) -> Iterator[sp.csr_array]:
-    """Second derivatives by the vertices, sparse (n·m, n·m), from those by (Δ, e, f) of pairs, shape (k, 3m, 3m)."""
-    n, m = mesh.size, second[0].shape[1] // 3
+def scatter_second(mesh: Mesh, i: IntArray, j: IntArray, second: FloatArray) -> sp.csr_array:
+    """Second derivative by the vertices, sparse (n·m, n·m), from those by (Δ, e, f) of pairs, shape (k, 3m, 3m)."""
+    n, m = mesh.size, second.shape[1] // 3
     corners = np.stack([mesh.tails[i], mesh.heads[i], mesh.tails[j], mesh.heads[j]], axis=1)
     spread = np.kron(CORNERS, np.eye(m))
+    blocks = (spread @ second @ spread.T).reshape(-1, 4, m, 4, m).swapaxes(2, 3).reshape(-1, m * m)
     # pairs of vertices are in many pairs of edges: the sums of each of the entries of their blocks
     pairs, number = np.unique((n * corners[:, :, None] + corners[:, None, :]).ravel(), return_inverse=True)
+    sums = np.stack([np.bincount(number, entries, len(pairs)) for entries in blocks.T], axis=1)
     begins = np.searchsorted(pairs, n * np.arange(n + 1))
-    for each in second:
-        blocks = (spread @ each @ spread.T).reshape(-1, 4, m, 4, m).swapaxes(2, 3).reshape(-1, m * m)
-        sums = np.stack([np.bincount(number, entries, len(pairs)) for entries in blocks.T], axis=1)
-        yield sp.csr_array(sp.bsr_array((sums.reshape(-1, m, m), pairs % n, begins), shape=(n * m, n * m)))
+    return sp.csr_array(sp.bsr_array((sums.reshape(-1, m, m), pairs % n, begins), shape=(n * m, n * m)))
 
 
 class PairTerm(ABC):
@@ -149,7 +148,7 @@ class PairTerm(ABC):
         for i, j, share in self.shares(curve):
             pairs = EdgePairs.of(curve.mesh, curve.vertices, i, j)
             second = [change(share(each).first) for each in pairs.along_coordinates()]
-            total = total + next(scatter_second(curve.mesh, i, j, np.stack(second, axis=2)))
+            total = total + scatter_second(curve.mesh, i, j, np.stack(second, axis=2))
         return total
 
     def _sum(self, curve: Curve, vertices: FloatArray) -> tuple[FloatArray, FloatArray]:

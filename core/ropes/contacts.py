@@ -77,4 +77,4 @@ class Contacts:
         pairs = EdgePairs.of(self.mesh, vertices, own.i, own.j)
         second = np.stack([change(own.jet(each).first) for each in pairs.along_coordinates()], axis=2)
         curved, stiff = -0.5 * z * (second + second.transpose(0, 2, 1)), k * first[:, :, None] * first[:, None, :]
-        return tuple(scatter_second(self.mesh, own.i, own.j, stiff, curved))
+        return tuple(scatter_second(self.mesh, own.i, own.j, each) for each in (stiff, curved))

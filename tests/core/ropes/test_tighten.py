@@ -51,6 +51,7 @@ def test_knots_reach_known_ropelengths_as_proved_ropes(curve, ropelength, error)
     assert outcome.ropelength == pytest.approx(last.length / thickness(last))
     # struts and bends carry the tension together: Σ force × distance is the length if nothing bends as much as it can
     assert 0.2 * outcome.ropelength < 2.0 * sum(strut.force for strut in outcome.struts) < 1.01 * outcome.ropelength
+    assert "Strut" not in repr(outcome)  # of thousands
     assert iterates[-1].energy == pytest.approx(last.length / thickness(last), rel=1e-5)
 
 
