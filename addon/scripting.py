@@ -123,7 +123,9 @@ class Relaxation:
         return self._run(complete(settings) | {"avoid": avoid}, ropes=ropes)
 
     def tighten(self, starts: int = 1, **settings: Any) -> Report:
-        """Pull closed curves tight, as ropes of nine tenths of their thickness, and keep the motion as keys.
+        """Pull curves tight, open ones by their ends, as ropes as thick as their bevels, and keep the motion as keys.
+
+        Without bevels, or where curves are thinner, the radius is nine tenths of their thickness.
 
         Of several ``starts`` the shortest goes on; of the settings of `relax`, ``vertices``, ``seed`` and
         ``time_limit`` count, and those of keys.  Otherwise as `relax`.
@@ -228,11 +230,13 @@ def begin(
             options = replace(options, keep_size=Measure.LENGTH, fit_bevel=False)
             splines = [(obj, each) for obj in carriers for each in obj.data.splines]
             widths = [placement(obj).stretch * depth(obj.data) * float(radii(each).max()) for obj, each in splines]
-            job = SeparateOptions(radius=widths, **ropes)
+            job = SeparateOptions(radius=widths, time_limit=relax_options(values).time_limit, **ropes)
         elif starts:  # the rope gets shorter, not thicker
             options = replace(options, keep_size=options.keep_size or Measure.LENGTH, constant_radius=True)
             wanted = relax_options(values)
-            facts = {"vertices": wanted.vertices} if wanted.vertices else {}
+            facts: dict[str, Any] = {"vertices": wanted.vertices} if wanted.vertices else {}
+            if own := () if options.any_bevel else bevel.own_radii(carriers):
+                facts["radius"] = max(own)
             job = TightenOptions(starts=starts, seed=wanted.seed, time_limit=wanted.time_limit, **facts)
         session = Session(carriers, relax_options(values), options, continues, surroundings, pins, tangents, goals, job)
         undone.pop_all()

@@ -1,4 +1,4 @@
-"""Random bundles of strands between two plates, separated: the table in docs/separate.md.
+"""Random bundles of strands between two plates, separated, as docs/separate.md tells.
 
     OPENBLAS_NUM_THREADS=1 python benchmarks/bundles.py [COUNT [FIRST]]
 

@@ -52,7 +52,10 @@ def live(shown: bool = True) -> Iterator[Callable[[str], None]]:
 
 @contextmanager
 def progress(options: RelaxOptions | None = None, shown: bool = True) -> Iterator[Callable[[Iterate], None]]:
-    """Give a callback that shows the iterates of a run, as `minimize` passes them, and how long it may still take."""
+    """Give a callback that shows the iterates of a run, as `minimize` passes them, and how long it may still take.
+
+    Without options it is one of ropes: they come to rest otherwise.
+    """
     wanted = RelaxOptions() if options is None else options
     left = TimeLeft(wanted)
     with live(shown) as show:
@@ -65,7 +68,9 @@ def progress(options: RelaxOptions | None = None, shown: bool = True) -> Iterato
                 f"E {iterate.energy:#.5g}",
                 f"gradient {power(iterate.gradient_norm)} → {power(bound)}",
             ]
-            if moves is not None and not moves.done:
+            if options is None:
+                words[1:] = [f"radius {min(iterate.radius or (0.0,)):.4g}", f"length {iterate.curve.length:#.5g}"]
+            elif moves is not None and not moves.done:
                 words[1:] = [f"strands move: {moves.left} of {moves.before} crossings are left"]
             elif (seconds := left.seconds) is not None:
                 words.append(time_left(seconds))

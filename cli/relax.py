@@ -4,6 +4,7 @@ import argparse
 import json
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -159,8 +160,11 @@ def write_results(
     If one cannot be written, the others still are. Files come first: a film takes a minute, and a stream may never
     end, so that these can be interrupted; they are not begun after an interrupt.
     """
-    origin = {**origin, **result.outcome.facts}
     struts: Any = getattr(result.outcome, "struts", None)  # of a rope that was pulled tight to the end
+    if options.contacts and struts is None:
+        unknown = "no map of contacts is written, as forces are not in equilibrium yet"
+        result = replace(result, outcome=result.outcome.adding(unknown))
+    origin = {**origin, **result.outcome.facts}
 
     def report_as_json(path: str) -> None:
         text = json.dumps(result.report() | origin, indent=1) + "\n"

@@ -65,21 +65,21 @@ def options() -> str:
 
 def commands() -> str:
     """What else the subcommands take: the options of several, then those of one alone."""
-    elsewhere = {each.name for each in declared(RelaxOptions)} | {"format", "json", "output"}  # told in words
-    takers: dict[str, list[str]] = {}
-    texts: dict[str, str] = {}
+    takers: dict[tuple[str, str], list[str]] = {}  # by the option and what it does
+    told = {each.help for each in declared(RelaxOptions)}  # with those of a relaxation
     for name in (*COMMANDS, *joined()):
         alone = argparse.ArgumentParser(prog=f"mobius-flow {name}", add_help=False)
         add_to(alone, name)
         for each in alone._actions:
-            if each.option_strings and each.dest not in elsewhere and each.help not in (None, argparse.SUPPRESS):
+            if each.option_strings and each.dest not in ("format", "json", "output"):  # which are told in words
                 option = f"`{max(each.option_strings, key=len)} {each.metavar or ''}".rstrip() + "`"
-                takers.setdefault(option, []).append(f"`{name}`")
-                texts.setdefault(option, str(each.help) % vars(each))
-    several = [(f"{one} ({', '.join(names)})", texts[one]) for one, names in takers.items() if len(names) > 1]
+                text = str(each.help or argparse.SUPPRESS)
+                if text != argparse.SUPPRESS and not any(text.startswith(known) for known in told):
+                    takers.setdefault((option, text % vars(each)), []).append(f"`{name}`")
+    several = [(f"{one} ({', '.join(names)})", text) for (one, text), names in takers.items() if len(names) > 1]
     sections = {"Several commands": several}
     for name in (*COMMANDS, *joined()):
-        sections[f"`{name}`"] = [(one, texts[one]) for one, names in takers.items() if names == [f"`{name}`"]]
+        sections[f"`{name}`"] = [(one, text) for (one, text), names in takers.items() if names == [f"`{name}`"]]
     return "".join(f"### {title}\n\n{definitions(rows)}" for title, rows in sections.items() if rows)
 
 

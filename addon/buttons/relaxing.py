@@ -190,15 +190,16 @@ moved as little as that allows; ends and pins stay in place. Where two curves me
 
 
 class CURVE_OT_mobius_flow_tighten(Relaxing, bpy.types.Operator):
-    """Pull the selected knots tight, open ones by their ends, as ropes whose thickness stays, and keep the motion as \
-keyframes. Tube Mesh then shows where they press on each other"""
+    """Pull the selected knots tight, open ones by their ends, as ropes as thick as their bevels, and keep the motion \
+as keyframes. Tube Mesh then shows where they press on each other"""
 
     bl_label = "Tighten"
     needs = (ENTERABLE, POLYGONS)
 
     starts: IntProperty(
         name="Starts",
-        description="Starts on few vertices, all but the first drawn anew; the shortest go on to the end",
+        description="Starts on few vertices, all but the first drawn anew; the shortest go on to the end. \
+Nothing is seen before; Keep then shows the shortest so far",
         default=1,
         min=1,
         options={"SKIP_SAVE"},

@@ -31,7 +31,7 @@ def main(engine: str) -> None:
     sys.modules[spec.name] = package = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(package)
     worker = importlib.import_module(f"{engine}.worker")
-    inbox: queue.SimpleQueue[Any] = queue.SimpleQueue()
+    inbox: queue.Queue[Any] = queue.Queue()
 
     def take_in() -> None:
         with contextlib.suppress(EOFError, OSError, pickle.UnpicklingError):  # Blender closes it, crashes or is killed

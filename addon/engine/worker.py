@@ -5,6 +5,7 @@ Blender never waits for it, and ends it at once. What they tell each other is pi
 
 import contextlib
 import inspect
+import math
 import os
 import pickle
 import queue
@@ -23,19 +24,34 @@ import scipy
 import threadpoolctl
 
 from ...core import Curve, Hand, Iterate, MobiusFlowError, Outcome, RelaxOptions, Task, WithOutcome, relax
-from ...core.base import Message
+from ...core.base import Message, TimeIsUp, TimeLimit
 from ...core.driver import Relaxation
 from ...core.driver.morph import morphing
+from ...core.driver.outcome import INTERRUPTED
 from ...core.ropes import SeparateOptions, TightenOptions, separating, tightening
 
-Inbox = queue.SimpleQueue[Any]
+Inbox = queue.Queue[Any]
+STOP = ("stop", ())
+
+
+class Stop(TimeLimit):
+    """The time is up as soon as the inbox holds a stop; nobody reads on from there."""
+
+    def __init__(self, inbox: Inbox) -> None:
+        super().__init__(math.inf)
+        self._inbox = inbox
+
+    @property
+    def is_reached(self) -> bool:
+        with self._inbox.mutex:
+            return STOP in self._inbox.queue
 
 
 def messages(inbox: Inbox) -> Iterator[Any]:
     """Yield the iterates of a job, and at last the outcome or an error.
 
     The inbox holds the job first, what `Worker` is given, and then pauses and actions of the hand, read between steps;
-    None ends it.
+    a stop ends the present one and gives what was reached, None ends it all.
     """
     job = inbox.get()
     if job is None:
@@ -43,10 +59,14 @@ def messages(inbox: Inbox) -> Iterator[Any]:
     task, options, stays, goals = job
     hand, paused = Hand(stays=stays), False
     try:
-        run = WithOutcome(begun(task, options, goals, hand))
-        for iterate in run:
-            yield iterate
-            while paused or hand.rests or not inbox.empty():
+        run, stop = WithOutcome(begun(task, options, goals, hand)), Stop(inbox)
+        steps = iter(run)
+        while run.outcome is None:
+            with stop:
+                iterate = next(steps, None)
+            if iterate is not None:
+                yield iterate
+            while (paused or hand.rests or not inbox.empty()) and not stop.is_reached:
                 if (said := inbox.get()) is None:
                     return
                 deed, facts = said
@@ -54,8 +74,9 @@ def messages(inbox: Inbox) -> Iterator[Any]:
                     (paused,) = facts
                 else:
                     getattr(hand, deed)(*facts)
-        assert run.outcome is not None, "the loop is through"
         yield run.outcome
+    except TimeIsUp as up:
+        yield INTERRUPTED.noting(up)
     except MobiusFlowError as error:
         yield error
 
@@ -89,7 +110,7 @@ class Worker:
     def __init__(
         self, task: Task, options: Job, stays: bool = False, goals: Mapping[str, Curve] = MappingProxyType({})
     ) -> None:
-        self._inbox: Inbox = queue.SimpleQueue()
+        self._inbox: Inbox = queue.Queue()
         self._inbox.put((task, options, stays, dict(goals)))
         self._queue: queue.Queue[Any] = queue.Queue(64)  # wait while Blender draws; then the worker does
         self._closed = threading.Event()
@@ -102,7 +123,7 @@ class Worker:
     def tell(self, deed: str, *facts: Any) -> None:
         """Have the hand do something as soon as the present step is done: a method of `Hand`, by its name.
 
-        ``pause`` is for the worker itself: whether it waits there.
+        ``pause`` is for the worker itself: whether it waits there; so is ``stop``, which does not wait for the step.
         """
         self._inbox.put((deed, facts))
 

@@ -66,7 +66,7 @@ class Loop:
             if event.shift or event.alt or event.oskey or run.state.name != "RUNNING" or run.shown is None:
                 return False
             # the region of a 3D view that has the mouse, unless a sidebar, a header or the navigation gizmo has it
-            found, curve = [], run.session.in_view
+            found, curve = [], run.session.in_view if run.may_be_dragged else None
             areas = context.window.screen.areas if context.window else []
             for region in (region for area in areas if area.type == "VIEW_3D" for region in area.regions):
                 place, extent = mouse - corner(region), size(region)
@@ -141,12 +141,15 @@ def status_line(run: LiveRun) -> str:
         return iface_("{names}: proving and writing keys   |   Esc: put all back", names=run.name)
     where = Message("starting")
     if run.last is not None:
-        where = Message("step {index}, energy {energy:.4f}", index=run.last.index, energy=run.last.energy)
+        told = "step {index}, {measure} {energy:.4f}"
+        where = Message(told, index=run.last.index, measure=run.measure, energy=run.last.energy)
     if run.looked_at is not None and run.last is not None:
         where = Message("looking back at step {index:.0f} of {last}", index=run.looked_at, last=run.last.index)
     elif run.state is RunState.PAUSED:
         where = Message("paused") if run.last is None else Message("paused at {where}", where=where)
-    keys = Message("Drag: pull a strand, Ctrl pins it   |   Enter: keep this shape   |   Esc: put all back")
+    keys = Message("Enter: keep this shape   |   Esc: put all back")
+    if run.may_be_dragged:
+        keys = Message("Drag: pull a strand, Ctrl pins it   |   {keys}", keys=keys)
     return iface_("{names}: {where}   |   {keys}", names=run.name, where=where, keys=keys)
 
 

@@ -100,7 +100,7 @@ def _plot(context: bpy.types.Context, run: LiveRun) -> None:
     line(origin + way, legible(context.preferences.themes[0].view_3d.object_active, ground), scale * _LINE)
     assert run.last is not None, "it has energies"
     x, y = (origin + np.array([0.0, size[1] + 0.5 * caption])).tolist()
-    text(iface_("Energy {energy:.4f}", energy=run.energies[-1]), (x, y), ink, font)
+    text(iface_("{measure} {energy:.4f}", measure=run.measure, energy=run.energies[-1]), (x, y), ink, font)
     text(iface_("Step {index}", index=run.last.index), (x + size[0], y), ink, font, share=1.0)
 
 

@@ -17,6 +17,7 @@ from ...core import CurveError, Iterate, MobiusFlowError, Outcome, Status
 from ...core.base import FloatArray, Message, Place
 from ...core.driver import TimeLeft
 from ...core.keys.placement import Spot
+from ...core.ropes import SeparateOptions, TightenOptions
 from ..curves.report import Report
 from ..curves.session import Prepared, Session
 from ..curves.splines import digest
@@ -40,6 +41,9 @@ class RunState(Enum):
         return self in (RunState.DONE, RunState.CANCELLED, RunState.LOST)
 
 
+MEASURES = {SeparateOptions: Message("Displacement"), TightenOptions: Message("Length in Radii")}
+
+
 class LiveRun:
     """A session that is fed by a worker, while its curves are shown."""
 
@@ -56,6 +60,7 @@ class LiveRun:
         self.energies: list[float] = []
         self.drag: Drag | None = None  # the one that is going on
         self.drags = 0  # those that may be taken back
+        self._stops = False  # whether the worker was told to, before there was anything to keep
         self.trouble: list[Spot] = []  # where it failed or got stuck, if the reason has a place
         self._left: dict[int, bytes] | None = None  # what the objects were at its end, by their identities
         self.session, self._refresh = session, refresh
@@ -73,6 +78,11 @@ class LiveRun:
     @property
     def name(self) -> str:
         return self.session.title
+
+    @property
+    def measure(self) -> Message:
+        """What is minimised: the ``energies``."""
+        return MEASURES.get(type(self.session.job), Message("Energy"))
 
     @cached_property
     def target(self) -> Target | None:
@@ -121,6 +131,11 @@ class LiveRun:
         elif there is None and self.shown is None:
             self._show()
 
+    @property
+    def may_be_dragged(self) -> bool:
+        """Whether a hand may pull: what is no relaxation does not heed it."""
+        return self.session.job is self.session.options and not self.session.goals.objects
+
     def grab(self, drag: Drag) -> None:
         """Take hold of a strand; `pull` and `let_go` follow."""
         self.drag, self.drags = drag, self.drags + 1
@@ -151,7 +166,11 @@ class LiveRun:
         if self.state not in (RunState.RUNNING, RunState.PAUSED):
             return
         if self.last is None:
-            self.cancel(Message("Stopped before anything had moved"))
+            if self._stops:
+                self.cancel(Message("Stopped before anything had moved"))
+            else:  # of several starts the shortest so far is shown
+                self._stops, self.state = True, RunState.RUNNING
+                self._worker.tell("stop")
             return
         self.looked_at = self.drag = None
         self._show()
@@ -238,7 +257,8 @@ class LiveRun:
                 return
             self.session.take(arrived)
             self.last = arrived
-            self.time_left.add(arrived)
+            if self.session.job is self.session.options:  # ropes come to rest otherwise
+                self.time_left.add(arrived)
             self.energies[arrived.index :] = [arrived.energy]
             if self._refresh.ends_batch(arrived.index):
                 break

@@ -234,7 +234,7 @@ def _progress(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         state = Message("Failed")
     value(box, ", ".join(run.session.names), state)
     if run.last is not None:
-        value(box, "Energy", f"{run.last.energy:.4f}")
+        value(box, run.measure, f"{run.last.energy:.4f}")
         if run.target is not None:
             value(box, "At least", run.target.label)
         back = run.looked_at

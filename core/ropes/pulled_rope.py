@@ -93,20 +93,20 @@ class PulledRope:
     def thinned(self, count: int) -> Iterator[Iterate]:
         """As few vertices, as far as the way of the others onto the chords of their neighbours is proved."""
         while len(self.curve) > count:
-            # evenly, and no neighbours
+            # evenly, and no neighbours; of a component half at most, as long as 16 are left
             mesh, every = self.curve.mesh, max(2.0, len(self.curve) / (len(self.curve) - count))
             firsts = mesh.offsets[:-1] + ~np.asarray(mesh.closed)  # ends stay
             gone = [
-                np.arange(first, part.stop - 1, every).astype(np.intp)
-                for first, part in zip(firsts, mesh.slices, strict=True)
+                np.arange(first, part.stop - 1 if size >= 32 else first, every).astype(np.intp)
+                for first, part, size in zip(firsts, mesh.slices, mesh.component_sizes, strict=True)
             ]
             moved = onto_chords(self.curve, np.concatenate(gone))
+            if not sum(map(len, gone)) or not self.proves(moved.vertices):
+                return
             rest = [
                 np.delete(points, k - part.start, axis=0)
                 for points, k, part in zip(moved.components, gone, mesh.slices, strict=True)
             ]
-            if min(map(len, rest)) < 16 or not self.proves(moved.vertices):
-                return
             yield from self.follow([moved.vertices])
             yield from self.remeshed(Curve.from_components(rest, self.curve.mesh.closed))
 

@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from ..base import COMPONENT, CurveError, Message, OptionError, checked
+from ..base import COMPONENT, CurveError, Message, OptionError, Place, checked
 from ..base.arguments import check_options, option
-from ..collision import check_clear, check_embedded, is_free, written
+from ..collision import check_clear, check_embedded, is_free, rope_motion, written
 from ..curve import Curve, Pins, at_edges, bending_radii, holds, subdivide
 from ..descent.task import Task, check_units
 from ..driver import Outcome, Relaxation, Result, Status, finish
@@ -133,10 +133,20 @@ def _iterates(task: Task, options: SeparateOptions) -> Relaxation:
     held = holds(mesh, Pins.of(curve, pins).vertices if keep else pins)  # taut arcs whose lengths are kept cannot move
     taut = held & ~holds(mesh, pins)
     ropes = Ropes(curve, radius, held, task.obstacles, keep)
-    apart, crossings = lead_apart(curve, radius, ropes.stiffness, held, taut, options.over, task.obstacles)
+    try:
+        apart, crossings = lead_apart(curve, radius, ropes.stiffness, held, taut, options.over, task.obstacles)
+    except CurveError as error:
+        place = error.place or Place((), ())
+        drawn = np.flatnonzero(np.isin(now, place.vertices)).tolist()  # of the given curve
+        raise CurveError(error.args[0], Place(tuple(drawn), place.position)) from None
     led = curve.with_vertices(apart)
-    check_embedded(led)
-    check_clear(led, task.obstacles)
+    try:
+        check_embedded(led)
+        check_clear(led, task.obstacles)
+    except CurveError as error:  # about edges that nobody has drawn
+        where = error.place.position if error.place else ()
+        cannot = Message("strands cannot be led apart near {place}; move them there", place=written(np.array(where)))
+        raise CurveError(cannot, Place((), where)) from error
     if crossings or np.array_equal(apart, curve.vertices):
         return (yield from _separated(ropes, led, 0, tuple(crossings)))
     yield ropes.iterate(0, curve)
@@ -206,13 +216,16 @@ def _outcome(ropes: Ropes, curve: Curve, crossings: tuple[Crossing, ...]) -> Sep
         return Separated(Status.STALLED, (*stalled(reason).clauses, *told), place=place, **facts)
     if ropes.share == 1.0:
         return Separated(Status.CONVERGED, (Message("separated: all ropes keep clear"), *told), **facts)
-    near = max(ropes.near(curve, 1.25), key=lambda each: -each.value.min(initial=2.0))
-    i, j = near.edges[near.value.argmin()].tolist()
-    place = at_edges(curve, (i,) if j < 0 else (i, j))
-    one, other = (Message(COMPONENT, number=int(curve.mesh.edge_component[max(each, 0)]) + 1) for each in (i, j))
+    thicker, contact, x = 1.01, None, curve.vertices
+    while contact is None:  # what is in the way of thicker ropes
+        radius = thicker * ropes.share * ropes.radius
+        contact, thicker = rope_motion(curve.mesh, x, x, radius, ropes.obstacles).contact, 1.1 * thicker
+    place = at_edges(curve, contact.edges)
+    i, j = contact.edges[0], contact.edges[-1]
+    one, other = (Message(COMPONENT, number=int(curve.mesh.edge_component[each]) + 1) for each in (i, j))
     where = Message("between {one} and {other}", one=one, other=other)
-    if j < 0:
-        where = Message("between {one} and an obstacle", one=one)
+    if contact.obstacle:
+        where = Message("between {one} and {other}", one=one, other=contact.obstacle)
     elif curve.mesh.next[i] == j or curve.mesh.next[j] == i:
         where = Message("at a corner of {one}", one=one)
     elif one == other:

@@ -18,7 +18,7 @@ from ..base.errors import CurveError, OptionError
 from ..base.messages import Message
 from ..base.threads import BLAS
 from ..collision import thickness
-from ..curve import Curve
+from ..curve import Curve, subdivide
 from ..descent.task import Task
 from ..driver import Outcome, Relaxation, RelaxOptions, Result, Status, finish, relax
 from ..driver.move import iterates
@@ -47,6 +47,14 @@ class TightenOptions:
         automatic="800, and 400 of open ropes",
         low=COARSE,
         high=20_000,
+    )
+    radius: float | None = option(
+        None,
+        "Radius",
+        "radius of the rope, if the curve is not thinner",
+        automatic="nine tenths of the curve's thickness",
+        low=0,
+        metavar="R",
     )
     starts: int = option(
         1,
@@ -92,11 +100,13 @@ def tighten(
     curve: Curve | Task,
     *,
     vertices: int | None = None,
+    radius: float | None = None,
     starts: int = 1,
     seed: int = 0,
     callback: Callable[[Iterate], None] | None = None,
 ) -> Result:
-    """Pull a knot or link tight: as short as a rope of its radius can be, nine tenths of the curve's thickness.
+    """Pull a knot or link tight: as short as a rope can be whose ``radius`` is nine tenths of the curve's thickness, or
+    less.
 
     In the end there are ``vertices`` or up to twice as many, by default 800, and 400 of open ropes.  What is tight is
     only refined.  Of several ``starts`` all but the first are drawn anew from other diagrams (`redrawn`), in the same
@@ -113,7 +123,9 @@ def tighten(
     there are pins or obstacles, or numbers are out of range.
     """
     task = Task.of(curve)
-    return finish(tightening(task, TightenOptions(vertices=vertices, starts=starts, seed=seed)), task, callback)
+    return finish(
+        tightening(task, TightenOptions(vertices=vertices, radius=radius, starts=starts, seed=seed)), task, callback
+    )
 
 
 @BLAS.bounded()
@@ -131,19 +143,24 @@ def tightening(task: Task, options: TightenOptions) -> Relaxation:
     if not task.curve.mesh.all_closed:
         vertices = max(vertices, coarse + 1)
     start = task.refined(max(len(task.curve), coarse))
+    cuts = np.ceil(32.0 / np.asarray(start.curve.mesh.component_sizes)).astype(np.intp)  # of edges of small components
+    start = Task.of(subdivide(start.curve, cuts[start.curve.mesh.edge_component]))
     thick = rope_radius(start, RelaxOptions(radius="keep"))
     if thick is None:
         raise CurveError("the curve is no rope: a corner is too sharp, or strands are too near; smooth or relax it")
-    unit = float(thick.min())
+    thickest = math.inf if options.radius is None else options.radius
+    unit = min(float(thick.min()), thickest)
     away = float(np.abs(start.curve.vertices.mean(axis=0)).max())
+    size = float(np.ptp(start.curve.vertices, axis=0).max())
+    if size > 1e4 * unit:
+        remedy = "give a larger radius" if unit == thickest else "smooth or relax it"
+        raise CurveError(f"the curve is {size:.3g} wide, too much for ropes of radius {unit:.3g}; {remedy}")
     if away > 1e3 * unit:  # of such coordinates too few digits are left for strands that touch
-        size = float(np.ptp(start.curve.vertices, axis=0).max())
-        where, remedy = f"{away:.3g} from the origin, too far for ropes", "move it there"
-        if size > away:
-            where, remedy = f"{size:.3g} wide, too much for ropes", "smooth or relax it"
-        raise CurveError(f"the curve is {where} of radius {unit:.3g}; {remedy}")
+        raise CurveError(
+            f"the curve is {away:.3g} from the origin, too far for ropes of radius {unit:.3g}; move it there"
+        )
     if unknot := knot_type(start.curve).names == ("0_1",):  # the flow that undoes it needs its own mesh
-        start, unit = task.refined(), math.inf
+        start, unit = task.refined(), thickest
     if unknot or not start.curve.mesh.all_closed:  # which are not scaled until they fit
         unit = min(unit, 0.9 * thickness(start.curve))
     return bounded(_tightened(start, unit, coarse, vertices, unknot, options), options.time_limit, began)
@@ -247,7 +264,7 @@ def _ended(rope: PulledRope, elsewhere: bool) -> Outcome:
     ropelength, gap, residual = rope.curve.length / thickness(rope.curve), point.gap, point.residual
     template = "ropelength {ropelength:.7g}, gap {gap:.1g}, residual {residual:.1g}"
     told = Message(template, ropelength=ropelength, gap=gap, residual=residual)
-    if not rope.curve.mesh.all_closed and point.excess < 1e-3:
+    if not any(rope.curve.mesh.closed) and point.excess < 1e-3:
         straight = Message("the rope is straight, as no knot was in it")
         return Tightened(Status.CONVERGED, (straight,), gap=gap, residual=residual)
     if gap <= GAP and residual <= 10.0 * GAP:
@@ -258,7 +275,7 @@ def _ended(rope: PulledRope, elsewhere: bool) -> Outcome:
     outcome: Outcome = Tightened(status, (said,), ropelength=ropelength, gap=gap, residual=residual, struts=pressing)
     if elsewhere:
         outcome = outcome.adding(ELSEWHERE)
-    if not rope.curve.mesh.all_closed:
+    if not rope.curve.mesh.all_closed and point.excess >= 1e-3:
         return outcome.adding("{excess:.5g} radii of rope are in the knot", excess=point.excess)
     if (point.curve.component_lengths < 2.01 * math.pi).all():
         return outcome.adding("circles of the rope's radius are left, as of unknots")

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from blender_scenes import add_curve, stored
 from mobius_flow import Relaxation
-from mobius_flow.addon.scripting import begin
+from mobius_flow.addon.scripting import begin, complete
 from mobius_flow.core import MobiusFlowError
 
 T = np.linspace(-6.0, 6.0, 13)[:, None]
@@ -46,6 +46,11 @@ def test_a_live_run_separates(operator):
     operator.until(lambda: operator.run.state.over)
     assert "spline 1 of 'B' went over spline 1 of 'A'" in operator.run.message
     assert operator.run.report.certified
+
+
+def test_the_time_limit_counts():
+    session = begin(crossing(), complete({"time_limit": 5.0}) | {"avoid": ()}, ropes={"over": "z"})
+    assert session.job.time_limit == 5.0
 
 
 def test_a_script_says_where_it_is_tight_and_what_is_missing():

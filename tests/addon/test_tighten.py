@@ -6,6 +6,8 @@ import pytest
 from blender_scenes import add_curve
 from mobius_flow import Relaxation
 from mobius_flow.addon.curves import bake
+from mobius_flow.addon.live.modal import status_line
+from mobius_flow.addon.scripting import begin, complete
 from mobius_flow.core.collision import thickness
 from mobius_flow.core.knots import knot
 
@@ -29,6 +31,28 @@ def test_a_button_pulls_a_trefoil_tight_and_clear_undoes_it():
     assert len(bake.contacts(obj.data)[0]) == 0, "points have moved since"
     before.clear()
     assert len(bake.contacts(obj.data)[0]) == 0
+
+
+def test_a_bevel_is_the_rope():
+    obj = trefoil()
+    obj.data.bevel_depth = 0.1
+    session = begin([obj], complete({"vertices": 100}) | {"avoid": ()}, starts=1)
+    assert session.job.radius == pytest.approx(0.1)
+    Relaxation(obj).tighten(vertices=100)
+    assert thickness(Relaxation(obj).curves[-1]) == pytest.approx(0.1, rel=1e-4)
+
+
+def test_a_live_run_shows_the_length(operator):
+    trefoil()
+    operator.more = lambda _context: {"starts": 1}
+    operator.given["vertices"] = 100
+    operator.start()
+    operator.reach(1)
+    assert status_line(operator.run).startswith("'Knot': step 1, Length in Radii ")
+    assert "Drag" not in status_line(operator.run)
+    operator.until(lambda: operator.run.state.over)
+    assert operator.run.time_left.seconds is None
+    assert operator.run.energies[-1] < 33.0
 
 
 def check_contacts(obj, curve):

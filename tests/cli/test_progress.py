@@ -8,7 +8,7 @@ import pytest
 from mobius_flow.cli import progress as module
 from mobius_flow.cli.progress import live, progress
 from mobius_flow.cli.terminal import digits, painted, report, sentence, table
-from mobius_flow.core import RelaxOptions, minimize
+from mobius_flow.core import RelaxOptions, minimize, tighten
 from shapes import torus_trefoil
 
 
@@ -38,6 +38,9 @@ def test_a_run_is_shown_by_what_is_known_of_it(terminal, monkeypatch):
     assert len(lines) == len(result.energies)
     assert lines[0].startswith(f"iteration 0 · E {result.energies[0]:#.5g} · gradient ")
     assert end == ""
+    with progress() as draw:
+        tighten(torus_trefoil(40), vertices=100, callback=draw)
+    assert "gradient" not in terminal.getvalue().partition("iteration 0 · radius ")[2]
     monkeypatch.setenv("COLUMNS", "40")
     with live() as show:
         show("x" * 50)

@@ -14,6 +14,7 @@ CROSS = "# open\n-6 0 0\n-3 0 0\n0 0 0\n3 0 0\n6 0 0\n\n# open\n0 -6 0\n0 -3 0\n
 @pytest.fixture(autouse=True)
 def cross(room):
     (room / "cross.txt").write_text(CROSS, encoding="utf-8")
+    (room / "two.txt").write_text("# open\n-6 0 0\n6 0 0\n\n# open\n0 -6 0\n0 6 0\n", encoding="utf-8")
 
 
 def test_ropes_are_written_with_report_and_proof(room, run):
@@ -60,9 +61,19 @@ def test_a_trefoil_is_written_with_report_and_proof(room, run):
     assert dots == 2 * len(report["struts"]) + 4  # both ways, in a frame
 
 
+def test_without_an_equilibrium_there_is_no_map_of_contacts(room, run):
+    words = ("--vertices", "20000", "--time-limit", "0.5", "--contacts", "map.svg", "--report", "r.json")
+    status, _, said = run("tighten", "trefoil.txt", "out.obj", *words)
+    assert status == 0
+    assert "no map of contacts" in said
+    assert "no map of contacts" in json.loads(Path("r.json").read_text(encoding="utf-8"))["message"]
+    assert not Path("map.svg").exists()
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [
+        ("separate two.txt o.txt --radius 0.5 --lengths keep", "two.txt: component 1 and component 2 are both held"),
         ("separate cross.txt o.txt --radius thick", "radius is 'thick'; give a number"),
         ("separate cross.txt o.txt --radius -1", "radius is -1.0; it must be a number above 0"),
         ("separate cross.txt o.txt --radius 1 --over w", "over is 'w'"),

@@ -10,7 +10,7 @@ import sys
 import numpy as np
 import pytest
 from mobius_flow.addon.engine.rest import CIRCLE, target_of
-from mobius_flow.addon.engine.worker import messages
+from mobius_flow.addon.engine.worker import STOP, messages
 from mobius_flow.core import (
     Curve,
     CurveError,
@@ -31,6 +31,7 @@ from mobius_flow.core.collision import Contact
 from mobius_flow.core.driver.outcome import converged, stalled
 from mobius_flow.core.driver.words import in_blenders_words, spline_names
 from mobius_flow.core.knots import knot, overhand
+from mobius_flow.core.ropes import TightenOptions, tightening
 from option_values import unlike_default
 from processes import PATIENCE
 from shapes import hopf_link, torus_trefoil
@@ -45,7 +46,7 @@ def sent(value):
 
 def done(*given):
     """What the worker says about a job; all of it is fit to be sent."""
-    inbox = queue.SimpleQueue()
+    inbox = queue.Queue()
     inbox.put(sent(given))
     return [sent(said) for said in messages(inbox)]
 
@@ -63,6 +64,27 @@ def test_options_and_words_arrive_as_they_were():
         assert type(sent(error)) is type(error)
         assert in_blenders_words(str(sent(error)), names) == "segment 3 and segment 8"
         assert getattr(sent(error), "place", None) == getattr(error, "place", None)
+
+
+def test_a_stop_ends_a_step_and_gives_what_was_reached(monkeypatch):
+    inbox = queue.Queue()
+
+    def drawn(curve, *_):
+        inbox.put(STOP)
+        yield curve
+
+    monkeypatch.setattr(sys.modules[tightening.__module__], "redrawn", drawn)
+    inbox.put((Task(curve=knot("3_1", 60)), TightenOptions(vertices=100, starts=9), False, {}))
+    *way, outcome = messages(inbox)
+    assert outcome.status is Status.INTERRUPTED
+    assert way[-1].energy < 34.0
+    for given in (RelaxOptions(), TightenOptions()):
+        inbox = queue.Queue()
+        for said in ((Task(curve=knot("3_1", 60)), given, False, {}), ("pause", (True,)), STOP):
+            inbox.put(said)
+        *way, outcome = messages(inbox)
+        assert outcome.status is Status.INTERRUPTED
+        assert len(way) < 2
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGPIPE"), reason="there is no such signal")

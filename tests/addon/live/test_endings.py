@@ -1,6 +1,8 @@
 """However a run in a window ends, what is not kept is as it was before, and the last words say why."""
 
 import re
+import sys
+import threading
 
 import bpy
 import mobius_flow
@@ -12,7 +14,8 @@ from mobius_flow.addon.curves import keyframes
 from mobius_flow.addon.live import handlers, registry
 from mobius_flow.addon.live.run import RunState
 from mobius_flow.core.keys.recording import Kind
-from modal_operator import everything, restored, ring_and_torus, rings, splines_of
+from mobius_flow.core.ropes import tightening
+from modal_operator import Operator, everything, restored, ring_and_torus, rings, splines_of
 from shapes import lattice_knot, torus_trefoil
 
 
@@ -290,3 +293,30 @@ def test_what_has_changed_is_not_recovered(operator, scene, change):
     with pytest.raises(RuntimeError, match=r"'.*' changed since the relaxation ended; relax anew"):
         recover()
     assert contents() == before
+
+
+@pytest.mark.parametrize("drawings", [False, True])
+def test_keep_among_several_starts_keeps_the_shortest_so_far(drawings, monkeypatch):
+    reached = threading.Event()
+
+    def drawn(curve, *_):
+        reached.set()
+        while True:
+            yield curve
+
+    monkeypatch.setattr(sys.modules[tightening.__module__], "redrawn", drawn)
+    obj = add_trefoil()
+    before, operator = everything(), Operator(vertices=100)
+    operator.more = lambda _context: {"starts": 9}
+    assert operator.start() == {"RUNNING_MODAL"}
+    if drawings:
+        operator.until(reached.is_set)
+    operator.run.toggle_pause()
+    assert operator.run.last is None
+    operator.event("RET")
+    assert operator.until(lambda: False) == {"FINISHED" if drawings else "CANCELLED"}
+    if drawings:
+        assert len(obj.data.shape_keys.key_blocks) > 2
+    else:
+        assert operator.run.message == "Stopped before anything had moved"
+        assert everything() == before

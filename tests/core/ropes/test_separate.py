@@ -14,6 +14,7 @@ from taylor import taylor_slope
 
 WALL = Obstacle([[-3.0, -9, 1.6], [-3, 9, 1.6], [9, 0, 1.6]], [[0, 1, 2]], "wall")
 GATE = Obstacle([[-1.0, 3, -1], [1, 3, -1], [0, 3, 1]], [[0, 1, 2]], "gate")
+STICK = Obstacle([[-12.0, 0.5, 0], [-12, 9, 0]], [[0, 1]], "stick")
 POST = Obstacle([[0.9, 0.9, -9], [0.9, 0.9, 9]], [[0, 1]], "post")
 
 
@@ -41,6 +42,7 @@ NEARLY_TAUT = arcs(X + SAG, Y - SAG)
 T = 2 * np.pi * np.arange(120) / 120
 EIGHT = Curve(np.stack([12 * np.sin(T), 8 * np.sin(2 * T), 0 * T], axis=1))
 BENT = np.concatenate([line((-15, 6, 0), (-5, 0, 0), 11)[:-1], line((-5, 0, 0), (5, 0, 0), 11)])
+U = np.array([[0.0, 0, 0], [3, 0, 0], [2.48, 2.95, 0], [-0.34, 1.93, 0]])
 TWICE = np.stack([np.linspace(0, 20, 61), np.sin(np.linspace(0, 7, 61)), np.cos(np.linspace(0, 5, 61))], axis=1)
 
 
@@ -163,11 +165,12 @@ def test_free_ends_move_with_their_strand():
     [
         (arcs(X, X + np.array([0, 1.0, 0])), 1.0, {}, "room for 50 % of the radius only"),
         (Task(curve=arcs([[0.0, 0, 0], [2, 0, 0], [1, 1.5, 0]]), pins=(1,)), 1.0, {}, "at a corner of component 1"),
-        (Task(curve=arcs(X), obstacles=(Obstacle([[-12.0, 0.5, 0], [-12, 9, 0]], [[0, 1]]),)), 1.0, {}, "an obstacle"),
+        (Task(curve=arcs(X), obstacles=(STICK,)), 1.0, {}, "between component 1 and obstacle stick"),
+        (arcs(U), 1.0, {}, "between parts of component 1"),
         (LINKED, 3.0, {"lengths": "keep"}, "room for 8"),
         (NEARLY_TAUT, 1.0, {"lengths": "keep"}, "lengths cannot be"),
     ],
-    ids=["pins too near", "corner", "pin at an obstacle", "lengths too short", "nearly taut"],
+    ids=["pins too near", "corner", "pin at an obstacle", "coarse", "lengths too short", "nearly taut"],
 )  # fmt: skip
 def test_where_there_is_no_room_the_best_is_kept_and_the_place_told(curve, radius, options, said):
     result = separated(curve, radius, **options)
@@ -181,7 +184,9 @@ def test_where_there_is_no_room_the_best_is_kept_and_the_place_told(curve, radiu
     [
         (arcs(TWICE, TWICE), {}, "component 1 and component 2 are both held at (0, 0, 1); move one of them"),
         (arcs(X, Y), {"lengths": "keep"}, "component 1 and component 2 are both held at (0, 0, 0) by the lengths"),
-        (Curve(np.concatenate([ring(), ring()])), {}, "touch or cross near"),
+        (arcs(X[::20], Y[::20]), {"lengths": "keep"}, "are both held at (0, 0, 0) by the lengths"),
+        (arcs(X[::20] + 0.3, Y[::20] + np.array([0.4, 0, 0.3])), {"lengths": "keep"}, "led apart near (0.399609, 0.3"),
+        (Curve(np.concatenate([ring(), ring()])), {}, "strands cannot be led apart near (8, 0, 0); move them there"),
         (arcs([[0.0, 0, 0], [2, 0, 0], [1, 0, 0], [1, 1, 0]]), {}, "doubles back at vertex 2"),
         (arcs([[0.0, 0, 0], [2, 0, 0], [2, 0, 0], [1, 1, 0]]), {}, "are the same point"),
         (Curve(ring()[:, :2]), {}, "separated in space"),
@@ -199,6 +204,8 @@ def test_what_cannot_be_is_refused_in_a_sentence(curve, options, said):
     with pytest.raises(MobiusFlowError) as refusal:
         separate(curve, **{"radius": 0.5, **options})
     assert said in str(refusal.value)
+    place = getattr(refusal.value, "place", None)
+    assert place is None or all(k < len(Task.of(curve).curve) for k in place.vertices)
 
 
 def tangle():

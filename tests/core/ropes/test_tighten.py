@@ -9,6 +9,7 @@ import pytest
 from mobius_flow.core import Curve, CurveError, Mesh, OptionError, Status, Task, tighten
 from mobius_flow.core.base.deadline import TimeLimit
 from mobius_flow.core.collision import thickness
+from mobius_flow.core.curve import subdivide
 from mobius_flow.core.driver import WithOutcome, relax
 from mobius_flow.core.driver.relax import within
 from mobius_flow.core.knots import knot, overhand
@@ -322,7 +323,9 @@ def test_of_an_interrupted_comparison_the_shortest_start_so_far_is_kept():
 def test_an_open_rope_beside_a_closed_one_keeps_its_length():
     result = tighten(BESIDE, vertices=200)
     assert result.status is Status.CONVERGED
-    assert "no knot" in result.message  # the ring's length is not counted
+    assert "radii" not in result.message  # the ring's length is not counted
+    assert result.outcome.ropelength == pytest.approx(result.curve.length / thickness(result.curve))
+    assert result.outcome.residual <= 1e-5
     assert result.curve.component_lengths[0] == pytest.approx(BESIDE.component_lengths[0], rel=1e-2)
     assert result.curve.component_lengths[1] < 0.9 * BESIDE.component_lengths[1]
 
@@ -332,9 +335,31 @@ def test_an_open_rope_beside_a_closed_one_keeps_its_length():
     [
         (CIRCLE + 1e4, r"1e\+04 from the origin, too far for ropes of radius 0\..*; move it there"),
         (CIRCLE + 1e9, r"1e\+09 from the origin, too far .*; move it there"),
+        (CIRCLE * 1e4 + 1e7, r"1e\+07 from the origin, too far .*; move it there"),
         ([[0, 0, 0], [1e5, 0, 0], [1e5, 1e-3, 0], [0, 1e5, 0]], r"1e\+05 wide, too much for .*; smooth or relax it"),
     ],
 )
 def test_what_has_too_few_digits_for_its_thickness_is_refused_at_once(vertices, said):
     with pytest.raises(CurveError, match=said):
         tighten(Curve(vertices))
+
+
+def test_a_rope_may_be_thinner_but_not_thicker_than_the_curve():
+    thin, thick = (tighten(HOPF, vertices=100, radius=radius) for radius in (0.1, 9.0))
+    for result, radius in ((thin, 0.1), (thick, 0.9 * thickness(HOPF))):
+        assert result.status is Status.CONVERGED
+        assert thickness(result.curve) == pytest.approx(radius, rel=1e-5)
+        assert result.outcome.ropelength == pytest.approx(8.0 * np.pi, rel=1e-2)
+
+
+def test_a_radius_that_is_too_small_is_refused():
+    with pytest.raises(CurveError, match=r"2 wide, too much for ropes of radius 0\.0001; give a larger radius"):
+        tighten(Curve(CIRCLE), radius=1e-4)
+
+
+def test_components_of_few_vertices_get_more_and_do_not_keep_others_from_having_less():
+    coarse = CIRCLE[::5]
+    fine = subdivide(Curve(CIRCLE), np.full(60, 16)).vertices
+    result = tighten(Curve.from_components([fine, coarse[:, [0, 2, 1]] + [1.0, 0.0, 0.0]]), vertices=200)
+    assert len(result.curve) <= 400
+    assert result.outcome.ropelength == pytest.approx(8.0 * np.pi, rel=3e-3)
