@@ -67,7 +67,9 @@ def add_info(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--close", action="store_true", help=text)
     text = "also close open components in N random directions, and tell how often each type comes out"
     parser.add_argument("--closures", type=int, metavar="N", help=text)
-    parser.add_argument("--seed", type=int, default=0, metavar="S", help="of these directions (default: 0)")
+    parser.add_argument(
+        "--seed", type=int, default=0, metavar="S", help="seed of the directions of --closures (default: 0)"
+    )
     parser.add_argument("--json", action="store_true", help="print JSON, a list if there are several inputs")
     parser.set_defaults(run=_info)
 

@@ -65,7 +65,7 @@ def add_pair(parser: argparse.ArgumentParser) -> None:
         parser.add_argument(name.lower(), metavar=name, help=f"polygons, closed or open: {', '.join(FORMATS)}")
     curves.add_format(parser)
     relax_options.add_to(parser, without=_ONE_CURVE)
-    text = "OBJ file of triangles or polylines that both avoid, and the motion does; may be given several times"
+    text = "OBJ file of triangles or polylines that both curves and the motion avoid; may be given several times"
     parser.add_argument("--avoid", metavar="MESH.obj", action="append", default=[], help=text)
 
 

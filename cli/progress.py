@@ -61,6 +61,10 @@ def progress(options: RelaxOptions | None = None, shown: bool = True) -> Iterato
     with live(shown) as show:
 
         def draw(iterate: Iterate) -> None:
+            if options is None:
+                radius, length = min(iterate.radius or (0.0,)), iterate.curve.length
+                show(f"iteration {iterate.index} · radius {radius:.4g} · length {length:#.5g}")
+                return
             left.add(iterate)
             moves, bound = iterate.strand_moves, gradient_bound(wanted, iterate.curve.mesh, iterate.energy)
             words = [
@@ -68,9 +72,7 @@ def progress(options: RelaxOptions | None = None, shown: bool = True) -> Iterato
                 f"E {iterate.energy:#.5g}",
                 f"gradient {power(iterate.gradient_norm)} → {power(bound)}",
             ]
-            if options is None:
-                words[1:] = [f"radius {min(iterate.radius or (0.0,)):.4g}", f"length {iterate.curve.length:#.5g}"]
-            elif moves is not None and not moves.done:
+            if moves is not None and not moves.done:
                 words[1:] = [f"strands move: {moves.left} of {moves.before} crossings are left"]
             elif (seconds := left.seconds) is not None:
                 words.append(time_left(seconds))

@@ -106,9 +106,7 @@ def add_atlas(parser: argparse.ArgumentParser) -> None:
     parser.description, parser.epilog = "Make pages and a package of data from the results of batches.", _ATLAS
     parser.add_argument("results", metavar="RESULTS", nargs="+", help="directory that mobius-flow batch wrote to")
     parser.add_argument("-o", "--output", required=True, metavar="DIR", help="directory of the atlas")
-    text = (
-        f"of the pictures, as for relax, or {NO_LOOK} (default: {DEFAULT.lower()} where Blender's module is installed)"
-    )
+    text = f"look of the pictures, as for relax, or {NO_LOOK} (default: {DEFAULT.lower()} where bpy is installed)"
     parser.add_argument("--look", type=lambda word: look(word, NO_LOOK), metavar="LOOK", help=text)
     parser.set_defaults(run=make)
 
@@ -123,7 +121,7 @@ def add_gallery(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("results", metavar="RESULTS", help=text)
     parser.add_argument("-o", "--output", required=True, metavar="OUT.png", help="the page")
     parser.add_argument("--only", metavar="A,B,…", help="names of what is shown, in this order (default: all)")
-    parser.add_argument("--look", type=relax_options.look, metavar="LOOK", help="of the pictures, as for relax")
+    parser.add_argument("--look", type=relax_options.look, metavar="LOOK", help="look of the pictures, as for relax")
     parser.add_argument("--size", type=int, default=300, metavar="N", help="pixels of a picture (default: 300)")
     parser.set_defaults(run=gallery)
 

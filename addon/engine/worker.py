@@ -35,7 +35,7 @@ STOP = ("stop", ())
 
 
 class Stop(TimeLimit):
-    """The time is up as soon as the inbox holds a stop; nobody reads on from there."""
+    """The time is up as soon as the inbox holds a stop."""
 
     def __init__(self, inbox: Inbox) -> None:
         super().__init__(math.inf)
@@ -69,6 +69,8 @@ def messages(inbox: Inbox) -> Iterator[Any]:
             while (paused or hand.rests or not inbox.empty()) and not stop.is_reached:
                 if (said := inbox.get()) is None:
                     return
+                if said == STOP:  # which came while it waited
+                    raise TimeIsUp(stop)
                 deed, facts = said
                 if deed == "pause":
                     (paused,) = facts

@@ -139,7 +139,7 @@ def status_line(run: LiveRun) -> str:
         return iface_("{names}: waiting for the render", names=run.name)
     if run.state is RunState.FINISHING:
         return iface_("{names}: proving and writing keys   |   Esc: put all back", names=run.name)
-    where = Message("starting")
+    where = Message("stopping" if run.stops else "starting")
     if run.last is not None:
         told = "step {index}, {measure} {energy:.4f}"
         where = Message(told, index=run.last.index, measure=run.measure, energy=run.last.energy)

@@ -17,7 +17,7 @@ from ...core import CurveError, Iterate, MobiusFlowError, Outcome, Status
 from ...core.base import FloatArray, Message, Place
 from ...core.driver import TimeLeft
 from ...core.keys.placement import Spot
-from ...core.ropes import SeparateOptions, TightenOptions
+from ...core.ropes import TightenOptions
 from ..curves.report import Report
 from ..curves.session import Prepared, Session
 from ..curves.splines import digest
@@ -41,9 +41,6 @@ class RunState(Enum):
         return self in (RunState.DONE, RunState.CANCELLED, RunState.LOST)
 
 
-MEASURES = {SeparateOptions: Message("Displacement"), TightenOptions: Message("Length in Radii")}
-
-
 class LiveRun:
     """A session that is fed by a worker, while its curves are shown."""
 
@@ -60,7 +57,7 @@ class LiveRun:
         self.energies: list[float] = []
         self.drag: Drag | None = None  # the one that is going on
         self.drags = 0  # those that may be taken back
-        self._stops = False  # whether the worker was told to, before there was anything to keep
+        self.stops = False  # whether the worker was told to, before there was anything to keep
         self.trouble: list[Spot] = []  # where it failed or got stuck, if the reason has a place
         self._left: dict[int, bytes] | None = None  # what the objects were at its end, by their identities
         self.session, self._refresh = session, refresh
@@ -81,8 +78,8 @@ class LiveRun:
 
     @property
     def measure(self) -> Message:
-        """What is minimised: the ``energies``."""
-        return MEASURES.get(type(self.session.job), Message("Energy"))
+        """What the ``energies`` are."""
+        return Message("Length in Radii" if isinstance(self.session.job, TightenOptions) else "Energy")
 
     @cached_property
     def target(self) -> Target | None:
@@ -165,12 +162,14 @@ class LiveRun:
         """Keep the curve as it is now: stop computing, then prove and write the keys."""
         if self.state not in (RunState.RUNNING, RunState.PAUSED):
             return
+        if self.stops and self.session.outcome is None and not reason:
+            return  # what was reached is on its way
+        if self.last is None and self.session.outcome is None:  # of several starts the shortest so far is kept
+            self.stops, self.state = True, RunState.RUNNING
+            self._worker.tell("stop")
+            return
         if self.last is None:
-            if self._stops:
-                self.cancel(Message("Stopped before anything had moved"))
-            else:  # of several starts the shortest so far is shown
-                self._stops, self.state = True, RunState.RUNNING
-                self._worker.tell("stop")
+            self.cancel(Message("Stopped before anything had moved"))
             return
         self.looked_at = self.drag = None
         self._show()
@@ -204,7 +203,7 @@ class LiveRun:
             wait([self._keys])  # a thread that still chooses keys ends at its next proof
         self.session.reopen()
         self.state, self.message, self.failed, self.shown = RunState.RUNNING, "", False, None
-        self.trouble, self._left = [], None
+        self.trouble, self._left, self.stops = [], None, False
         self.keep()
 
     def tick(self) -> None:

@@ -136,15 +136,16 @@ def _iterates(task: Task, options: SeparateOptions) -> Relaxation:
     try:
         apart, crossings = lead_apart(curve, radius, ropes.stiffness, held, taut, options.over, task.obstacles)
     except CurveError as error:
-        place = error.place or Place((), ())
-        drawn = np.flatnonzero(np.isin(now, place.vertices)).tolist()  # of the given curve
-        raise CurveError(error.args[0], Place(tuple(drawn), place.position)) from None
+        assert error.place is not None  # noqa: PT017 (it is about vertices)
+        drawn = np.flatnonzero(np.isin(now, error.place.vertices)).tolist()  # of the given curve
+        raise CurveError(error.args[0], Place(tuple(drawn), error.place.position)) from None
     led = curve.with_vertices(apart)
     try:
         check_embedded(led)
         check_clear(led, task.obstacles)
     except CurveError as error:  # about edges that nobody has drawn
-        where = error.place.position if error.place else ()
+        assert error.place is not None  # noqa: PT017 (it names edges)
+        where = error.place.position
         cannot = Message("strands cannot be led apart near {place}; move them there", place=written(np.array(where)))
         raise CurveError(cannot, Place((), where)) from error
     if crossings or np.array_equal(apart, curve.vertices):

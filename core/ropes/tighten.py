@@ -51,8 +51,8 @@ class TightenOptions:
     radius: float | None = option(
         None,
         "Radius",
-        "radius of the rope, if the curve is not thinner",
-        automatic="nine tenths of the curve's thickness",
+        "radius of the rope, at most nine tenths of the curve's thickness",
+        automatic="those",
         low=0,
         metavar="R",
     )
@@ -105,8 +105,8 @@ def tighten(
     seed: int = 0,
     callback: Callable[[Iterate], None] | None = None,
 ) -> Result:
-    """Pull a knot or link tight: as short as a rope can be whose ``radius`` is nine tenths of the curve's thickness, or
-    less.
+    """Pull a knot or link tight: as short as a rope of its ``radius`` can be, by default and at most nine tenths of the
+    curve's thickness.
 
     In the end there are ``vertices`` or up to twice as many, by default 800, and 400 of open ropes.  What is tight is
     only refined.  Of several ``starts`` all but the first are drawn anew from other diagrams (`redrawn`), in the same
@@ -145,29 +145,35 @@ def tightening(task: Task, options: TightenOptions) -> Relaxation:
     start = task.refined(max(len(task.curve), coarse))
     cuts = np.ceil(32.0 / np.asarray(start.curve.mesh.component_sizes)).astype(np.intp)  # of edges of small components
     start = Task.of(subdivide(start.curve, cuts[start.curve.mesh.edge_component]))
-    thick = rope_radius(start, RelaxOptions(radius="keep"))
-    if thick is None:
+    found = rope_radius(start, RelaxOptions(radius="keep"))
+    if found is None:
         raise CurveError("the curve is no rope: a corner is too sharp, or strands are too near; smooth or relax it")
-    thickest = math.inf if options.radius is None else options.radius
-    unit = min(float(thick.min()), thickest)
+    thick, wanted = float(found.min()), options.radius or math.inf
+    unit = min(thick, wanted)
     away = float(np.abs(start.curve.vertices.mean(axis=0)).max())
     size = float(np.ptp(start.curve.vertices, axis=0).max())
     if size > 1e4 * unit:
-        remedy = "give a larger radius" if unit == thickest else "smooth or relax it"
+        remedy = "give a larger radius" if unit == wanted else "smooth or relax it"
         raise CurveError(f"the curve is {size:.3g} wide, too much for ropes of radius {unit:.3g}; {remedy}")
     if away > 1e3 * unit:  # of such coordinates too few digits are left for strands that touch
         raise CurveError(
             f"the curve is {away:.3g} from the origin, too far for ropes of radius {unit:.3g}; move it there"
         )
     if unknot := knot_type(start.curve).names == ("0_1",):  # the flow that undoes it needs its own mesh
-        start, unit = task.refined(), thickest
+        start, thick = task.refined(), math.inf
     if unknot or not start.curve.mesh.all_closed:  # which are not scaled until they fit
-        unit = min(unit, 0.9 * thickness(start.curve))
-    return bounded(_tightened(start, unit, coarse, vertices, unknot, options), options.time_limit, began)
+        thick = min(thick, 0.9 * thickness(start.curve))
+    unit = min(thick, wanted)
+    if not start.curve.mesh.all_closed:  # of edges longer than six radii no knot can be made
+        unit = max(unit, min(thick, start.curve.length / (6.0 * coarse)))
+    return bounded(_tightened(start, thick, unit, coarse, vertices, unknot, options), options.time_limit, began)
 
 
-def _spread(start: Task, unit: float, unknot: bool, number: int) -> tuple[PulledRope, Iterable[Iterate]]:
-    """The rope of a start, by its number, and its way along a flow that spreads it out; none if it is tight already."""
+def _spread(start: Task, thick: float, unit: float, unknot: bool, number: int) -> tuple[PulledRope, Iterable[Iterate]]:
+    """The rope of a start, by its number, and its way along a flow that spreads it out; none if it is tight already.
+
+    The flow is that of a rope as ``thick`` as the curve, whose strands feel each other.
+    """
     most = 2000 if unknot else 300  # knots take up to a hundred, parts that are not linked would part for ever
     if number and number % 3 == 0:  # spread a little only: those that are spread out are shorter, but of fewer shapes
         most = 20
@@ -175,7 +181,7 @@ def _spread(start: Task, unit: float, unknot: bool, number: int) -> tuple[Pulled
         barrier="off" if number else "on",  # drawings' strands are apart, and their rope keeps them so
         max_iterations=most,
         mesh="fixed",
-        radius=unit,
+        radius=thick,
         tolerance=1e-2,
         untangle="never",
         vertices=len(start.curve),
@@ -195,7 +201,7 @@ def _spread(start: Task, unit: float, unknot: bool, number: int) -> tuple[Pulled
 
 
 def _tightened(
-    start: Task, unit: float, coarse: int, vertices: int, unknot: bool, wanted: TightenOptions
+    start: Task, thick: float, unit: float, coarse: int, vertices: int, unknot: bool, wanted: TightenOptions
 ) -> Relaxation:
     alone = wanted.starts == 1 or unknot or not start.curve.mesh.all_closed
     trials, fine = list[Trial](), vertices // PER_CONTROL
@@ -204,9 +210,9 @@ def _tightened(
         yield start
         for other in () if alone else redrawn(start.curve, wanted.starts - 1, wanted.seed):
             task = Task.of(other).refined(max(len(other), coarse))
-            thick, x = rope_radius(task, RelaxOptions(radius="keep")), task.curve.vertices
-            if thick is not None:  # they are ropes of the same radius in the same place
-                x = start.curve.vertices.mean(axis=0) + (1.0 + 1e-6) * unit / thick.min() * (x - x.mean(axis=0))
+            found, x = rope_radius(task, RelaxOptions(radius="keep")), task.curve.vertices
+            if found is not None:  # they are ropes of the same radius in the same place
+                x = start.curve.vertices.mean(axis=0) + (1.0 + 1e-6) * thick / found.min() * (x - x.mean(axis=0))
                 yield Task.of(task.curve.with_vertices(x))
 
     def near(several: list[Trial], width: float) -> list[Trial]:
@@ -222,7 +228,7 @@ def _tightened(
 
     try:
         for number, each in enumerate(starts()):
-            rope, spread = _spread(each, unit, unknot, number)
+            rope, spread = _spread(each, thick, unit, unknot, number)
             if alone and min(fine, len(rope.curve)) >= 2 * COARSE and each.curve.mesh.all_closed and spread == ():
                 steps = chain(rope.thinned(fine), rope.shrunk())  # it is tight: it is refined only
             else:
@@ -252,7 +258,10 @@ def _tightened(
         raise
     if trials:
         yield from way
-    return _ended(rope, elsewhere=bool(trials) and rope is not trials[0][0])
+    outcome = _ended(rope, elsewhere=bool(trials) and rope is not trials[0][0])
+    if wanted.radius and unit != wanted.radius:
+        return outcome.adding("its radius is {unit:.4g}, which fits the curve and its vertices", unit=unit)
+    return outcome
 
 
 def _ended(rope: PulledRope, elsewhere: bool) -> Outcome:

@@ -40,7 +40,9 @@ def test_a_run_is_shown_by_what_is_known_of_it(terminal, monkeypatch):
     assert end == ""
     with progress() as draw:
         tighten(torus_trefoil(40), vertices=100, callback=draw)
-    assert "gradient" not in terminal.getvalue().partition("iteration 0 · radius ")[2]
+    _, found, rest = terminal.getvalue().partition("iteration 0 · radius ")
+    assert found
+    assert "gradient" not in rest
     monkeypatch.setenv("COLUMNS", "40")
     with live() as show:
         show("x" * 50)

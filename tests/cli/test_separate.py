@@ -62,7 +62,7 @@ def test_a_trefoil_is_written_with_report_and_proof(room, run):
 
 
 def test_without_an_equilibrium_there_is_no_map_of_contacts(room, run):
-    words = ("--vertices", "20000", "--time-limit", "0.5", "--contacts", "map.svg", "--report", "r.json")
+    words = ("--vertices", "20000", "--time-limit", "4", "--contacts", "map.svg", "--report", "r.json")
     status, _, said = run("tighten", "trefoil.txt", "out.obj", *words)
     assert status == 0
     assert "no map of contacts" in said

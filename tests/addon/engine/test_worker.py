@@ -6,6 +6,7 @@ import re
 import signal
 import subprocess
 import sys
+import threading
 
 import numpy as np
 import pytest
@@ -85,6 +86,16 @@ def test_a_stop_ends_a_step_and_gives_what_was_reached(monkeypatch):
         *way, outcome = messages(inbox)
         assert outcome.status is Status.INTERRUPTED
         assert len(way) < 2
+
+
+def test_a_stop_reaches_a_worker_that_waits():
+    inbox = queue.Queue()
+    inbox.put((Task(curve=knot("3_1", 60)), RelaxOptions(), False, {}))
+    said = messages(inbox)
+    next(said)
+    inbox.put(("pause", (True,)))
+    threading.Timer(0.2, inbox.put, [STOP]).start()
+    assert next(said).status is Status.INTERRUPTED
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGPIPE"), reason="there is no such signal")

@@ -12,6 +12,7 @@ from blender_scenes import add_curve, add_trefoil, contents, evaluated, relax, s
 from families import crossed
 from mobius_flow.addon.curves import keyframes
 from mobius_flow.addon.live import handlers, registry
+from mobius_flow.addon.live.modal import status_line
 from mobius_flow.addon.live.run import RunState
 from mobius_flow.core.keys.recording import Kind
 from mobius_flow.core.ropes import tightening
@@ -314,6 +315,8 @@ def test_keep_among_several_starts_keeps_the_shortest_so_far(drawings, monkeypat
     operator.run.toggle_pause()
     assert operator.run.last is None
     operator.event("RET")
+    operator.event("RET")  # it has been heard
+    assert "stopping" in status_line(operator.run)
     assert operator.until(lambda: False) == {"FINISHED" if drawings else "CANCELLED"}
     if drawings:
         assert len(obj.data.shape_keys.key_blocks) > 2

@@ -125,7 +125,7 @@ def test_open_ropes_end_on_fewer_vertices(monkeypatch):
     """Unless a number is given: they stay polygons, for which twice as many take minutes."""
     asked = []
     monkeypatch.setitem(
-        tightening.__wrapped__.__globals__, "_tightened", lambda *given: asked.append(given[3]) or iter(())
+        tightening.__wrapped__.__globals__, "_tightened", lambda *given: asked.append(given[4]) or iter(())
     )
     for curve in (HOPF, BESIDE):
         for vertices in (None, 300):
@@ -136,7 +136,8 @@ def test_open_ropes_end_on_fewer_vertices(monkeypatch):
 def test_every_third_drawing_is_spread_a_little_only():
     """The others, and the given curve, as far as they go: so that starts come to different shapes."""
     spread, start = tightening.__wrapped__.__globals__["_spread"], Task(curve=knot("4_1", 60))
-    ways = [spread(start, 0.5 * thickness(start.curve), False, number)[1] for number in range(4)]
+    thick = 0.5 * thickness(start.curve)
+    ways = [spread(start, thick, thick, False, number)[1] for number in range(4)]
     assert [len(list(islice(way, 21))) for way in ways] == [21, 21, 21, 20]
 
 
@@ -346,15 +347,22 @@ def test_what_has_too_few_digits_for_its_thickness_is_refused_at_once(vertices, 
 
 def test_a_rope_may_be_thinner_but_not_thicker_than_the_curve():
     thin, thick = (tighten(HOPF, vertices=100, radius=radius) for radius in (0.1, 9.0))
-    for result, radius in ((thin, 0.1), (thick, 0.9 * thickness(HOPF))):
+    for result, radius in ((thin, 0.1), (thick, 9.0)):
         assert result.status is Status.CONVERGED
-        assert thickness(result.curve) == pytest.approx(radius, rel=1e-5)
+        assert thickness(result.curve) == pytest.approx(min(radius, 0.9 * thickness(HOPF)), rel=1e-5)
         assert result.outcome.ropelength == pytest.approx(8.0 * np.pi, rel=1e-2)
+        assert ("which fits the curve" in result.message) == (radius > 1.0)
 
 
 def test_a_radius_that_is_too_small_is_refused():
     with pytest.raises(CurveError, match=r"2 wide, too much for ropes of radius 0\.0001; give a larger radius"):
         tighten(Curve(CIRCLE), radius=1e-4)
+
+
+def test_thin_open_ropes_are_as_thin_as_their_vertices_allow():
+    result = tighten(overhand(), vertices=200, radius=0.001)
+    assert result.status is Status.CONVERGED
+    assert thickness(result.curve) == pytest.approx(overhand().length / 1200.0, rel=1e-3)
 
 
 def test_components_of_few_vertices_get_more_and_do_not_keep_others_from_having_less():
