@@ -141,7 +141,7 @@ def status_line(run: LiveRun) -> str:
         return iface_("{names}: proving and writing keys   |   Esc: put all back", names=run.name)
     where = Message("stopping" if run.stops else "starting")
     if run.last is not None:
-        told = "step {index}, {measure} {energy:.4f}"
+        told = "step {index} ({measure} {energy:.4f})"
         where = Message(told, index=run.last.index, measure=run.measure, energy=run.last.energy)
     if run.looked_at is not None and run.last is not None:
         where = Message("looking back at step {index:.0f} of {last}", index=run.looked_at, last=run.last.index)

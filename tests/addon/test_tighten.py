@@ -48,7 +48,7 @@ def test_a_live_run_shows_the_length(operator):
     operator.given["vertices"] = 100
     operator.start()
     operator.reach(1)
-    assert status_line(operator.run).startswith("'Knot': step 1, Length in Radii ")
+    assert status_line(operator.run).startswith("'Knot': step 1 (Length in Radii ")
     assert "Drag" not in status_line(operator.run)
     operator.until(lambda: operator.run.state.over)
     assert not operator.run.time_left.distances
