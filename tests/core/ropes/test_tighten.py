@@ -139,6 +139,9 @@ def test_every_third_drawing_is_spread_a_little_only():
     thick = 0.5 * thickness(start.curve)
     ways = [spread(start, thick, thick, False, number)[1] for number in range(4)]
     assert [len(list(islice(way, 21))) for way in ways] == [21, 21, 21, 20]
+    thin, same = (spread(start, thick, share * thick, False, 0)[1] for share in (0.1, 1.0))
+    for one, other in islice(zip(thin, same, strict=True), 3):
+        assert np.array_equal(one.curve.vertices, other.curve.vertices), "however thin the rope is"
 
 
 def test_of_starts_that_come_to_the_same_shape_the_given_curve_goes_on(monkeypatch):
@@ -370,4 +373,5 @@ def test_components_of_few_vertices_get_more_and_do_not_keep_others_from_having_
     fine = subdivide(Curve(CIRCLE), np.full(60, 16)).vertices
     result = tighten(Curve.from_components([fine, coarse[:, [0, 2, 1]] + [1.0, 0.0, 0.0]]), vertices=200)
     assert len(result.curve) <= 400
+    assert len(result.curve.components[1]) >= 32
     assert result.outcome.ropelength == pytest.approx(8.0 * np.pi, rel=3e-3)
