@@ -8,7 +8,8 @@ from sphinx.application import Sphinx
 _CODE = re.compile(r"(``.*?``|`.*?`|:\w+:`.*?`)")
 _ARRAY = re.compile(r"~?numpy\.ndarray\[.+?dtype\[[^]]*\]\]")
 _LIKE_ARRAY = re.compile(
-    r"(?:[~\w.]*Buffer \| )?[~\w.]*_SupportsArray\[.*?_NestedSequence\[(?:bool|complex)\b[^]]*\]"  # until NumPy 2.5
+    r"~?numpy\._typing\._array_like\.ArrayLike"  # of NumPy 2.5; before, what it stands for
+    r"|(?:[~\w.]*Buffer \| )?[~\w.]*_SupportsArray\[.*?_NestedSequence\[(?:bool|complex)\b[^]]*\]"
 )
 _MARKUP = re.compile(r"\||\*|(?<=\w)_(?!\w)")
 
