@@ -81,9 +81,14 @@ class LiveRun:
         """What the ``energies`` are."""
         return Message("Length in Radii" if isinstance(self.session.job, TightenOptions) else "Energy")
 
+    @property
+    def _relaxes(self) -> bool:
+        """Whether it lowers an energy: ropes are separated or tightened by other rules."""
+        return self.session.job is self.session.options
+
     @cached_property
     def target(self) -> Target | None:
-        return target_of(self.session.task, self.session.options) if self.session.job is self.session.options else None
+        return target_of(self.session.task, self.session.options) if self._relaxes else None
 
     def concerns(self, obj: bpy.types.Object | None) -> bool:
         """Whether it concerns an object: always while in progress, afterwards if the object is as the run left it."""
@@ -131,7 +136,7 @@ class LiveRun:
     @property
     def may_be_dragged(self) -> bool:
         """Whether a hand may pull: what is no relaxation does not heed it."""
-        return self.session.job is self.session.options and not self.session.goals.objects
+        return self._relaxes and not self.session.goals.objects
 
     def grab(self, drag: Drag) -> None:
         """Take hold of a strand; `pull` and `let_go` follow."""
@@ -256,7 +261,7 @@ class LiveRun:
                 return
             self.session.take(arrived)
             self.last = arrived
-            if self.session.job is self.session.options:  # ropes come to rest otherwise
+            if self._relaxes:  # ropes come to rest otherwise
                 self.time_left.add(arrived)
             self.energies[arrived.index :] = [arrived.energy]
             if self._refresh.ends_batch(arrived.index):

@@ -217,10 +217,10 @@ def _outcome(ropes: Ropes, curve: Curve, crossings: tuple[Crossing, ...]) -> Sep
         return Separated(Status.STALLED, (*stalled(reason).clauses, *told), place=place, **facts)
     if ropes.share == 1.0:
         return Separated(Status.CONVERGED, (Message("separated: all ropes keep clear"), *told), **facts)
-    thicker, contact, x = 1.01, None, curve.vertices
+    share, contact, x = max(ropes.share, 1e-12), None, curve.vertices
     while contact is None:  # what is in the way of thicker ropes
-        radius = thicker * ropes.share * ropes.radius
-        contact, thicker = rope_motion(curve.mesh, x, x, radius, ropes.obstacles).contact, 1.1 * thicker
+        share *= 1.02
+        contact = rope_motion(curve.mesh, x, x, share * ropes.radius, ropes.obstacles).contact
     place = at_edges(curve, contact.edges)
     i, j = contact.edges[0], contact.edges[-1]
     one, other = (Message(COMPONENT, number=int(curve.mesh.edge_component[each]) + 1) for each in (i, j))
